@@ -7,6 +7,7 @@ from pathlib import Path
 
 import yaml
 
+from archgen.checking.checked_packing import pack_checked_project
 from archgen.passes.patterns.expressions import OPERATORS, TEST_FUNCTIONS, VALUE_FUNCTIONS
 from archgen.passes.patterns.pattern_registry import SHIPPED_PREFIX, find_known_passes
 from archgen.pipeline import check_project
@@ -26,7 +27,7 @@ def test_the_example_makes_what_the_page_says(tmp_path: Path) -> None:
         (tmp_path / name).write_text(text, encoding="utf-8")
     checked = check_project(tmp_path)
     assert [each for each in checked.findings if str(each.severity) == "error"] == []
-    packed = transform_by_name(checked, choose_passes(checked, ["log_pictures"])).pack_project()
+    packed = pack_checked_project(transform_by_name(checked, choose_passes(checked, ["log_pictures"])))
     data = yaml.safe_load(write_yaml(packed.data, packed.comments))
     assert data["groups"]["logging"]["components"]["recorder"] == wanted
 

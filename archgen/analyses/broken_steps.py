@@ -127,7 +127,7 @@ class _StepJudge:
             who = use_case.actors[source.id].title
             return (
                 f"no input of `{target.participant}` is `external`, where something comes in from outside",
-                f"write at the input that takes it who gives it: `{{external: {_shorten(who)}}}`, or lead the step to another component",
+                f"write at the input that takes it who gives it: `{{external: {_shorten_sentence(who)}}}`, or lead the step to another component",
             )
         if target.kind == "actor":
             what = f"`{source.id}` is not" if source.kind == "output" else f"no output of `{source.id}` is"
@@ -186,7 +186,7 @@ class _StepJudge:
         return tuple(way)
 
 
-def _shorten(text: str) -> str:
+def _shorten_sentence(text: str) -> str:
     line = " ".join(text.split())
     return line if len(line) <= 40 else f"{line[:39]}…"  # noqa: PLR2004 - what an example line holds
 

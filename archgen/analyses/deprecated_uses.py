@@ -7,13 +7,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN
-from archgen.model.counted_outputs import (
-    find_deprecation,
-    find_replacement,
-    list_counted_outputs,
-    list_described_outputs,
-)
+from archgen.model.deprecation_lookup import find_deprecation, find_replacement
 from archgen.model.generic_names import read_generic_name
+from archgen.model.relied_outputs import list_described_outputs, list_relied_outputs
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -153,7 +149,7 @@ def _list_uses(architecture: Architecture) -> Iterator[_Use]:
 
 def _list_readers(architecture: Architecture) -> Iterator[_Use]:
     told: set[tuple[str, str]] = set()
-    for counted in list_counted_outputs(architecture):
+    for counted in list_relied_outputs(architecture):
         deprecated = counted.port.deprecated
         # Who reads one output over two ways reads it once.
         if deprecated and (counted.reader.id, counted.port.id) not in told:
@@ -172,7 +168,7 @@ def _list_type_users(architecture: Architecture, types: Mapping[str, Deprecation
 def _list_naming_ports(architecture: Architecture, types: Mapping[str, Deprecation]) -> Iterator[_Use]:
     """Yield the ports and operations that name a type."""
     for component, output in list_described_outputs(architecture):
-        # The type of what a composed component gives on follows from inside: it is told there.
+        # The type of what a composed component passes on follows from inside: it is told there.
         is_given_on = bool(component.children) and output.type_at == NO_SPAN
         if output.deprecated is None and not is_given_on:
             span = output.type_at if output.type_at != NO_SPAN else output.at
@@ -192,7 +188,7 @@ def _list_naming_ports(architecture: Architecture, types: Mapping[str, Deprecati
 def _list_type_readers(architecture: Architecture, types: Mapping[str, Deprecation]) -> Iterator[_Use]:
     """Yield the inputs that say nothing of a type: they read what their sources send."""
     told: set[tuple[str, str]] = set()
-    for counted in list_counted_outputs(architecture):
+    for counted in list_relied_outputs(architecture):
         reader = counted.reader
         # Who reads what is going away with its type leaves both at once.
         if reader.type is not None or counted.port.deprecated is not None:

@@ -8,17 +8,17 @@ from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.model.carried_values import find_only_number, list_units
-from archgen.model.counted_outputs import list_counted_outputs, list_described_outputs
 from archgen.model.promise import format_limit
+from archgen.model.relied_outputs import list_described_outputs, list_relied_outputs
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from archgen.model.architecture import Architecture
     from archgen.model.component import Output
-    from archgen.model.counted_outputs import CountedOutput
     from archgen.model.promise import Promise
     from archgen.model.quantity import Quantity
+    from archgen.model.relied_outputs import ReliedOutput
 
 
 def unpromised_freshness(architecture: Architecture) -> Iterator[Diagnostic]:
@@ -47,7 +47,7 @@ def unpromised_freshness(architecture: Architecture) -> Iterator[Diagnostic]:
     if not any(output.promise and output.promise.max_age for _, output in list_described_outputs(architecture)):
         return
     told: set[tuple[str, str]] = set()
-    for counted in list_counted_outputs(architecture):
+    for counted in list_relied_outputs(architecture):
         promise, freshness = counted.port.promise, counted.reader.freshness
         if promise is None or promise.max_age is None or freshness is None:
             continue
@@ -56,7 +56,7 @@ def unpromised_freshness(architecture: Architecture) -> Iterator[Diagnostic]:
             yield _diagnose_freshness(counted, promise, promise.max_age, freshness)
 
 
-def _diagnose_freshness(counted: CountedOutput, promise: Promise, max_age: Quantity, freshness: Quantity) -> Diagnostic:
+def _diagnose_freshness(counted: ReliedOutput, promise: Promise, max_age: Quantity, freshness: Quantity) -> Diagnostic:
     reader, port = counted.reader, counted.port
     return Diagnostic(
         "unpromised-freshness",

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN
-from archgen.model.counted_outputs import list_described_outputs
+from archgen.model.relied_outputs import list_described_outputs
 from archgen.timing.chains.read_ages import find_sent_ages
 from archgen.timing.figures.figure_wording import format_duration, format_rate
 from archgen.timing.figures.value_arithmetic import add_values, is_boundless, is_known_bound, smallest_value
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 _NOUNS = {"rate": "", "max_gap": "gaps of at most ", "max_age": "no greater age than "}
 
 
-class _Broken(NamedTuple):
+class _BrokenPromise(NamedTuple):
     """A promise that figures do not keep: its key, what follows instead, and where that is read."""
 
     key: str
@@ -80,7 +80,7 @@ def broken_promise(architecture: Architecture, analysis: Analysis) -> Iterator[D
     """
     told: set[tuple[str, str, Span]] = set()
     for broken in find_broken_promises(architecture, analysis):
-        # What is given on as it is promised inside is not told twice.
+        # What is passed on as it is promised inside is not told twice.
         if (broken.key, broken.leaf, broken.at) not in told:
             told.add((broken.key, broken.leaf, broken.at))
             yield _diagnose_broken(broken)
@@ -131,38 +131,42 @@ def _find_paces(architecture: Architecture, analysis: Analysis) -> Mapping[str, 
 
 def _find_broken(
     promise: Promise, paces: Sequence[EventPace], ages: Sequence[tuple[Arc, TimingValue]]
-) -> Iterator[_Broken]:
+) -> Iterator[_BrokenPromise]:
     if paces and promise.rate is not None:
         rate = add_values(pace.rate for pace in paces)
         is_limit = rate.side == "at most" or (rate.side == "exact" and rate.complete)
         if all(pace.behaviour == "once" for pace in paces):
-            yield _Broken("rate", "it is sent once", "let it be sent again and again, or promise no rate")
+            yield _BrokenPromise("rate", "it is sent once", "let it be sent again and again, or promise no rate")
         elif rate.value is not None and is_limit and rate.value < promise.rate.value:
             side = "at most " if rate.side == "at most" else ""
             words = f"{side}{format_rate(rate.value)} follows from the timing"
-            yield _Broken("rate", words, "let it be sent more often, or promise a lower rate")
+            yield _BrokenPromise("rate", words, "let it be sent more often, or promise a lower rate")
     if paces and promise.max_gap is not None:
         gap = smallest_value(pace.gap for pace in paces)
-        gap_words = _exceed(gap, promise.max_gap.value, "between two messages")
+        gap_words = _describe_excess(gap, promise.max_gap.value, "between two messages")
         if gap_words:
-            yield _Broken("max_gap", gap_words, "let it be sent more often and at each run, or promise a longer gap")
+            yield _BrokenPromise(
+                "max_gap", gap_words, "let it be sent more often and at each run, or promise a longer gap"
+            )
     if promise.max_age is not None:
         worst: tuple[Arc, TimingValue] | None = None
         for arc, age in ages:
-            if _exceed(age, promise.max_age.value, "") and (worst is None or _rank(age) > _rank(worst[1])):
+            if _describe_excess(age, promise.max_age.value, "") and (
+                worst is None or _rank_value(age) > _rank_value(worst[1])
+            ):
                 worst = (arc, age)
         if worst:
             arc, age = worst
-            words = _exceed(age, promise.max_age.value, f"where `{arc.target}` reads it") or ""
+            words = _describe_excess(age, promise.max_age.value, f"where `{arc.target}` reads it") or ""
             help_line = "let it be sent more often, let it fire its reader, or promise a greater age"
-            yield _Broken("max_age", words, help_line, arc.at)
+            yield _BrokenPromise("max_age", words, help_line, arc.at)
 
 
-def _rank(value: TimingValue) -> tuple[bool, object]:
+def _rank_value(value: TimingValue) -> tuple[bool, object]:
     return (value.value is None, value.value or 0)
 
 
-def _exceed(value: TimingValue, limit: Fraction, where: str) -> str | None:
+def _describe_excess(value: TimingValue, limit: Fraction, where: str) -> str | None:
     """Return in words that a duration (ns) may exceed a limit; None where it does not, or figures are missing."""
     place = f" {where}" if where else ""
     if value.value is not None and value.value > limit:

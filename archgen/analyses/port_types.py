@@ -178,7 +178,7 @@ def _make_mismatch(  # noqa: PLR0913, PLR0917 - what it says
 
 
 def _find_shell_outputs(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Report outputs of composed components whose medium is another than that of what they give on."""
+    """Report outputs of composed components whose medium is another than that of what they pass on."""
     for shell in architecture.shells.values():
         for output in shell.outputs.values():
             if not output.medium_written:

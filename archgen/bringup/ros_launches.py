@@ -16,7 +16,7 @@ _FLOAT_TYPES = frozenset({"float", "float[]"})
 
 
 def describe_node_launch(architecture: Architecture, node: Node, program_names: ProgramNames) -> RosLaunch | None:
-    """Return what ROS is told of a node; None for a program that is none, and for a node with a command of its own."""
+    """Return what ROS is told about a node; None for a program that is none, and for a node with a command of its own."""
     if node.command or node.is_program:
         return None
     container = architecture.containers.get(node.container or "")
@@ -52,7 +52,7 @@ def describe_node_launch(architecture: Architecture, node: Node, program_names: 
 
 
 def describe_container_launch(architecture: Architecture, container: Container) -> RosLaunch:
-    """Return what ROS is told of a container: its own program, else ROS's."""
+    """Return what ROS is told about a container: its own program, else ROS's."""
     if is_ros_1(architecture.distro):
         package, executable = container.package or "nodelet", container.executable or "nodelet"
     else:
@@ -63,14 +63,14 @@ def describe_container_launch(architecture: Architecture, container: Container) 
         namespace=container.namespace,
         package=package,
         executable=executable,
-        own_values=dict(_flatten("", container.parameters)),
+        own_values=dict(_flatten_values("", container.parameters)),
     )
 
 
-def _flatten(prefix: str, values: Mapping[str, object]) -> Iterator[tuple[str, object]]:
+def _flatten_values(prefix: str, values: Mapping[str, object]) -> Iterator[tuple[str, object]]:
     for key, value in values.items():
         if isinstance(value, Mapping):
-            yield from _flatten(f"{prefix}{key}.", value)
+            yield from _flatten_values(f"{prefix}{key}.", value)
         elif value is not None:
             yield f"{prefix}{key}", value
 

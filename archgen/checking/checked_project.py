@@ -12,7 +12,6 @@ from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.rule_options import OptionValues
 from archgen.diagnostics.source_span import SourceTexts
 from archgen.frozen import dataclass
-from archgen.link.project_packing import PackedProject
 from archgen.link.report_chapters import ReportChapters
 from archgen.model.architecture import Architecture
 from archgen.project import LoadedProject
@@ -95,10 +94,3 @@ class CheckedProject:
     def reading_errors(self) -> tuple[Diagnostic, ...]:
         """The errors of reading: what stands there is unknown, not only what it refers to."""
         return tuple(error for error in self.structural_errors if error.rule in READING_RULES)
-
-    def pack_project(self) -> PackedProject:
-        """Return the whole project as one mapping, with the contents of interface files, chapters and pictures."""
-        # Imported here: a check needs none of it.
-        from archgen.checking.checked_packing import pack_checked_project
-
-        return pack_checked_project(self)

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+from archgen.checking.linked_project import LinkedProject, PartMemory
 from archgen.checking.merged_project import MergedProject
-from archgen.checking.project_linking import LinkedProject, PartMemory
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.frozen import replace
 from archgen.link import (
     chapter_pictures,
     hint_checks,
     named_files,
-    parameter_files,
+    parameter_file_search,
     report_chapters,
     verification_files,
 )
@@ -33,7 +33,9 @@ def read_named_contents(
     project_chapters = replace(project_chapters, image_paths=named_files.list_image_paths(files_by_element))
     named_file_findings = named_files.find_missing_files(files_by_element, project_chapters, is_folder=is_folder)
     missing_files = (
-        tuple(parameter_files.find_missing_parameter_files(merged_table, loaded_project.files)) if is_folder else ()
+        tuple(parameter_file_search.find_missing_parameter_files(merged_table, loaded_project.files))
+        if is_folder
+        else ()
     )
     missing_verifications = verification_files.find_missing_verifications(
         linked_project.linked_architecture, loaded_project.files if is_folder else None

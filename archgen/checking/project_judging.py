@@ -7,9 +7,9 @@ from collections.abc import Iterable, Mapping
 from archgen import analyses
 from archgen.checking.all_rules import RULES_BY_NAME, list_structural_errors
 from archgen.checking.checked_project import CheckedProject
+from archgen.checking.linked_project import LinkedProject, PartMemory, link_merged_project
 from archgen.checking.merged_project import MergedProject
 from archgen.checking.named_contents import read_named_contents
-from archgen.checking.project_linking import LinkedProject, PartMemory, link_merged_project
 from archgen.diagnostics.diagnostic import Diagnostic, Severity, settle_diagnostics
 from archgen.findings import (
     error_aftermath,

@@ -7,9 +7,9 @@ from pathlib import Path
 
 from archgen import project
 from archgen.checking.checked_project import CheckedProject
+from archgen.checking.linked_project import PartMemory
 from archgen.checking.merged_project import MergedProject, merge_project
 from archgen.checking.project_judging import judge_merged_project
-from archgen.checking.project_linking import PartMemory
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.findings import finding_limit

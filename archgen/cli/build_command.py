@@ -59,8 +59,8 @@ def command(  # noqa: PLR0913 - one for each option
     trust: str | None,
 ) -> None:
     """Make report.docx, site/, diagrams/ and packed.yaml of PROJECT."""
+    from archgen.frozen import replace
     from archgen.products.full_build import build_outputs, choose_products
-    from archgen.products.output_options import OutputOptions
     from archgen.products.product_inputs import ProductInputs
 
     only_names = tuple(name.strip() for names in only for name in names.split(",") if name.strip())
@@ -69,16 +69,11 @@ def command(  # noqa: PLR0913 - one for each option
         raise click.UsageError(msg)
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
     trusted_revision = command_support.find_trusted_revision(project, trust)
-    output_options = OutputOptions(
-        command_support.select_or_exit(checked_project, select),
-        select or "",
-        level,
-        revision,
-        command_support.make_progress_printer(),
-        command_support.print_warning,
-        history,
-        trusted_revision,
-        component_pictures,
+    output_options = replace(
+        command_support.make_drawing_options(checked_project, select, level, revision),
+        show_history=history,
+        trusted_revision=trusted_revision,
+        component_pictures=component_pictures,
     )
     target = output or checked_project.output_folder
     with command_support.explain_write_errors():

@@ -20,7 +20,9 @@ if TYPE_CHECKING:
     from archgen.model.selector_evaluation import Selection
     from archgen.model.selector_parser import SelectorProblem
     from archgen.pipeline import CheckedProject, VersionCache
+    from archgen.products.output_options import OutputOptions
     from archgen.products.trusted_backends import TrustedRevision
+    from archgen.views.pages.report_outline import DetailLevel
 
 
 def check_or_exit(project: Path | None, version_cache: VersionCache | None = None) -> CheckedProject:
@@ -112,6 +114,16 @@ def select_or_exit(checked_project: CheckedProject, selector_text: str | None) -
     selection, problems = project_views.select_elements(checked_project, selector_text)
     report_selector_problems(problems)
     return selection
+
+
+def make_drawing_options(
+    checked_project: CheckedProject, selector_text: str | None, level: DetailLevel | None, revision: str | None = None
+) -> OutputOptions:
+    """Return what all outputs with pictures share: the selected part, and progress and warnings on this terminal."""
+    from archgen.products.output_options import OutputOptions
+
+    selection = select_or_exit(checked_project, selector_text)
+    return OutputOptions(selection, selector_text or "", level, revision, make_progress_printer(), print_warning)
 
 
 def report_selector_problems(problems: Iterable[SelectorProblem]) -> None:

@@ -59,8 +59,8 @@ def command(  # noqa: PLR0913 - one for each option
 
     With --select the overview shows just what is selected, neighbours grey, and only its pictures are drawn.
     """
+    from archgen.frozen import replace
     from archgen.products import project_outputs
-    from archgen.products.output_options import OutputOptions
 
     format_names = tuple(dict.fromkeys(form.strip() for form in forms.split(",") if form.strip()))
     unknown_formats = [form for form in format_names if form not in DIAGRAM_FORMATS]
@@ -68,15 +68,7 @@ def command(  # noqa: PLR0913 - one for each option
         msg = f"--format takes {', '.join(DIAGRAM_FORMATS)}, separated by commas, not '{forms}'"
         raise click.UsageError(msg)
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
-    output_options = OutputOptions(
-        command_support.select_or_exit(checked_project, select),
-        select or "",
-        level,
-        None,
-        command_support.make_progress_printer(),
-        command_support.print_warning,
-        depth=depth,
-    )
+    output_options = replace(command_support.make_drawing_options(checked_project, select, level), depth=depth)
     target = output or checked_project.output_folder / "diagrams"
     with command_support.explain_write_errors():
         count = project_outputs.write_diagrams(checked_project, output_options, target, format_names, only)

@@ -131,8 +131,8 @@ def _is_there(word: str) -> bool:
         return False
 
 
-def _refuse_options(import_format: ImportFormat, given: dict[str, object]) -> None:
-    for option, value in given.items():
+def _refuse_options(import_format: ImportFormat, given_options: dict[str, object]) -> None:
+    for option, value in given_options.items():
         if value:
             msg = f"{option} does not go with {import_format.name}"
             raise click.UsageError(msg)

@@ -241,7 +241,7 @@ def _refuse_replacing_slices(project_plan: ProjectPlan, target: Path, files: Map
 def _print_outcome(target: Path, checked_project: CheckedProject, project_plan: ProjectPlan) -> None:
     """Print what there is now, and what comes next."""
     from archgen.emit.terminal.findings_text import format_summary
-    from archgen.products.schema_renewal import SCHEMA_FILE
+    from archgen.products.editor_schema_marks import SCHEMA_FILE
 
     architecture = checked_project.architecture
     size = f"{_count_things(len(architecture.groups), 'group')}, {_count_things(len(architecture.components), 'component')}"

@@ -174,7 +174,7 @@ def _add_agreement_file(checked_project: CheckedProject, name: str, title: str) 
     """Write the file of a partner's agreements where the project is a folder; say what is left to do."""
     from archgen.emit import file_tree
     from archgen.model.review_settings import agreement_file
-    from archgen.products.schema_renewal import SCHEMA_FILE
+    from archgen.products.editor_schema_marks import SCHEMA_FILE
     from archgen.project import PROJECT_FILE
     from archgen.start.start_templates import fill_agreements
 

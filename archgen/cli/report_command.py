@@ -48,22 +48,15 @@ def command(  # noqa: PLR0913 - one for each option
 
     `--format pdf` takes LibreOffice, `--format xlsx` writes all tables as a workbook (with the library XlsxWriter).
     """
+    from archgen.frozen import replace
     from archgen.products import project_outputs
-    from archgen.products.output_options import OutputOptions
 
     if template is not None and form == "xlsx":
         msg = "a workbook takes no template: `--template` goes with docx and pdf"
         raise click.UsageError(msg)
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
-    selection = command_support.select_or_exit(checked_project, select)
-    output_options = OutputOptions(
-        selection,
-        select or "",
-        level,
-        revision,
-        command_support.make_progress_printer(),
-        command_support.print_warning,
-        history,
+    output_options = replace(
+        command_support.make_drawing_options(checked_project, select, level, revision), show_history=history
     )
     target = output or checked_project.output_folder / f"report.{form}"
     with command_support.explain_write_errors():

@@ -41,8 +41,8 @@ def command(  # noqa: PLR0913 - one for each option
     keep_going: bool,
 ) -> None:
     """Write the architecture of PROJECT as a web site that opens from the disk."""
+    from archgen.frozen import replace
     from archgen.products import project_outputs
-    from archgen.products.output_options import OutputOptions
 
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
     changes = None
@@ -51,14 +51,9 @@ def command(  # noqa: PLR0913 - one for each option
 
         with command_support.explain_missing_versions():
             changes = compare_since(since, project, checked_project)
-    output_options = OutputOptions(
-        command_support.select_or_exit(checked_project, select),
-        select or "",
-        level,
-        revision,
-        command_support.make_progress_printer(),
-        command_support.print_warning,
-        history,
+    output_options = replace(
+        command_support.make_drawing_options(checked_project, select, level, revision),
+        show_history=history,
         component_pictures=component_pictures,
         changes=changes,
     )

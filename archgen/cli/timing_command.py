@@ -2,33 +2,25 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING
 
 import click
 
 from archgen.cli import command_support, measured_recordings, shared_options
-from archgen.diagnostics.text_columns import find_width, wrap_line
-from archgen.frozen import dataclass
+from archgen.cli.timing_printing import (
+    TimingRequest,
+    print_budget,
+    print_chain,
+    print_paths,
+    print_reasons,
+    print_sensitivity,
+    print_timing_summary,
+    raise_usage_error,
+)
 
 if TYPE_CHECKING:
     from archgen.model.architecture import Architecture
-    from archgen.pipeline import CheckedProject
-    from archgen.simulation.chain_evidence import ChainEvidence
-    from archgen.timing.analysis import Analysis, ChainResult
-
-
-@dataclass(frozen=True, slots=True)
-class TimingRequest:
-    """What one call asks for."""
-
-    checked_project: CheckedProject
-    architecture: Architecture
-    """The architecture with the figures of `--set`."""
-    as_json: bool
-    overrides: tuple[str, ...] = ()
 
 
 @click.command("timing")
@@ -113,156 +105,22 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
         checked_project, _apply_overrides(checked_project.architecture, written), form == "json", written
     )
     if chain is not None:
-        _print_chain(request, chain)
+        print_chain(request, chain)
     elif why is not None:
-        _print_reasons(request, why)
+        print_reasons(request, why)
     elif source is not None and target is not None:
-        _print_paths(request, source, target, most)
+        print_paths(request, source, target, most)
     elif sensitivity is not None:
-        _print_sensitivity(request, sensitivity)
+        print_sensitivity(request, sensitivity)
     elif budget is not None:
-        _print_budget(request, budget)
+        print_budget(request, budget)
     elif recordings:
         measured_recordings.answer_recordings(
             checked_project, request.architecture, recordings, adopt, as_json=request.as_json
         )
     else:
-        _print_summary(request)
+        print_timing_summary(request)
     command_support.exit_by_findings(checked_project)
-
-
-def _print_summary(request: TimingRequest) -> None:
-    from archgen.emit.data import timing_json
-    from archgen.emit.terminal import timing_answers, timing_text
-    from archgen.timing.chains.cost_network import CostNetwork
-    from archgen.timing.chains.loop_rounds import find_loop_rounds
-
-    present = _analyse_chains(request.checked_project.architecture)
-    if not request.overrides:
-        analysis, chains, evidence = _search_beyond(request.architecture, *present)
-        if request.as_json:
-            _print_json(timing_json.timing_to_json(analysis, chains, evidence))
-        else:
-            loops = find_loop_rounds(CostNetwork.of_analysis(analysis))
-            _print_lines(timing_text.format_timing(analysis, chains, loops, find_width(sys.stdout), evidence))
-        return
-    changed = _analyse_chains(request.architecture)
-    if request.as_json:
-        documents = {"present": timing_json.timing_to_json(*present), "changed": timing_json.timing_to_json(*changed)}
-        _print_json({"version": timing_json.VERSION, "set": list(request.overrides), **documents})
-    else:
-        _print_lines(timing_answers.format_timing_changes(present, changed, request.overrides, find_width(sys.stdout)))
-
-
-def _print_chain(request: TimingRequest, chain_id: str) -> None:
-    from archgen.emit.data import timing_json
-    from archgen.emit.terminal import timing_text
-    from archgen.simulation.chain_evidence import ChainEvidence
-    from archgen.timing.chains import chain_bounds as chains_of
-    from archgen.timing.chains import duerr_bounds
-    from archgen.timing.chains.cost_network import CostNetwork
-
-    analysis, chains = _analyse_chains(request.architecture)
-    asked_chain = {chain_id: _find_chain(chains, chain_id)}
-    # What `--set` lays over the files cannot be simulated by a command of its own: then nothing is looked for.
-    if not request.overrides:
-        analysis, asked_chain, evidence = _search_beyond(request.architecture, analysis, asked_chain)
-    else:
-        evidence = ChainEvidence()
-    result = asked_chain[chain_id]
-    # Without terms the chain is open: its elements may be components that no activity stands for.
-    published = duerr_bounds.bound_periodic_chain(analysis, result.through) if result.terms else None
-    if request.as_json:
-        _print_json({"version": timing_json.VERSION, "chain": chain_id, **timing_json.chain_to_json(result, evidence)})
-    else:
-        age = chains_of.find_data_age(CostNetwork.of_analysis(analysis), result)
-        _print_lines(timing_text.format_chain(result, analysis, age, published, find_width(sys.stdout), evidence))
-
-
-def _print_reasons(request: TimingRequest, word: str) -> None:
-    from archgen.emit.terminal import timing_answers
-    from archgen.timing.chains import word_resolution
-    from archgen.timing.chains.figure_explanations import explain_word
-
-    analysis, chains = _analyse_chains(request.architecture)
-    names = [word]
-    # Chains, hosts and links explain themselves; a node or component stands for its activities.
-    if not explain_word(analysis, chains, word):
-        try:
-            names = list(word_resolution.resolve_activities(request.architecture, analysis.system, word))
-        except word_resolution.UnknownNameError as error:
-            _raise_usage_error(str(error))
-    steps = [line for name in names for line in explain_word(analysis, chains, name)]
-    if request.as_json:
-        _print_json(timing_answers.reasoning_to_json(word, steps))
-    else:
-        _print_lines(timing_answers.format_reasoning(steps))
-
-
-def _print_paths(request: TimingRequest, source: str, target: str, path_count: int) -> None:
-    from archgen.emit.data import timing_json
-    from archgen.emit.terminal import timing_text
-    from archgen.timing.chains import chain_bounds, word_resolution
-    from archgen.timing.chains.cost_network import CostNetwork
-    from archgen.timing.run_analysis import analyse_architecture
-
-    analysis = analyse_architecture(request.architecture)
-    network = CostNetwork.of_analysis(analysis)
-    try:
-        start, end = (
-            word_resolution.resolve_waypoint(request.architecture, analysis.system, word) for word in (source, target)
-        )
-    except word_resolution.UnknownNameError as error:
-        _raise_usage_error(str(error))
-    worst = chain_bounds.find_paths_between(network, request.architecture, start, end)
-    best = chain_bounds.find_paths_between(network, request.architecture, start, end, "best")
-    listed_paths = [
-        tuple(chain_bounds.list_bounded_paths(network, w, k)) if w else () for w, k in ((worst, path_count), (best, 1))
-    ]
-    count = worst.path_count if worst else 0
-    if request.as_json:
-        _print_json(timing_json.ways_to_json(start.id, end.id, count, *listed_paths))
-    else:
-        _print_lines(timing_text.format_ways(start.id, end.id, count, *listed_paths))
-
-
-def _print_sensitivity(request: TimingRequest, chain_id: str) -> None:
-    from archgen.emit.terminal import timing_answers
-    from archgen.timing.chains.chain_sensitivity import find_sensitivity
-    from archgen.timing.run_analysis import analyse_for_chains
-
-    analysis, chains = _analyse_chains(request.architecture)
-    result = _find_chain(chains, chain_id)
-    ranking = find_sensitivity(request.architecture, request.architecture.chains[chain_id], analyse_for_chains, chains)
-    if request.as_json:
-        _print_json(timing_answers.sensitivity_to_json(result, ranking))
-    else:
-        _print_lines(timing_answers.format_sensitivity(result, analysis, ranking, find_width(sys.stdout)))
-
-
-def _print_budget(request: TimingRequest, chain_id: str) -> None:
-    from archgen.emit.terminal import budget_text
-    from archgen.emit.terminal.chain_gaps import describe_gaps
-    from archgen.link.timing_overrides import apply_overrides
-    from archgen.timing.search.chain_budgets import MAX_TRIES, UnknownBudgetError, find_chain_budget
-    from archgen.timing.search.change_trials import ChangeTrials
-
-    architecture = request.architecture
-    analysis, chains = _analyse_chains(architecture)
-    result = _find_chain(chains, chain_id)
-    try:
-        budget = find_chain_budget(ChangeTrials(architecture, analysis, apply_overrides, MAX_TRIES), result)
-    except UnknownBudgetError as error:
-        gaps_text = describe_gaps(result, analysis) if result.deadline else ""
-        _raise_usage_error(
-            f"`{chain_id}` has no budget: {error}{f' ({gaps_text})' if gaps_text else ''}"
-            + ("" if result.deadline else f"; write `deadline` at `chains: {chain_id}`")
-        )
-    if request.as_json:
-        _print_json(budget_text.budget_to_json(result, budget))
-    else:
-        titles = {partner.id: partner.title for partner in architecture.partners.values()}
-        _print_lines(budget_text.format_budget(result, budget, titles, find_width(sys.stdout)))
 
 
 def _apply_overrides(architecture: Architecture, overrides: tuple[str, ...]) -> Architecture:
@@ -272,57 +130,4 @@ def _apply_overrides(architecture: Architecture, overrides: tuple[str, ...]) -> 
     try:
         return apply_overrides(architecture, overrides) if overrides else architecture
     except OverrideError as error:
-        _raise_usage_error(str(error))
-
-
-def _search_beyond(
-    architecture: Architecture, analysis: Analysis, chains: dict[str, ChainResult]
-) -> tuple[Analysis, dict[str, ChainResult], ChainEvidence]:
-    """Look for runs in which chains are late, and for what would prove those that are not met."""
-    from archgen.link.timing_overrides import apply_overrides
-    from archgen.simulation.chain_evidence import apply_witnesses, find_evidence
-
-    evidence = find_evidence(architecture, analysis, chains, apply_overrides)
-    return analysis, apply_witnesses(chains, evidence.witnesses), evidence
-
-
-def _analyse_chains(architecture: Architecture) -> tuple[Analysis, dict[str, ChainResult]]:
-    from archgen.timing.chains.chain_bounds import bound_all_chains
-    from archgen.timing.run_analysis import analyse_architecture
-
-    analysis = analyse_architecture(architecture)
-    return analysis, bound_all_chains(analysis, architecture)
-
-
-def _find_chain(chain_results: dict[str, ChainResult], chain_id: str) -> ChainResult:
-    from archgen.diagnostics.suggestions import did_you_mean
-    from archgen.timing.figures.figure_wording import join_first_names
-
-    if chain_id not in chain_results:
-        existing = (
-            f"there are: {join_first_names(tuple(chain_results), 12)}"
-            if chain_results
-            else "the project has none: write it under `chains`"
-        )
-        _raise_usage_error(f"there is no chain `{chain_id}`; {did_you_mean(chain_id, chain_results) or existing}")
-    return chain_results[chain_id]
-
-
-def _raise_usage_error(text: str) -> NoReturn:
-    from archgen.diagnostics.safe_text import make_visible
-
-    raise click.UsageError(make_visible(text))
-
-
-def _print_json(document: object) -> None:
-    from archgen.diagnostics.safe_text import format_json
-
-    click.echo(format_json(document), nl=False)
-
-
-def _print_lines(lines: Iterable[str]) -> None:
-    from archgen.diagnostics.safe_text import make_visible
-
-    width = find_width(sys.stdout)
-    for line in lines:
-        click.echo("\n".join(wrap_line(make_visible(line), width)))
+        raise_usage_error(str(error))

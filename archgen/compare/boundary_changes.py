@@ -7,7 +7,6 @@ from dataclasses import replace
 
 from archgen.analyses.qos_compatibility import find_qos_conflicts
 from archgen.compare.architecture_version import ArchitectureVersion
-from archgen.compare.boundary_hands import follow_hands
 from archgen.compare.figure_changes import BoundaryChange, BoundaryKind, FigureChange, FigureKey, WireNames
 from archgen.compare.interface_figures import (
     RECEIVER_NAMES,
@@ -16,6 +15,7 @@ from archgen.compare.interface_figures import (
     concerns_nobody,
     is_same_figure,
 )
+from archgen.compare.interface_handovers import join_handovers
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.timing_pair import TimingPair
 from archgen.compare.version_pair import VersionPair
@@ -65,7 +65,7 @@ def find_boundary_changes(
     new_versions = _list_interfaces(new_reader)
     old_versions = _follow_topics(_list_interfaces(old_reader), new_versions, matched_ids)
     old_versions = _follow_readers(old_versions, new_versions, versions)
-    changes = _merge_pairs(follow_hands(_compare_interfaces(old_versions, new_versions)))
+    changes = _merge_pairs(join_handovers(_compare_interfaces(old_versions, new_versions)))
     if before.waiting_rules or after.waiting_rules:
         # With errors of linking an interface may seem gone that only has an unknown owner or type.
         return tuple(change for change in changes if change.kind == "changed" and not change.old_givers)

@@ -61,7 +61,7 @@ class Edit:
 def list_edits(comparison: Comparison) -> tuple[Edit, ...]:
     """Return the edits behind the changes of a comparison, in the order of the first change of each."""
     positions = {id(change): position for position, change in enumerate(comparison.changes)}
-    # What is told of a variant alone is no part of an edit of the project itself.
+    # What is told about a variant alone is no part of an edit of the project itself.
     left_changes = [change for change in comparison.changes if not change.variants]
     edits: list[Edit] = []
     for edit in _find_joint_edits(comparison, left_changes):

@@ -13,7 +13,7 @@ from archgen.compose.expanded_project import ComponentShell, ExpandedProject, Ex
 from archgen.compose.instance_containers import make_instance_containers
 from archgen.compose.instance_overlay import InstanceOverlay
 from archgen.compose.library_types import library_of_type, list_type_entries
-from archgen.compose.reference_limits import find_changes_of_reference
+from archgen.compose.same_as_checks import find_same_as_changes
 from archgen.compose.type_expressions import TypeExpression
 from archgen.compose.type_table import MissingTypeDescriber, TypeTable, diagnose_circle, list_generic_names
 from archgen.diagnostics.diagnostic import Diagnostic, Label
@@ -189,7 +189,7 @@ class _ProjectExpander:
             self._damaged_elements.add(component_id)
             return None, body
         if key == "same_as":
-            changes = find_changes_of_reference(body, component_id, expression.name)
+            changes = find_same_as_changes(body, component_id, expression.name)
             self._diagnostics += changes
             body = MappingNode({e.key: e for e in body if e.key not in _list_changed_keys(changes, body)}, body.span)
         full_body = self._overlay.lay_over_instance(type_body, body, component_id)

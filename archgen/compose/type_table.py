@@ -48,6 +48,7 @@ class TypeTable:
 
     def find_type(self, reference: ScalarNode, element_id: str, *, is_base: bool = False) -> TypeExpression | None:
         """Return what the name of a type means; None, and a diagnostic, if there is none of it."""
+        # A generic type that holds `chain<pair<T>>` of itself gets a longer name each time: the length is what ends it.
         if len(reference.text) > MAX_TYPE_LENGTH:
             message = (
                 f"the name of this type has {len(reference.text):,} letters; a type that holds itself grows for ever"
@@ -56,6 +57,7 @@ class TypeTable:
             return None
         expression = parse_type_expression(reference.text)
         entry = self.entries.get(expression.name) if expression else None
+        # The part of the library that could not be read may have held it.
         if entry is None and library_of_type(reference.text) in self.incomplete_libraries:
             return None
         if expression is None or entry is None:
@@ -65,6 +67,7 @@ class TypeTable:
         if len(generic_names) != len(expression.arguments):
             self.diagnostics.append(_diagnose_arguments(reference, entry, generic_names, element_id))
             return None
+        # To be made from is what abstract types are for; only instances of them are wrong.
         if not is_base and is_abstract(entry):
             self.diagnostics.append(_diagnose_abstract(reference, entry, self._list_derived(entry.key), element_id))
             return None
@@ -87,6 +90,7 @@ class TypeTable:
 
     def get_body(self, expression: TypeExpression) -> MappingNode | None:
         """Return the body of a type, with what it is made from; None where that goes in a circle."""
+        # None is kept as well: a circle is reported once, however many instances lead into it.
         if expression not in self._bodies:
             self._bodies[expression] = self._make_body(expression)
         return self._bodies[expression]
@@ -120,6 +124,7 @@ class TypeTable:
 
     def _make_body(self, expression: TypeExpression) -> MappingNode | None:
         entry = self.entries[expression.name]
+        # By name, not by expression: `chain<T>` made from `chain<pair<T>>` would never come to the same expression again.
         if expression.name in self._open_names:
             start = self._open_names.index(expression.name)
             self.diagnostics.append(diagnose_circle(entry, self._open_names[start:], "is made from"))
@@ -128,6 +133,7 @@ class TypeTable:
         bindings = dict(zip(list_generic_names(entry), expression.arguments, strict=True))
         own_body = bind_type_body(_drop_type_keys(body), bindings) if bindings else _drop_type_keys(body)
         base_reference = own_body.get("is")
+        # The base is laid under the body: from here on nothing is left to be made from.
         own_body.entries.pop("is", None)
         if not isinstance(base_reference, ScalarNode):
             return own_body
@@ -277,6 +283,7 @@ def bind_type_body(node: MappingNode, bindings: Mapping[str, str], *, has_ids: b
 
 def _bind_value(key: str, node: YamlNode, bindings: Mapping[str, str], *, has_ids: bool) -> YamlNode:
     if isinstance(node, MappingNode):
+        # A port may be called `request` or `type`: where keys are ids, their words mean nothing.
         if not has_ids and key in OPERATION_PARTS:
             fields = {
                 e.key: MappingEntry(e.key, e.key_span, _bind_value("type", e.value, bindings, has_ids=False))

@@ -118,12 +118,12 @@ class DerivedParts:
         self._topics.setdefault(topic.flow, KnownParts()).keep_part(topic.name, topic)
 
 
-def _is_same_part(known: NodePart, part: NodePart) -> bool:
+def _is_same_part(known_part: NodePart, part: NodePart) -> bool:
     return (
-        known.node is part.node
-        and known.component is part.component
-        and known.is_only_node == part.is_only_node
-        and known.given_ports == part.given_ports
+        known_part.node is part.node
+        and known_part.component is part.component
+        and known_part.is_only_node == part.is_only_node
+        and known_part.given_ports == part.given_ports
     )
 
 

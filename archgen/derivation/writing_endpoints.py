@@ -31,7 +31,7 @@ class NodePart:
     """The entries by the port's complete id. Those of the node's other components are among them."""
     is_only_node: bool
     given_ports: Mapping[str, str] = field(default_factory=dict)
-    """Of a node that is all of a composed component: its outputs by the leaves' outputs that they give on."""
+    """Of a node that is all of a composed component: its outputs by the leaves' outputs that they pass on."""
 
 
 def find_node_parts(architecture: Architecture) -> dict[str, tuple[NodePart, ...]]:

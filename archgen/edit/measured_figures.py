@@ -64,8 +64,8 @@ def collect_times(observations: Iterable[Observation]) -> tuple[AdoptedTimes, ..
         known = times_by_element.get(observation.id) or AdoptedTimes(observation.id, is_input)
         times_by_element[observation.id] = replace(
             known,
-            longest=_choose(max, known.longest, longest.value if longest else None),
-            shortest=_choose(min, known.shortest, shortest_ns),
+            longest=_choose_known(max, known.longest, longest.value if longest else None),
+            shortest=_choose_known(min, known.shortest, shortest_ns),
             percentiles=samples.percentiles if samples and shortest else known.percentiles,
         )
     return tuple(times_by_element.values())
@@ -238,7 +238,7 @@ def _choose_text(choose: Callable[[Fraction, Fraction], Fraction], old: object, 
     return str(old_quantity) if choose(old_quantity.value, new_quantity.value) == old_quantity.value else new
 
 
-def _choose(
+def _choose_known(
     choose: Callable[[Fraction, Fraction], Fraction], first: Fraction | None, second: Fraction | None
 ) -> Fraction | None:
     return choose(first, second) if first is not None and second is not None else second if first is None else first

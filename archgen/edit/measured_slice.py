@@ -13,7 +13,7 @@ from archgen import pipeline
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.edit.edit_proof import list_new_errors, load_with_text
 from archgen.edit.measured_figures import FigureSorter, LeftOutFigure, collect_times
-from archgen.emit.written_formats import MEASURED_HEADER
+from archgen.emit.own_file_marks import MEASURED_HEADER
 from archgen.frozen import dataclass
 from archgen.pipeline import CheckedProject
 from archgen.project.project_loading import LoadedProject

@@ -18,8 +18,8 @@ from itertools import islice
 from pathlib import Path
 from types import MappingProxyType
 
+from archgen.emit.own_file_marks import explain_refusal
 from archgen.emit.safe_names import is_safe_path
-from archgen.emit.written_formats import explain_refusal
 from archgen.frozen import dataclass
 
 TREE_MANIFEST = ".archgen-files"

@@ -35,7 +35,8 @@ class ManifestError(Exception):
     """A manifest is not valid. Carries the diagnostics."""
 
     def __init__(self, *diagnostics: Diagnostic) -> None:
-        super().__init__()
+        # For a manifest that ships: nobody catches its error, and who writes one wants to read what is wrong.
+        super().__init__("; ".join(f"{each.span}: {each.message}" for each in diagnostics))
         self.diagnostics = diagnostics
 
 

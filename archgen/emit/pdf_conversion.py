@@ -10,7 +10,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from archgen.emit.written_formats import PDF_MARK
+from archgen.emit.own_file_marks import PDF_MARK
 
 _TIME_LIMIT = 600
 """Seconds after which LibreOffice is given up; a report of 300 pages takes 60 on a slow machine."""

@@ -86,7 +86,7 @@ def _read_number(text: str) -> str | None:
     return text.replace(",", ".")
 
 
-def read_message(project: ImportedProject, cell: TableCell) -> str | None:
+def read_message_cell(project: ImportedProject, cell: TableCell) -> str | None:
     """Read a message: `sensor_msgs/LaserScan`, `sensor_msgs::msg::LaserScan`, `sensor_msgs.msg.LaserScan`."""
     name = full_message_name(re.sub(r"::|\.", "/", cell.one_line))
     if name is not None:

@@ -133,7 +133,7 @@ def _read_type(project: ImportedProject, row: TableRecord) -> str | None:
     """Read the row's type, or else its message."""
     cell, message_cell = row.cell_below("type"), row.cell_below("message")
     type_name = cell_values.read_type_name(project, cell) if cell else None
-    return type_name or (cell_values.read_message(project, message_cell) if message_cell else None)
+    return type_name or (cell_values.read_message_cell(project, message_cell) if message_cell else None)
 
 
 def _resolve_output(project: ImportedProject, row: TableRecord, source: ConnectionEnd, type_name: str | None) -> str:

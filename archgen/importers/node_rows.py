@@ -139,7 +139,7 @@ def _import_message(project: ImportedProject, row: TableRecord) -> None:
     if row.has_exact_ids and cell.one_line in {"?", "physical"}:
         return
     type_name = cell_values.read_type_name(project, type_cell)
-    message = cell_values.read_message(project, cell)
+    message = cell_values.read_message_cell(project, cell)
     if type_name is None or message is None:
         return
     port_lists.set_message(project, type_name, message, cell)

@@ -38,7 +38,7 @@ def import_outputs(project: ImportedProject, row: TableRecord) -> None:
         type_name, output_id = _import_output(project, component, item, types[number], cell)
         row.output_ids.append(output_id)
         message_cell = messages[number]
-        message = cell_values.read_message(project, message_cell) if message_cell and type_name else None
+        message = cell_values.read_message_cell(project, message_cell) if message_cell and type_name else None
         if type_name and message and message_cell:
             set_message(project, type_name, message, message_cell)
 

@@ -40,7 +40,7 @@ def _read_office_file(name: str, data: bytes, diagnostics: list[Diagnostic]) -> 
     try:
         office_file = OfficeFile(data)
         if "word/document.xml" in office_file.names:
-            return word_tables.read_document(name, office_file)
+            return word_tables.read_word_tables(name, office_file)
         if "xl/workbook.xml" in office_file.names:
             return workbook_sheets.read_workbook(name, office_file, diagnostics)
         reason = "it holds neither a workbook (.xlsx) nor a document (.docx)"

@@ -14,7 +14,7 @@ _WORD = "{http://schemas.openxmlformats.org/wordprocessingml/2006/main}"
 _LINE_BREAKS = {f"{_WORD}br": "\n", f"{_WORD}cr": "\n", f"{_WORD}tab": " ", f"{_WORD}noBreakHyphen": "-"}
 
 
-def read_document(file: str, document: OfficeFile) -> list[TableSheet]:
+def read_word_tables(file: str, document: OfficeFile) -> list[TableSheet]:
     """Read all tables in their order; one inside a cell is a part of its text. Raise UnreadableOfficeFileError."""
     root = document.read_part("word/document.xml")
     if root is None or root.tag != f"{_WORD}document":

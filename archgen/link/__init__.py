@@ -8,7 +8,7 @@ from archgen.link.data_types import type_rules
 from archgen.link.declare.frame_declaration import DUPLICATE_FRAME
 from archgen.link.hint_checks import WRONG_HINT
 from archgen.link.named_files import MISSING_FILE
-from archgen.link.parameter_files import MISSING_PARAMETER_FILE
+from archgen.link.parameter_file_search import MISSING_PARAMETER_FILE
 from archgen.link.project_linking import link_project
 from archgen.link.report_chapters import MISSING_CHAPTER
 from archgen.link.variants import variant_rules

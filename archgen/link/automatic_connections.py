@@ -39,6 +39,7 @@ class _AutomaticConnections:
         for component_id in instances:
             self._feed_instance(component_id)
         self._sources.forget_outputs()
+        # Outer ones come first in the outline: what is around asks for types that are known only when the inside is joined.
         for shell in reversed(tuple(self._outline.shells.values())):
             mode = mapping_values.get_text(mapping_values.get_body(shell.entry), "autoconnect")
             if mode:
@@ -90,7 +91,7 @@ class _AutomaticConnections:
             self._give_on(children, shell_id, mode)
 
     def _give_on(self, children: Sequence[str], shell_id: str, mode: str) -> None:
-        """Let each output of a composed component give on the output inside that nobody there reads but sinks."""
+        """Let each output of a composed component pass on the output inside that nobody there reads but sinks."""
         self._sources.forget_outputs()
         read_inside = {
             source.target.id
@@ -140,6 +141,7 @@ class _AutomaticConnections:
             names = [f"`{each[1]}`" for each in candidates[:_MAX_NAMED]]
             rest = [f"{len(candidates) - _MAX_NAMED} more"] if len(candidates) > _MAX_NAMED else []
             self._sources.ambiguous_ports.add(port)
+            # Any of them may be what was meant: rules on what nobody reads keep quiet about all of them.
             self._resolver.suspect_ids.update(each[1] for each in candidates)
             self._resolver.diagnostics.append(
                 Diagnostic(

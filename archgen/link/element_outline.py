@@ -104,6 +104,7 @@ def build_outline(expansion: ExpandedProject, memory: LinkMemory | None = None) 
                 _outline_ports(element_outline, component_id, component_body)
             else:
                 _recall_ports(element_outline, component_id, component_body, memory)
+    # Behind all leaves: `members` lists these first.
     for shell in expansion.shells.values():
         body = mapping_values.get_body(shell.entry)
         if shell.parent is None:
@@ -131,6 +132,7 @@ def _recall_ports(element_outline: ElementOutline, component_id: str, body: Mapp
     """Outline the ports of a component, those that are known from another version without making them anew."""
     middleware = element_outline.middleware
     for known in memory.ports.list_known(component_id):
+        # By identity: the tree of a file that did not change is the same object in both versions.
         if known.body is body and known.middleware == middleware:
             element_outline.inputs[component_id], element_outline.outputs[component_id] = known.inputs, known.outputs
             return

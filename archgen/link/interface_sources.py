@@ -23,7 +23,7 @@ from archgen.link.shipped_interfaces import LazyInterfaces, list_answering_distr
 from archgen.model.graph_search import find_rings
 from archgen.model.known_interfaces import Interface, Interfaces
 from archgen.model.ros_distro import is_ros_1
-from archgen.syntax.interface_definitions import INVALID_INTERFACE, InterfaceDefinition, parse_definition
+from archgen.syntax.interface_definitions import INVALID_INTERFACE, InterfaceDefinition, parse_interface_definition
 
 _DEFINITION_PATH = re.compile(
     r"(?:.*/)?([A-Za-z][A-Za-z0-9_]*)/(msg|srv|action)/([A-Za-z][A-Za-z0-9_]*)\.(\w+)\Z", re.ASCII
@@ -150,7 +150,7 @@ def _read_definitions(
                 Diagnostic(INVALID_INTERFACE, f"`{file}` does not say which interface it defines", span, help=help_line)
             )
         elif _check_name(name, span, diagnostics, ros1=ros1):
-            yield name, parse_definition(text, name, file, ros1=ros1), span
+            yield name, parse_interface_definition(text, name, file, ros1=ros1), span
     for name, (text, span) in inline_definitions.items():
         if not _FULL_NAME.match(name):
             help_line = "it is written `package/msg/Name` (or srv, action)"
@@ -158,7 +158,7 @@ def _read_definitions(
                 Diagnostic(INVALID_INTERFACE, f"`{name}` is no name of an interface", span, help=help_line)
             )
         elif _check_name(name, span, diagnostics, ros1=ros1):
-            yield name, _move_spans(parse_definition(text, name, span.file, ros1=ros1), span), span
+            yield name, _move_spans(parse_interface_definition(text, name, span.file, ros1=ros1), span), span
 
 
 def _check_name(name: str, span: Span, diagnostics: list[Diagnostic], *, ros1: bool) -> bool:

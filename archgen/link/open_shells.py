@@ -37,7 +37,7 @@ class OpenShells:
         return self._open_shells.get(group_id, ())
 
     def list_carried_ports(self) -> dict[str, tuple[str, ...]]:
-        """Return what stands behind each port: the outputs that an output gives on, the ports that read an input."""
+        """Return what stands behind each port: the outputs that an output passes on, the ports that read an input."""
         carried: dict[str, tuple[str, ...]] = {}
         for shell in self._outline.shells.values():
             for kind, port_id in self._list_ports(shell):

@@ -8,7 +8,8 @@ from itertools import chain
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import Span
-from archgen.link.reference_resolution import ReferenceResolver, take_path_end
+from archgen.link.path_guesses import take_path_end
+from archgen.link.reference_resolution import ReferenceResolver
 from archgen.link.unknown_references import list_known_names
 from archgen.model.path_resolver import ElementRef, PathMatch, PathResolver
 
@@ -86,7 +87,7 @@ class PortResolver:
         unique_paths = [
             path for path in self.names.path_endings(kind) if len(self.names.ids_ending_in(kind, path)) == 1
         ]
-        guess = self.resolver.guess_name(key, unique_paths)
+        guess = self.resolver.guesser.guess_name(key, unique_paths)
         guessed_port = self.names.resolve_path(guess, (kind,)).unique_element if guess else None
         self.resolver.suspect_ids.update([guessed_port.id] if guessed_port else ())
         labels = (Label(self._span_of(guessed_port), "declared here"),) if guessed_port else self._label_components()

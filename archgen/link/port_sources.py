@@ -1,7 +1,7 @@
 """Find what each port takes its data from where components hold components: what is written, and what follows by itself.
 
 Inputs take from outputs, from inputs of the component around them, from whole components and groups; outputs of composed
-components give on what stands inside. `outputs_behind` follows all of these down to the outputs of leaves.
+components pass on what stands inside. `outputs_behind` follows all of these down to the outputs of leaves.
 """
 
 from __future__ import annotations
@@ -124,7 +124,7 @@ class PortSources:
         return self._follow_output(output_id)
 
     def type_of_output(self, output_id: str) -> str | None:
-        """Return the type of an output: as written, or that of what it gives on."""
+        """Return the type of an output: as written, or that of what it passes on."""
         component_id, _, name = output_id.rpartition(".")
         written_type = self.outline.outputs[component_id][name].type
         if written_type or component_id not in self.outline.shells:
@@ -227,7 +227,7 @@ class PortSources:
         return mapping_values.EMPTY_MAPPING
 
     def list_given_outside(self) -> dict[str, MappingNode]:
-        """Return what outputs of composed components say of who reads them outside, by the leaf's output that they give on."""
+        """Return what outputs of composed components say of who reads them outside, by the leaf's output that they pass on."""
         given: dict[str, MappingNode] = {}
         for shell_id, bodies in self.outline.given_outputs.items():
             for name, body in bodies.items():
@@ -236,7 +236,7 @@ class PortSources:
         return given
 
     def spread_media(self) -> None:
-        """Give outputs without a medium that of what gives them on, and what gives on without one that of what it gives on."""
+        """Hand media on between an output and the port that passes it on, in both directions: to the one that has none."""
         for name, shell_id, body in self._list_given_outputs():
             if mapping_values.get_medium(body, "medium"):
                 medium = self.outline.outputs[shell_id][name].medium
@@ -257,7 +257,7 @@ class PortSources:
             yield from ((name, shell_id, body) for name, body in bodies.items())
 
     def _find_given(self, shell_id: str, name: str) -> Iterator[Output]:
-        """Yield the outputs of leaves that an output of a composed component gives on."""
+        """Yield the outputs of leaves that an output of a composed component passes on."""
         for leaf_id in self._follow_output(f"{shell_id}.{name}"):
             component_id, _, leaf_name = leaf_id.rpartition(".")
             if component_id != shell_id:

@@ -23,7 +23,7 @@ _MAX_LENGTH = 400
 
 
 @dataclass(frozen=True, slots=True)
-class _Limit:
+class _WrittenLimit:
     number: float
     unit: str
     at: Span
@@ -52,31 +52,31 @@ def read_promise(holder: MappingNode, element_id: str, diagnostics: list[Diagnos
     return promise if any(promise.list_kept()) else None
 
 
-def _read_limits(body: MappingNode, element_id: str, diagnostics: list[Diagnostic]) -> tuple[_Limit, ...]:
+def _read_limits(body: MappingNode, element_id: str, diagnostics: list[Diagnostic]) -> tuple[_WrittenLimit, ...]:
     """Return the least and the greatest value; nothing, and a diagnostic, where they are not two in one unit."""
     entry = body.entries.get("range")
     if entry is None:
         return ()
     items = mapping_values.get_scalars(body, "range")
-    limits: list[_Limit] = []
+    limits: list[_WrittenLimit] = []
     for item in items:
         limit = _read_limit(item)
         if limit is None:
             help_line = "a limit is a number, with or without a unit, such as `0`, `1.5 m` or `.inf`"
             diagnostics.append(
-                _diagnose(f"`{clip_text(item.text)}` is no limit of a range", item.span, help_line, element_id)
+                _diagnose_value(f"`{clip_text(item.text)}` is no limit of a range", item.span, help_line, element_id)
             )
             return ()
         limits.append(limit)
     place = entry.value.span if limits else entry.key_span
     if len(limits) != 2:  # noqa: PLR2004 - least and greatest
-        message = f"a range has two limits, the least and the greatest value: here {_count(len(limits))}"
-        diagnostics.append(_diagnose(message, place, "write `range: [0, 30]`; `.inf` is no limit", element_id))
+        message = f"a range has two limits, the least and the greatest value: here {_count_words(len(limits))}"
+        diagnostics.append(_diagnose_value(message, place, "write `range: [0, 30]`; `.inf` is no limit", element_id))
         return ()
     least, greatest = limits
     if least.number > greatest.number:
         message = f"the least value ({least.number:g}) is above the greatest ({greatest.number:g})"
-        diagnostics.append(_diagnose(message, place, "exchange them", element_id))
+        diagnostics.append(_diagnose_value(message, place, "exchange them", element_id))
         return ()
     units = {limit.unit for limit in limits if limit.unit}
     written_unit = mapping_values.get_text(body, "unit")
@@ -85,16 +85,16 @@ def _read_limits(body: MappingNode, element_id: str, diagnostics: list[Diagnosti
     if len(units) > 1:
         message = f"the range is in {' and '.join(f'`{unit}`' for unit in sorted(units))}"
         label = (Label(mapping_values.get_span(body, "unit"), "the unit"),) if written_unit else ()
-        diagnostics.append(_diagnose(message, place, "write it in one unit", element_id, *label))
+        diagnostics.append(_diagnose_value(message, place, "write it in one unit", element_id, *label))
         return ()
     return (least, greatest)
 
 
-def _count(number: int) -> str:
+def _count_words(number: int) -> str:
     return {0: "is none", 1: "is one"}.get(number, f"are {number}")
 
 
-def _read_limit(item: ScalarNode) -> _Limit | None:
+def _read_limit(item: ScalarNode) -> _WrittenLimit | None:
     if isinstance(item.value, bool):
         return None
     match = _LIMIT.match(item.text) if len(item.text) < _MAX_LENGTH else None
@@ -104,7 +104,7 @@ def _read_limit(item: ScalarNode) -> _Limit | None:
     number: float = float(text.replace(".inf", "inf"))
     if number.is_integer() and re.fullmatch(r"[-+]?[0-9]{1,18}", text):
         number = int(text)
-    return _Limit(number, match["unit"], item.span)
+    return _WrittenLimit(number, match["unit"], item.span)
 
 
 def read_deprecation(holder: MappingNode, element_id: str, diagnostics: list[Diagnostic]) -> Deprecation | None:
@@ -117,7 +117,7 @@ def read_deprecation(holder: MappingNode, element_id: str, diagnostics: list[Dia
     if until is not None and not _is_day(until):
         message = f"there is no day `{until}`"
         help_line = "a day is year, month and day, such as `2027-03-01`"
-        diagnostics.append(_diagnose(message, until_at, help_line, element_id))
+        diagnostics.append(_diagnose_value(message, until_at, help_line, element_id))
         until = None
     return Deprecation(
         until=until,
@@ -135,5 +135,5 @@ def _is_day(text: str) -> bool:
         return False
 
 
-def _diagnose(message: str, span: Span, help_line: str, element_id: str, *labels: Label) -> Diagnostic:
+def _diagnose_value(message: str, span: Span, help_line: str, element_id: str, *labels: Label) -> Diagnostic:
     return Diagnostic("wrong-value", message, span, labels=labels, help=help_line, element=element_id)

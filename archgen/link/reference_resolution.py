@@ -11,15 +11,12 @@ from typing import NamedTuple
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import AskedName, Diagnostic, Label
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.diagnostics.suggestions import find_closest
 from archgen.link import mapping_values
+from archgen.link.path_guesses import PathGuesser, list_possible_kinds
 from archgen.link.unknown_references import diagnose_unknown_reference
 from archgen.model.path_resolver import NO_MATCH, ElementRef, PathIndex, PathMatch, PathResolver
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
-# How many parts the complete path of each kind has where no component holds others: a reference with more parts cannot
-# mean that kind.
-_PATH_LENGTHS = {"group": 1, "node": 1, "component": 2, "output": 3, "input": 3}
 PLAIN_SECTIONS = {
     "partner": "partners",
     "host": "hosts",
@@ -31,13 +28,6 @@ PLAIN_SECTIONS = {
 }
 """The sections that declare what is named by its id alone."""
 _NO_NODES: Mapping[str, Collection[str]] = MappingProxyType({})
-_GUESS_BUDGET = 300_000
-"""How many names may be compared with mistyped ones in one run: some dozen guesses among the names of 10,000
-components, as many as anybody needs in a project of usual size. What comes later is reported without a guess. Without
-the limit, thousands of unknown references would take time that grows with the square of the project.
-"""
-
-
 NameList = tuple[tuple[str, tuple[str, ...]], ...]
 """All names of a version, by kind: in two versions with the same ones each reference means the same."""
 
@@ -82,17 +72,16 @@ class ReferenceResolver:
     answers: list[Answer] | None = None
     """What was resolved since somebody began to listen, None where nobody does."""
     names: PathResolver = field(init=False)
+    guesser: PathGuesser = field(init=False)
     _is_finished: bool = False
-    _extra_depth: int = field(init=False, default=0)
-    _guesses_left: int = _GUESS_BUDGET
     _changed_paths: dict[int, tuple[NameList, frozenset[str]]] = field(default_factory=dict)
     """By the identity of the names of another version, which are kept so that no others have it."""
-    _candidate_paths: dict[tuple[str, int], tuple[str, ...]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.names = PathResolver(self.spans, self.make_index) if self.make_index else PathResolver(self.spans)
         # Components inside of components have longer ids.
-        self._extra_depth = max((path.count(".") for path in self.spans.get("component", ())), default=1) - 1
+        extra_depth = max((path.count(".") for path in self.spans.get("component", ())), default=1) - 1
+        self.guesser = PathGuesser(self.names, extra_depth)
 
     def resolve_reference(  # noqa: PLR0913 - the last two by name
         self,
@@ -187,7 +176,7 @@ class ReferenceResolver:
             return reference.text
         if self.is_lost(reference.text) or PLAIN_SECTIONS[kind] in self.lost_keys:
             return None
-        guess = self.guess_name(reference.text, known_spans)
+        guess = self.guesser.guess_name(reference.text, known_spans)
         diagnostic = diagnose_unknown_reference(
             reference,
             kind,
@@ -226,15 +215,6 @@ class ReferenceResolver:
         component = self.names.resolve_path(component_path, ("component",)).unique_element if dot else None
         return component is not None and component.id in self.damaged_elements
 
-    def guess_name(self, word: str, candidates: Collection[str]) -> str | None:
-        """Return the candidate that a name most likely stands for, as long as the budget for guesses lasts."""
-        # Set to zero, not left as it is: from here on no reference gets a guess, not even one with a smaller pool.
-        if len(candidates) > self._guesses_left:
-            self._guesses_left = 0
-            return None
-        self._guesses_left -= len(candidates)
-        return find_closest(word, candidates)
-
     def _diagnose_ambiguous(self, reference: ScalarNode, match: PathMatch, element_id: str) -> Diagnostic:
         quoted_ids = [f"`{name.id}`" for name in match.elements]
         rest = [f"{match.count - len(quoted_ids)} more"] if match.count > len(quoted_ids) else []
@@ -251,7 +231,7 @@ class ReferenceResolver:
         self, reference: ScalarNode, kinds: Sequence[str], element_id: str, component_id: str | None
     ) -> Diagnostic:
         dotted_path = reference.text
-        kind_phrase = _list_possible_kinds(kinds, dotted_path.count(".") + 1)
+        kind_phrase = list_possible_kinds(kinds, dotted_path.count(".") + 1)
         # The commonest reasons are named before anything is guessed: the writer itself, an input, a group.
         own_output = f"{component_id}.{dotted_path}"
         if component_id and (own_output in self.spans["output"] or component_id.endswith(f".{dotted_path}")):
@@ -271,7 +251,7 @@ class ReferenceResolver:
         other_kind = self._diagnose_other_kind(reference, kinds, kind_phrase, element_id)
         if other_kind is not None:
             return other_kind
-        guess = self._guess_path(dotted_path, kinds)
+        guess = self.guesser.guess_path(dotted_path, kinds)
         candidates = self.names.resolve_path(guess, kinds, component_id=component_id) if guess else NO_MATCH
         self.suspect_ids.update(name.id for name in candidates.elements)
         guessed_element = candidates.unique_element
@@ -325,52 +305,8 @@ class ReferenceResolver:
             )
         )
 
-    def _guess_path(self, dotted_path: str, kinds: Sequence[str]) -> str | None:
-        """Return the path that was most likely meant, or None.
-
-        First among paths with the same last part (few, and a slip is usually in one part only), then among all paths of
-        the same length; at last without leading parts, in case an element was moved to another group.
-        """
-        if not self._guesses_left:
-            return None
-        length = dotted_path.count(".") + 1
-        fitting_kinds = [kind for kind in kinds if _PATH_LENGTHS[kind] + self._extra_depth >= length]
-        last = dotted_path.rpartition(".")[2]
-        # A set of ends: two complete paths with the same end are one candidate, since the guess has the length of the
-        # reference that somebody wrote.
-        near_paths = {
-            take_path_end(path, length) for kind in fitting_kinds for path in self.names.ids_ending_in(kind, last)
-        }
-        guess = self.guess_name(dotted_path, near_paths) if length > 1 and near_paths else None
-        if guess is None:
-            candidates = (
-                set().union(*(self._list_candidate_paths(kind, length) for kind in fitting_kinds))
-                if fitting_kinds
-                else ()
-            )
-            guess = self.guess_name(dotted_path, candidates)
-        while guess is None and "." in dotted_path:
-            dotted_path = dotted_path.partition(".")[2]
-            moved_element = self.names.resolve_path(dotted_path, kinds).unique_element
-            guess = moved_element.id if moved_element else None
-        return guess
-
-    def _list_candidate_paths(self, kind: str, length: int) -> tuple[str, ...]:
-        key = (kind, length)
-        if key not in self._candidate_paths:
-            self._candidate_paths[key] = tuple(
-                path for path in self.names.path_endings(kind) if path.count(".") == length - 1
-            )
-        return self._candidate_paths[key]
-
     def _span_of(self, element: ElementRef) -> Span:
         return self.spans[element.kind][element.id]
-
-
-def _list_possible_kinds(kinds: Sequence[str], length: int) -> str:
-    """Return the kinds that a path of some length can mean, as words: "component or output"."""
-    possible = [kind for kind in kinds if _PATH_LENGTHS[kind] >= length] or [kinds[-1]]
-    return join_words(possible, "or")
 
 
 def list_endings(element_id: str) -> Iterator[str]:
@@ -379,8 +315,3 @@ def list_endings(element_id: str) -> Iterator[str]:
     while dot:
         yield ending
         _, dot, ending = ending.partition(".")
-
-
-def take_path_end(path: str, length: int) -> str:
-    """Return the last parts of a path."""
-    return ".".join(path.split(".")[-length:])

@@ -49,7 +49,7 @@ class SourceReferences:
         return self._resolve_outside(reference, writer_id)
 
     def resolve_given(self, reference: ScalarNode, shell_id: str) -> ElementRef | None:
-        """Return what a composed component gives on at an output: an output directly inside, or an input of its own."""
+        """Return what a composed component passes on at an output: an output directly inside, or an input of its own."""
         if reference.text.startswith(f"{SELF}."):
             return self._resolve_self(reference, shell_id, shell_id)
         match = self._match_inside(shell_id, reference.text, shell_id)

@@ -13,7 +13,7 @@ from archgen.git import GitError
 from archgen.git.merged_trees import MergeFolder, PathConflict, open_merge_folder
 from archgen.merge.file_merge import merge_contents
 from archgen.merge.slice_reading import read_normal_tree
-from archgen.merge.tree_merge import MergeConflictError, merge_values, read_value
+from archgen.merge.tree_merge import MergeConflictError, merge_values, read_merged_value
 from archgen.pipeline import CheckedProject, VersionCache
 from archgen.project import TrackedProject
 from archgen.syntax.project_files import MAX_BYTES
@@ -144,7 +144,9 @@ class BranchMerger:
             return "one side took it away or moved it, the other one changed it"
         try:
             merge_values(
-                read_value(old_table), read_value(other_side.checked_project.merged_table), read_value(new_table)
+                read_merged_value(old_table),
+                read_merged_value(other_side.checked_project.merged_table),
+                read_merged_value(new_table),
             )
         except MergeConflictError as merge_conflict:
             what = ".".join(merge_conflict.path)

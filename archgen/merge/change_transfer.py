@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from archgen.merge.slice_reading import TreeReader, convert_lines, find_line_end
-from archgen.merge.tree_merge import ItemSet, merge_values, read_value
+from archgen.merge.tree_merge import ItemSet, merge_values, read_merged_value
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode, node_to_data
 from archgen.syntax.yaml_writer import format_flow, format_scalar
 
@@ -121,7 +121,7 @@ class _TextEdits:
                 self._delete_entry(target.entries[entry.key])
 
     def _collect_from_value(self, base: YamlNode, changed: YamlNode, target: YamlNode, path: tuple[str, ...]) -> None:
-        if read_value(base, path) == read_value(changed, path):
+        if read_merged_value(base, path) == read_merged_value(changed, path):
             return
         if isinstance(base, MappingNode) and isinstance(changed, MappingNode) and isinstance(target, MappingNode):
             self.collect_from_mapping(base, changed, target, path)
@@ -130,7 +130,7 @@ class _TextEdits:
             isinstance(changed, SequenceNode)
             and isinstance(target, SequenceNode)
             and target.items
-            and isinstance(read_value(target, path), ItemSet)
+            and isinstance(read_merged_value(target, path), ItemSet)
         ):
             self._collect_items(_items_of(base), changed.items, target, path)
             return
@@ -143,13 +143,13 @@ class _TextEdits:
         self, base: list[YamlNode], changed: list[YamlNode], target: SequenceNode, path: tuple[str, ...]
     ) -> None:
         """Collect what came into a list in which order says nothing, and what left it."""
-        old_items, new_items = ({read_value(item, path) for item in items} for items in (base, changed))
-        target_items = {read_value(item, path) for item in target.items}
+        old_items, new_items = ({read_merged_value(item, path) for item in items} for items in (base, changed))
+        target_items = {read_merged_value(item, path) for item in target.items}
         for item in target.items:
-            if read_value(item, path) in old_items - new_items:
+            if read_merged_value(item, path) in old_items - new_items:
                 self._delete_range(self.target.value_range(item), self.target.item_lines(item))
         for item in changed:
-            if read_value(item, path) not in old_items | target_items:
+            if read_merged_value(item, path) not in old_items | target_items:
                 self._append_item(item, target.items[-1])
 
     def _append_item(self, item: YamlNode, last_item: YamlNode) -> None:
@@ -165,9 +165,13 @@ class _TextEdits:
 
     def _write_value(self, base: YamlNode, changed: YamlNode, target: YamlNode, path: tuple[str, ...]) -> str | None:
         """Return the text of a new value: as it is written in the changed version, if it stands on one line there."""
-        merged_value = merge_values(read_value(base, path), read_value(target, path), read_value(changed, path), path)
+        merged_value = merge_values(
+            read_merged_value(base, path), read_merged_value(target, path), read_merged_value(changed, path), path
+        )
         if isinstance(merged_value, ItemSet):
-            items = {read_value(item): node_to_data(item) for node in (target, changed) for item in _items_of(node)}
+            items = {
+                read_merged_value(item): node_to_data(item) for node in (target, changed) for item in _items_of(node)
+            }
             merged_items = frozenset(merged_value.items)
             return format_flow([data for value, data in items.items() if value in merged_items])
         start, end = self.changed.value_range(changed)

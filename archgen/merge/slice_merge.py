@@ -18,7 +18,7 @@ from archgen.git.text_merge import merge_lines
 from archgen.merge.change_transfer import transfer_changes
 from archgen.merge.sequence_merge import ConflictingRun, MergedRun, merge_sequences
 from archgen.merge.slice_reading import TreeReader, convert_lines, find_line_end, read_normal_tree, read_tree
-from archgen.merge.tree_merge import MergeConflictError, merge_values, read_value
+from archgen.merge.tree_merge import MergeConflictError, merge_values, read_merged_value
 from archgen.syntax import yaml_parser
 
 _WORD = re.compile(r"[^\S\n]+|\n|[\w./-]+|.", re.DOTALL)
@@ -86,14 +86,14 @@ def _merge_texts(versions: SliceVersions, read: TreeReader) -> str | UnmergedSli
     if base is None or ours is None or theirs is None:
         return UnmergedSlice()
     try:
-        expected_value = merge_values(read_value(base), read_value(ours), read_value(theirs))
+        expected_value = merge_values(read_merged_value(base), read_merged_value(ours), read_merged_value(theirs))
     except MergeConflictError as conflict:
         return UnmergedSlice(conflict.path)
     comments = _CommentBalance(*map(_count_comments, texts))
     for proposal in _propose_texts(versions, read):
         if comments.accepts(proposal):
             tree = read(proposal)
-            if tree is not None and read_value(tree) == expected_value:
+            if tree is not None and read_merged_value(tree) == expected_value:
                 return proposal
     return UnmergedSlice(is_settled=True)
 

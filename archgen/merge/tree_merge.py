@@ -88,16 +88,16 @@ class MergeConflictError(Exception):
         self.path = path
 
 
-def read_value(node: YamlNode, path: tuple[str, ...] = ()) -> MergedValue:
+def read_merged_value(node: YamlNode, path: tuple[str, ...] = ()) -> MergedValue:
     """Return what a node says; `path` are the keys that lead to it."""
     if isinstance(node, ScalarNode):
         return ScalarValue(type(node.value).__name__, node.value if isinstance(node.value, str) else node.text)
     if isinstance(node, MappingNode):
-        items = [(entry.key, read_value(entry.value, (*path, entry.key))) for entry in node]
+        items = [(entry.key, read_merged_value(entry.value, (*path, entry.key))) for entry in node]
         if len(path) == 3 and path[0] == "types" and path[2] in _FIELD_KEYS:  # noqa: PLR2004 - section, type, key
             items.append((FIELD_ORDER, ItemList(tuple(ScalarValue("str", entry.key) for entry in node))))
         return MappingValue(tuple(sorted(items, key=lambda item: item[0])))
-    list_items = tuple(read_value(item, path) for item in node.items)
+    list_items = tuple(read_merged_value(item, path) for item in node.items)
     return ItemSet(tuple(sorted(list_items, key=repr))) if _is_unordered(path) else ItemList(list_items)
 
 

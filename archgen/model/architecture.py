@@ -216,7 +216,7 @@ class Architecture:
     """Composed components, outer ones first. Their connections are those of the leaves behind their ports."""
     shell_ports: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """What stands behind each port of a composed component, by `input ID` and `output ID`: the outputs that an output
-    gives on, the ports that read an input."""
+    passes on, the ports that read an input."""
     component_types: Mapping[str, ComponentType] = field(default_factory=dict)
     inputs: Mapping[str, Input] = field(default_factory=dict)
     outputs: Mapping[str, Output] = field(default_factory=dict)

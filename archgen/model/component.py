@@ -93,12 +93,12 @@ class Output:
     frame: str | None = None
     """The coordinate frame in which its data is given, as written; None: that of its type."""
     promise: Promise | None = None
-    """What readers may count on; what an output given on promises is kept where nothing else is written."""
+    """What readers may count on; what an output that is passed on promises is kept where nothing else is written."""
     version: str | None = None
     deprecated: Deprecation | None = None
     description: str | None = None
     is_made: bool = False
-    """Whether nobody wrote what this output of a composed component gives on: `autoconnect` joined the two."""
+    """Whether nobody wrote what this output of a composed component passes on: `autoconnect` joined the two."""
     medium_written: bool = False
     """Whether somebody says what it travels over; `digital` alone does not."""
     urls: Mapping[str, str] = field(default_factory=dict)

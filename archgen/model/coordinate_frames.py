@@ -56,7 +56,7 @@ def walk_ancestors(frames: Mapping[str, Frame], name: str) -> Iterator[str]:
         frame = frames.get(frame.parent)
 
 
-def list_children(frames: Mapping[str, Frame]) -> dict[str, list[Frame]]:
+def index_child_frames(frames: Mapping[str, Frame]) -> dict[str, list[Frame]]:
     """Return the frames that are placed in each name, in their order."""
     children: dict[str, list[Frame]] = {}
     for frame in frames.values():

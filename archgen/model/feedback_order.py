@@ -133,6 +133,6 @@ def _order_greedily(loop: Sequence[T], weights: Mapping[tuple[T, T], int]) -> li
     return front + back[::-1]
 
 
-def _rank_source(given: Mapping[T, int], taken: Mapping[T, int]) -> tuple[bool, int]:
+def _rank_source(given_counts: Mapping[T, int], taken_counts: Mapping[T, int]) -> tuple[bool, int]:
     """Return how well an element begins an order: one that nothing feeds before all others."""
-    return not taken, sum(given.values()) - sum(taken.values())
+    return not taken_counts, sum(given_counts.values()) - sum(taken_counts.values())

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
-from archgen.model.coordinate_frames import Frame, list_children
+from archgen.model.coordinate_frames import Frame, index_child_frames
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,7 @@ def _find_given_frames(architecture: Architecture, giver: str, taker: str) -> It
         owners = architecture.components[port.component].owners
         if taker in owners and giver not in owners:
             ports_by_frame.setdefault(architecture.frame_of(port), {})[port.id] = None
-    children = list_children(architecture.frames)
+    children = index_child_frames(architecture.frames)
     for frame in architecture.frames.values():
         writers = list_frame_owners(architecture, frame)
         if giver not in writers or taker in writers or frame.parent is None:

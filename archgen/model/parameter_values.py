@@ -161,9 +161,9 @@ def find_value_fault(parameter: Parameter, value: object) -> str | None:
         return f"{describe_parameter_value(value)} is no {_TYPE_PHRASES[inferred_type]}"
     items = value if isinstance(value, list) else [value]
     if parameter.choices is not None and not _is_choice(value, parameter.choices):
-        shown_choices = ", ".join(f"`{_shorten(choice)}`" for choice in parameter.choices[:_MAX_CHOICES])
+        shown_choices = ", ".join(f"`{_shorten_value(choice)}`" for choice in parameter.choices[:_MAX_CHOICES])
         more = ", ..." if len(parameter.choices) > _MAX_CHOICES else ""
-        return f"`{_shorten(value)}` is none of its choices: {shown_choices}{more}"
+        return f"`{_shorten_value(value)}` is none of its choices: {shown_choices}{more}"
     if parameter.range is not None:
         least, greatest = parameter.range
         for item in items:
@@ -175,11 +175,11 @@ def find_value_fault(parameter: Parameter, value: object) -> str | None:
 
 def describe_parameter_value(value: object) -> str:
     """Return a value for a sentence: in backticks, cut where it is long, text in quotes."""
-    text = _shorten(value)
+    text = _shorten_value(value)
     return f'`"{text}"`' if isinstance(value, str) else f"`{text}`"
 
 
-def _shorten(value: object) -> str:
+def _shorten_value(value: object) -> str:
     text = " ".join(format_parameter(value).replace("`", "'").split())
     return text if len(text) <= _MAX_SHOWN else f"{text[: _MAX_SHOWN - 1]}…"
 

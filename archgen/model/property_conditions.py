@@ -44,7 +44,7 @@ class PropertyCondition(NamedTuple):
         return self.sign == "=" and matches(self.value, text)
 
 
-def parse_condition(text: str) -> PropertyCondition | None:
+def parse_property_condition(text: str) -> PropertyCondition | None:
     """Return the condition that a text is; None for none."""
     match = _CONDITION.fullmatch(text)
     return PropertyCondition(match[1], match[2], match[3] or "") if match else None

@@ -7,12 +7,12 @@ from collections.abc import Callable, Iterable, Mapping
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
-from archgen.model.counted_outputs import list_deprecated_kinds
+from archgen.model.deprecation_lookup import list_deprecated_kinds
 from archgen.model.node import Node
 from archgen.model.parameter_values import find_effective_parameters
 from archgen.model.path_resolver import ElementRef
 from archgen.model.port_media import list_medium_words
-from archgen.model.property_conditions import find_component_properties, find_node_properties, parse_condition
+from archgen.model.property_conditions import find_component_properties, find_node_properties, parse_property_condition
 from archgen.model.requirement_tree import add_below
 
 
@@ -203,7 +203,7 @@ def list_participants(architecture: Architecture) -> Mapping[str, tuple[str, ...
 
 def _find_by_property(architecture: Architecture, text: str) -> SelectorHit:
     """Find what has a property itself; components also by what is around them, nodes by their host."""
-    condition = parse_condition(text)
+    condition = parse_property_condition(text)
     if condition is None:
         return SelectorHit(frozenset(), frozenset())
     components = (

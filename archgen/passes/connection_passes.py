@@ -22,7 +22,7 @@ from archgen.syntax.yaml_tree import MappingEntry, ScalarNode, SequenceNode
 _SIDES = {"input": "inputs", "output": "outputs"}
 
 
-class _Holder(NamedTuple):
+class _StatementHolder(NamedTuple):
     """What a statement holds for in a linked project: a group, a composed component or an instance, by complete id."""
 
     linked: LinkedTree
@@ -60,19 +60,21 @@ def _write_connections(work: PassWork, key: str, mode: str) -> None:
     }
     if not places:
         return
-    found: dict[TreePath, dict[_Holder, dict[TreePath, _FoundSources]]] = {path: {} for path in places.values()}
+    sources_by_place: dict[TreePath, dict[_StatementHolder, dict[TreePath, _FoundSources]]] = {
+        path: {} for path in places.values()
+    }
     for linked, is_probe in ((work.link(), False), (link_types(work), True)):
         for holder_id, entry in _list_entries(linked):
             statement = mapping_values.get_body(entry).entries.get(key)
             place = places.get(statement.key_span) if statement else None
             if place is not None:
-                holder = _Holder(linked, holder_id, is_probe)
-                found[place][holder] = _find_sources(linked, holder_id, key)
-    for place, found_by_holder in found.items():
+                holder = _StatementHolder(linked, holder_id, is_probe)
+                sources_by_place[place][holder] = _find_sources(linked, holder_id, key)
+    for place, sources_by_holder in sources_by_place.items():
         # What could follow in several ways stays as it is, and is told.
-        if any(_is_ambiguous(holder, key) for holder in found_by_holder):
+        if any(_is_ambiguous(holder, key) for holder in sources_by_holder):
             continue
-        _write_place(work, place, key, found_by_holder)
+        _write_place(work, place, key, sources_by_holder)
         tree.drop((*place, key))
 
 
@@ -144,7 +146,7 @@ def _write_reference(linked: LinkedTree, port: PortKey, source: PortSource) -> s
     return source.target.id if is_taken else short
 
 
-def _is_ambiguous(holder: _Holder, key: str) -> bool:
+def _is_ambiguous(holder: _StatementHolder, key: str) -> bool:
     if key == "from":
         return False
     linked = holder.linked
@@ -162,23 +164,26 @@ def _write_place(
     work: PassWork,
     place: TreePath,
     key: str,
-    found_by_holder: dict[_Holder, dict[TreePath, _FoundSources]],
+    sources_by_holder: dict[_StatementHolder, dict[TreePath, _FoundSources]],
 ) -> None:
-    for path in dict.fromkeys(path for found in found_by_holder.values() for path in found):
-        answers = {found[path].references if path in found else () for found in found_by_holder.values()}
+    for path in dict.fromkeys(path for sources_by_path in sources_by_holder.values() for path in sources_by_path):
+        answers = {
+            sources_by_path[path].references if path in sources_by_path else ()
+            for sources_by_path in sources_by_holder.values()
+        }
         if len(answers) == 1:
-            first_found = next(found[path] for found in found_by_holder.values())
-            _write_sources(work, (*place, *path), first_found, (*place, key))
+            first_sources = next(sources_by_path[path] for sources_by_path in sources_by_holder.values())
+            _write_sources(work, (*place, *path), first_sources, (*place, key))
             continue
-        for holder, found in found_by_holder.items():
-            if path in found and not holder.is_probe:
-                _write_sources(work, (*_path_of(holder.id), *path), found[path], (*place, key))
+        for holder, sources_by_path in sources_by_holder.items():
+            if path in sources_by_path and not holder.is_probe:
+                _write_sources(work, (*_path_of(holder.id), *path), sources_by_path[path], (*place, key))
 
 
-def _write_sources(work: PassWork, path: TreePath, found: _FoundSources, statement: TreePath) -> None:
+def _write_sources(work: PassWork, path: TreePath, sources: _FoundSources, statement: TreePath) -> None:
     items = [
-        ScalarNode(reference, reference, found.spans[min(number, len(found.spans) - 1)])
-        for number, reference in enumerate(found.references)
+        ScalarNode(reference, reference, sources.spans[min(number, len(sources.spans) - 1)])
+        for number, reference in enumerate(sources.references)
     ]
     work.tree.set((*path, "from"), SequenceNode(list(items), items[0].span), statement)
 

@@ -24,7 +24,7 @@ _Port = tuple[int, str, str]
 """A port of a linked project: which project, `input` or `output`, and the complete id."""
 
 
-def _envelope(work: PassWork) -> None:
+def _wrap_messages(work: PassWork) -> None:
     wrapper = _find_wrapper(work)
     type_paths = dict(_list_type_places(work))
     wrapped_places = _PortNetwork(work, type_paths).list_wrapped_places()
@@ -67,10 +67,10 @@ def _is_wrapped(work: PassWork, text: str) -> bool:
 
 
 def _is_usable(body: YamlNode | None) -> bool:
-    return body is None or (isinstance(body, MappingNode) and _wraps(body))
+    return body is None or (isinstance(body, MappingNode) and _is_envelope_type(body))
 
 
-def _wraps(body: MappingNode) -> bool:
+def _is_envelope_type(body: MappingNode) -> bool:
     """Whether a type is made for one other, and has a sender and a payload."""
     generic = body.get("generic")
     fields = mapping_values.get_mapping(body, "fields")
@@ -161,7 +161,7 @@ class _PortNetwork:
 ENVELOPE = Pass(
     "envelope",
     "Wraps the types of messages in `Envelope<T>`, so that each message carries its sender.",
-    _envelope,
+    _wrap_messages,
     needs=("no_component_sources",),
     leaves=("enveloped",),
     ends=("no_generics",),

@@ -34,7 +34,7 @@ class FlatSources:
         return MappingNode(entries, written.span)
 
     def write_outputs(self, component_id: str, names: tuple[str, ...], written: MappingNode) -> MappingNode:
-        """Return the outputs of a leaf, each with what is said of it where it is given on."""
+        """Return the outputs of a leaf, each with what is said of it where it is passed on."""
         entries: dict[str, MappingEntry] = {}
         for name in names:
             entry = written.entries[name]
@@ -103,7 +103,7 @@ class FlatSources:
         return short if is_beside else f"{flat_id}.{name}"
 
     def _list_said(self) -> Iterator[tuple[str, dict[str, MappingEntry]]]:
-        """Yield what outputs of composed components say of what they give on, by the leaf's output."""
+        """Yield what outputs of composed components say of what they pass on, by the leaf's output."""
         outline = self._linked.outline
         for shell_id, bodies in outline.given_outputs.items():
             for name, body in bodies.items():
@@ -113,7 +113,7 @@ class FlatSources:
                     yield behind[0], said
 
     def _add_medium(self, output_id: str, entries: dict[str, MappingEntry], place: Span) -> None:
-        """Write the medium that an output has from what gives it on."""
+        """Write the medium that an output has from what passes it on."""
         component_id, _, name = output_id.rpartition(".")
         output = self._linked.outline.outputs[component_id][name]
         if "medium" not in entries and output.medium != self._linked.outline.middleware:

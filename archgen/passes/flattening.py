@@ -26,7 +26,7 @@ _WHOLE_KEYS = frozenset({"timing", "performance", "requirements"})
 """What a composed component says of itself as a whole: nothing that is left of it can keep it."""
 
 
-def _flatten(work: PassWork) -> None:
+def _flatten_components(work: PassWork) -> None:
     linked = work.link()
     component_ids = [*linked.outline.components, *_list_open_shells(linked)]
     nodes = mapping_values.get_mapping(work.tree.root, "nodes")
@@ -196,7 +196,7 @@ def _list_items(entry: MappingEntry) -> list[YamlNode]:
 FLATTEN = Pass(
     "flatten",
     "Takes composed components away: connections lead from leaf to leaf, and every name is unique.",
-    _flatten,
+    _flatten_components,
     needs=("no_component_sources", "no_autoconnect_ports", "no_autoconnect_types", "no_instances"),
     leaves=("flat", "unique_names"),
 )

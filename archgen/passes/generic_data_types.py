@@ -101,12 +101,12 @@ class _DataTypeSpecialiser:
             self._write_type(name, plain_name, base, arguments)
         return self.names[name]
 
-    def _find_free_name(self, wanted: str) -> str:
+    def _find_free_name(self, wanted_name: str) -> str:
         used_names = {*self._types, *self.names.values()}
-        number, name = 1, wanted
+        number, name = 1, wanted_name
         while name in used_names:
             number += 1
-            name = f"{wanted} {number}"
+            name = f"{wanted_name} {number}"
         return name
 
     def _write_type(self, name: str, plain_name: str, base: str, arguments: tuple[str, ...]) -> None:

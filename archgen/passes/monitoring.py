@@ -22,7 +22,7 @@ _HOLDER_SECTIONS = frozenset({"groups", "component_types", "libraries"})
 _MONITOR_NAMES = ("monitor", "state_monitor")
 
 
-def _monitor(work: PassWork) -> None:
+def _add_monitors(work: PassWork) -> None:
     _MonitorWriter(work).write_all()
 
 
@@ -216,7 +216,7 @@ class _MonitorWriter:
 MONITOR = Pass(
     "monitor",
     "Adds a state port to every component, and to all that holds components a monitor that reads them.",
-    _monitor,
+    _add_monitors,
     needs=("no_component_sources", "no_autoconnect_ports", "no_autoconnect_types"),
     leaves=("monitored",),
 )

@@ -89,10 +89,10 @@ def _list_all_places(node: YamlNode, path: TreePath) -> Iterator[tuple[TreePath,
             yield from _list_all_places(item, (*path, number))
 
 
-def write_comment(made: MadeElement) -> str:
+def write_comment(made_element: MadeElement) -> str:
     """Return a comment, without its mark: what a text that is no place could hold is taken out of it."""
-    place = make_visible(made.place).replace("#", "?")
-    names = ", ".join(made.passes)
+    place = make_visible(made_element.place).replace("#", "?")
+    names = ", ".join(made_element.passes)
     return f"archgen: made[{names}] from {place}" if names else f"archgen: from {place}"
 
 

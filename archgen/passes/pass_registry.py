@@ -9,7 +9,7 @@ from archgen.passes.generic_removal import REMOVE_GENERICS
 from archgen.passes.instance_resolution import RESOLVE_INSTANCES
 from archgen.passes.monitoring import MONITOR
 from archgen.passes.pass_shape import Pass
-from archgen.passes.short_forms import COMPLETE_NAMES, NORMALISE_CONNECTIONS
+from archgen.passes.written_out_forms import COMPLETE_NAMES, NORMALISE_CONNECTIONS
 
 _ALL_PASSES = (
     COMPLETE_NAMES,

@@ -79,14 +79,14 @@ def order_passes(names: Sequence[str], known_passes: Mapping[str, Pass] = PASSES
     return tuple(ordered)
 
 
-def _list_needed(wanted: Pass, known_passes: Mapping[str, Pass], held: set[str]) -> Iterator[Pass]:
+def _list_needed(wanted_pass: Pass, known_passes: Mapping[str, Pass], held_states: set[str]) -> Iterator[Pass]:
     """Yield a pass behind all that it needs and that does not hold."""
-    held = set(held)
-    for state in wanted.needs:
-        if state not in held:
+    held_states = set(held_states)
+    for state in wanted_pass.needs:
+        if state not in held_states:
             giver = next(each for each in known_passes.values() if state in each.leaves)
-            for each in _list_needed(giver, known_passes, held):
+            for each in _list_needed(giver, known_passes, held_states):
                 yield each
-                held.difference_update(each.ends)
-                held.update(each.leaves)
-    yield wanted
+                held_states.difference_update(each.ends)
+                held_states.update(each.leaves)
+    yield wanted_pass

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+from archgen.checking.checked_packing import pack_checked_project
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.emit import file_tree
 from archgen.emit.backend_manifests import Backend
@@ -66,7 +67,7 @@ def _make_uml(inputs: ProductInputs) -> Mapping[str, object]:
     checked_project, selection = inputs.checked_project, inputs.options.selection
     return make_uml_view(
         checked_project.architecture,
-        checked_project.pack_project().data,
+        pack_checked_project(checked_project).data,
         selection.components if selection else None,
         types_only=inputs.options.types_only,
     )

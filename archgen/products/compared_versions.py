@@ -11,7 +11,7 @@ from archgen.compare import ArchitectureVersion, Comparison, compare_versions
 from archgen.diagnostics.common_wording import shorten_hash
 from archgen.diagnostics.rule_options import format_percentage
 from archgen.frozen import dataclass, replace
-from archgen.link.type_patterns import link_type_patterns
+from archgen.link.type_pattern_linking import link_type_patterns
 from archgen.model.variant import BASE_NAME
 from archgen.pipeline import CheckedProject, VersionCache
 from archgen.project.project_search import find_project

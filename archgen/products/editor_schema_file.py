@@ -12,7 +12,7 @@ from archgen.emit import file_tree
 from archgen.emit.data import editor_schema
 from archgen.findings.rule_pages import parse_rule_page
 from archgen.pipeline import ALL_RULES, CheckedProject
-from archgen.products import schema_renewal
+from archgen.products import editor_schema_marks
 from archgen.products.product_writing import write_product_file
 from archgen.views.offered_names import OfferedNames
 
@@ -23,16 +23,16 @@ _LANGUAGE_ID = '"$id": "urn:archgen:schema:1"'
 def render_schema(checked_project: CheckedProject) -> bytes:
     """Return the schema of a project, as one line of JSON."""
     return render_names(
-        schema_renewal.list_project_names(checked_project), schema_renewal.digest_texts(checked_project)
+        editor_schema_marks.list_project_names(checked_project), editor_schema_marks.digest_texts(checked_project)
     )
 
 
 def render_names(names: OfferedNames, text_digest: str) -> bytes:
     """Return the schema that offers these names, made from files with this digest."""
     summaries = {rule.name: parse_rule_page(rule).summary for rule in ALL_RULES if not rule.fixed}
-    language_schema = schema_renewal.language_schema_path().read_bytes()
+    language_schema = editor_schema_marks.language_schema_path().read_bytes()
     schema = editor_schema.make_editor_schema(language_schema, names, summaries)
-    mark = schema_renewal.format_mark(text_digest, schema_renewal.digest_names(names))
+    mark = editor_schema_marks.format_mark(text_digest, editor_schema_marks.digest_names(names))
     # ASCII: names may hold anything, and editors read the file in any encoding.
     return f'{mark}",{json.dumps(schema, separators=(",", ":"))[1:]}\n'.encode()
 
@@ -42,13 +42,13 @@ def write_schema(checked_project: CheckedProject, target: Path | None = None) ->
 
     Raise OutputError where a link or a file of somebody else stands there.
     """
-    path = target or checked_project.root / schema_renewal.SCHEMA_FILE
+    path = target or checked_project.root / editor_schema_marks.SCHEMA_FILE
     if path.is_symlink() or (target is None and path.parent.is_symlink()):
         msg = f"{path} is a link"
         raise file_tree.OutputError(msg, "remove it, or give another file with `-o`")
     content = render_schema(checked_project)
-    head = schema_renewal.read_head(path)
-    if head is not None and not head.startswith(schema_renewal.MARK) and _LANGUAGE_ID not in head:
+    head = editor_schema_marks.read_head(path)
+    if head is not None and not head.startswith(editor_schema_marks.MARK) and _LANGUAGE_ID not in head:
         msg = f"{path} is no schema that archgen wrote"
         raise file_tree.OutputError(msg, "remove it, or give another file with `-o`")
     if head is not None and path.read_bytes() == content:

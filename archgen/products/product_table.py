@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
+from archgen.checking.checked_packing import pack_checked_project
 from archgen.emit import file_tree, picture_files
+from archgen.emit.own_file_marks import PACKED_HEADER
 from archgen.emit.picture import Picture
-from archgen.emit.written_formats import PACKED_HEADER
 from archgen.products import report_cache
 from archgen.products.product_inputs import FinishProduct, MadeProduct, Product, ProductInputs
 from archgen.syntax.folder_files import read_named_file
@@ -99,7 +100,7 @@ def make_diagrams_product(formats: Sequence[str], name_patterns: Sequence[str] =
 def _start_packed(inputs: ProductInputs) -> FinishProduct:
     from archgen.syntax import yaml_writer
 
-    packed_project = inputs.checked_project.pack_project()
+    packed_project = pack_checked_project(inputs.checked_project)
     content = (PACKED_HEADER + yaml_writer.write_yaml(packed_project.data, packed_project.comments)).encode()
     chapters = inputs.checked_project.chapters
     asked_files = {path: chapters.read_picture(path) for path in chapters.list_picture_paths()}

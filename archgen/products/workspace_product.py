@@ -13,7 +13,7 @@ from archgen.emit.backend_manifests import Backend
 from archgen.emit.file_tree import OutputError
 from archgen.emit.workspace import workspace_writing
 from archgen.emit.workspace.disk_files import DiskReader
-from archgen.emit.workspace.generated_file import GeneratedFile, fold_path
+from archgen.emit.workspace.generated_file import GeneratedFile, fold_file_path
 from archgen.emit.workspace.run_record import read_other_records, read_run_record
 from archgen.emit.workspace.workspace_plan import UserChoices, WorkspacePlan, plan_workspace
 from archgen.pipeline import CheckedProject
@@ -217,7 +217,7 @@ def _plan_files(
 ) -> WorkspacePlan:
     other_backends = read_other_records(folder, backend.id)
     for file in files:
-        other = other_backends.get(fold_path(file.path))
+        other = other_backends.get(fold_file_path(file.path))
         if other:
             msg = f"`{file.path}` is made by the backend `{other}` in this folder, and by `{backend.id}`"
             raise OutputError(

@@ -18,9 +18,11 @@ from archgen.project.library_reading import (
     read_shipped_libraries,
 )
 from archgen.project.project_search import PROJECT_FILE, find_project
+from archgen.project.reading_state import ReadingState
 from archgen.project.shipped_library import SHIPPED_ID, SHIPPED_PATH, describe_missing_type, is_shipped_type
 from archgen.project.slice_parsing import ParsedSlices
-from archgen.project.source_reading import ReadingState, expand_source_pattern, read_slice, read_sources
+from archgen.project.source_patterns import expand_source_pattern
+from archgen.project.source_reading import read_slice, read_sources
 from archgen.syntax.folder_files import FolderFiles
 from archgen.syntax.project_files import ProjectFiles
 from archgen.syntax.yaml_tree import IgnoreComment, MappingNode, ScalarNode, SequenceNode, YamlDocument

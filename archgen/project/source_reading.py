@@ -4,35 +4,31 @@ from __future__ import annotations
 
 import posixpath
 import re
-from dataclasses import dataclass, field
 from itertools import islice
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.diagnostics.source_span import SourceTexts, Span
+from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import find_closest
-from archgen.model.review_settings import agreement_file, is_agreement_file
+from archgen.model.review_settings import agreement_file
 from archgen.project import baseline_reading
 from archgen.project.project_search import PROJECT_FILE
-from archgen.project.slice_parsing import ParsedSlices, Slice, find_written_keys, parse_slice
+from archgen.project.reading_state import ReadingState, parse_file
+from archgen.project.slice_parsing import Slice
+from archgen.project.source_patterns import SKIPPED_FOLDERS, expand_source_pattern, report_missing_sources
 from archgen.schema import list_sections
 from archgen.syntax import file_patterns
-from archgen.syntax.project_files import ProjectFiles, read_text_file
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterator
 
-    from archgen.syntax.yaml_tree import YamlDocument, YamlNode
+    from archgen.syntax.yaml_tree import YamlDocument
 
-_SKIPPED_FOLDERS = frozenset({"backends"})
-"""Folders that are not searched for slices unless `sources` names them."""
 PASS_FOLDER = "passes/"  # noqa: S105 - not a password
 """Where a project's own passes stand; a file there whose `rules` are a list is one."""
 _MAX_SECTIONS = 100
 """The first keys of a file without sections that are looked at for misspelt ones: there are 20 sections."""
-_GUESS_BUDGET = 300_000
-"""How many names of files are compared with patterns that match none, so that a million of them take no minutes."""
 _OTHER_FILE_KEYS = frozenset({"archgen", baseline_reading.BASELINE_KEY})
 """Keys of files that are not slices: projects of their own (a packed one, for instance) and baselines."""
 
@@ -41,57 +37,10 @@ _UNMARKING_SECTIONS = frozenset({"frames", "glossary", "libraries", "properties"
 """Sections that other programs' files may have, too: one of these alone makes no slice of a file that nobody names."""
 
 
-@dataclass(slots=True)
-class ReadingState:
-    """What has been read so far; the functions below add to it."""
-
-    files: ProjectFiles
-    sources: SourceTexts = field(default_factory=SourceTexts)
-    documents: list[YamlDocument] = field(default_factory=list)
-    diagnostics: list[Diagnostic] = field(default_factory=list)
-    parsed_slices: ParsedSlices | None = None
-    seen_files: set[str] = field(default_factory=set)
-    broken_files: list[str] = field(default_factory=list)
-    lost_keys: set[str] = field(default_factory=set)
-    """The keys of what was not understood, and the ids that malformed ones may have been meant to be."""
-    partial: bool = False
-    """Whether a whole file or section was not understood."""
-    skipped_folders: frozenset[str] = frozenset()
-    """Folders in the project's own that are libraries: nothing in them is a source."""
-    library_files: list[str] = field(default_factory=list)
-
-    def is_library_file(self, file: str) -> bool:
-        """Whether a file lies in a library inside of the project's folder."""
-        return any(file.startswith(f"{folder}/") for folder in self.skipped_folders)
-
-
-def _parse_file(state: ReadingState, file: str) -> Slice:
-    """Read and parse one file; only its text is recorded, for excerpts."""
-    # A lone surrogate or a line break in a name could not be written to a terminal or a report.
-    if not file.isprintable():
-        message = f"a file's name cannot be read as text: {file!a}"
-        diagnostic = Diagnostic("syntax-error", message, Span.of_file(PROJECT_FILE), help="rename the file")
-        return Slice(file, "", None, (diagnostic,))
-    if is_agreement_file(file) and state.files.is_behind_link(file):
-        # Whoever may write the file that the link leads to would agree for this partner.
-        message = (
-            "a partner's agreements stand behind a symbolic link: whoever may write there could agree for the partner"
-        )
-        diagnostic = Diagnostic("syntax-error", message, Span.of_file(file), help="write them into the file itself")
-        return Slice(file, "", None, (diagnostic,))
-    file_text = read_text_file(state.files, file)
-    state.sources.add_text(file, file_text.text)
-    return (
-        Slice(file, file_text.text, None, (file_text.problem,))
-        if file_text.problem
-        else parse_slice(file, file_text.text, state.parsed_slices)
-    )
-
-
 def read_slice(state: ReadingState, file: str) -> None:
     """Read one file as a slice, whatever it holds."""
     state.seen_files.add(file)
-    _keep_slice(state, _parse_file(state, file))
+    _keep_slice(state, parse_file(state, file))
 
 
 def _keep_slice(state: ReadingState, parsed_slice: Slice) -> None:
@@ -119,7 +68,7 @@ def read_sources(state: ReadingState) -> None:
                     _read_listed_slice(state, file, is_named=isinstance(pattern, ScalarNode) and pattern.text == file)
         _read_agreements(state)
         # Last, when it is known which files no pattern names.
-        _report_missing_sources(state, unmatched_patterns)
+        report_missing_sources(state, unmatched_patterns)
 
 
 def _read_agreements(state: ReadingState) -> None:
@@ -134,7 +83,7 @@ def _read_agreements(state: ReadingState) -> None:
 def _read_listed_slice(state: ReadingState, file: str, *, is_named: bool) -> None:
     """Read a file that `sources` names; one that only a wildcard found is left out if it is no slice."""
     state.seen_files.add(file)
-    parsed_slice = _parse_file(state, file)
+    parsed_slice = parse_file(state, file)
     if is_named or (_OTHER_FILE_KEYS.isdisjoint(parsed_slice.sections) and not _is_pass(parsed_slice)):
         _keep_slice(state, parsed_slice)
 
@@ -149,11 +98,11 @@ def _is_pass(parsed_slice: Slice) -> bool:
 def _read_all_slices(state: ReadingState) -> None:
     """Read every *.yaml below that holds a section, and list those that do not in one note."""
     known_sections, ignored_files = list_sections() - _UNMARKING_SECTIONS, list[tuple[str, str | None]]()
-    for file in file_patterns.expand_pattern(state.files, "**/*.yaml", skipped_folders=_SKIPPED_FOLDERS):
+    for file in file_patterns.expand_pattern(state.files, "**/*.yaml", skipped_folders=SKIPPED_FOLDERS):
         if file in state.seen_files or state.is_library_file(file):
             continue
         state.seen_files.add(file)
-        parsed_slice = _parse_file(state, file)
+        parsed_slice = parse_file(state, file)
         # Tested on the text, since a baseline that a merge broke cannot be parsed.
         if baseline_reading.is_baseline(parsed_slice.text) or _is_pass(parsed_slice):
             continue  # broken or not, it is judged where it is used
@@ -189,9 +138,9 @@ def _read_all_slices(state: ReadingState) -> None:
 def read_library_slices(state: ReadingState, folder: str) -> None:
     """Read every *.yaml of a library that holds a section; what does not is nobody's mistake here."""
     known_sections = list_sections() - _UNMARKING_SECTIONS
-    for file in file_patterns.expand_pattern(state.files, f"{folder}/**/*.yaml", skipped_folders=_SKIPPED_FOLDERS):
+    for file in file_patterns.expand_pattern(state.files, f"{folder}/**/*.yaml", skipped_folders=SKIPPED_FOLDERS):
         state.seen_files.add(file)
-        parsed_slice = _parse_file(state, file)
+        parsed_slice = parse_file(state, file)
         # A library may have an archgen.yaml, so that it can be checked by itself; others are projects of their own.
         is_other_project = file != f"{folder}/{PROJECT_FILE}" and "archgen" in parsed_slice.sections
         if baseline_reading.is_baseline(parsed_slice.text) or is_other_project:
@@ -277,68 +226,3 @@ def _diagnose_ignored_files(ignored_files: list[tuple[str, str | None]]) -> Diag
         guesses[0] if guesses else f"name the project's files in `sources` of {PROJECT_FILE}, and this note goes away"
     )
     return Diagnostic("ignored-file", message, Span.of_file(PROJECT_FILE), help=help_line)
-
-
-def _report_missing_sources(state: ReadingState, patterns: Iterable[ScalarNode]) -> None:
-    """Report patterns that match no file. What is in the files that one most likely means counts as not understood."""
-    candidates: set[str] | None = None
-    guess_count = 0
-    for pattern in patterns:
-        if candidates is None:
-            yaml_files = file_patterns.expand_pattern(state.files, "**/*.yaml", skipped_folders=_SKIPPED_FOLDERS)
-            unread_files = [file for file in yaml_files if file not in state.seen_files]
-            candidates = {*unread_files, *map(_widen_pattern, unread_files)}
-        folder_pattern = f"{pattern.text.rstrip('/')}/*.yaml"
-        guess_count += len(candidates)
-        near_names = candidates if guess_count <= _GUESS_BUDGET else ()
-        guess = folder_pattern if folder_pattern in candidates else find_closest(pattern.text, near_names)
-        meant_files = file_patterns.expand_pattern(state.files, guess) if guess else ()
-        lost_keys = {key for file in meant_files for key in find_written_keys(_parse_file(state, file).text)}
-        if lost_keys.isdisjoint(list_sections()):
-            state.diagnostics.append(_diagnose_missing_source(pattern))
-            continue
-        state.lost_keys.update(lost_keys)
-        state.partial = True
-        state.diagnostics.append(_diagnose_missing_source(pattern, guess))
-
-
-def _widen_pattern(file: str) -> str:
-    """Return the pattern of all files beside a file: `groups/*.yaml` for `groups/sensing.yaml`."""
-    folder, slash, _ = file.rpartition("/")
-    return f"{folder}{slash}*.yaml"
-
-
-def _diagnose_missing_source(pattern: ScalarNode, guess: str | None = None) -> Diagnostic:
-    # With a guess the project's own files are not read: an error, since everything that they declare is missing.
-    return Diagnostic(
-        "missing-source",
-        f"`{pattern.text}` matches no file",
-        pattern.span,
-        severity=Severity.ERROR if guess else None,
-        help=f"did you mean `{guess}`?" if guess else "paths are relative to the folder of archgen.yaml",
-    )
-
-
-def expand_source_pattern(
-    state: ReadingState, pattern: YamlNode, unmatched_patterns: list[ScalarNode] | None = None
-) -> Iterator[str]:
-    """Yield the files that one pattern matches; report a pattern that leaves the project or matches nothing.
-
-    One that matches nothing is added to `unmatched_patterns` instead, if given.
-    """
-    if not isinstance(pattern, ScalarNode):
-        return
-    if not file_patterns.is_inside_project(pattern.text):
-        message = f"`{pattern.text}` leads out of the project's folder"
-        help_line = "write paths relative to the folder of archgen.yaml, with `/`"
-        state.diagnostics.append(Diagnostic("wrong-value", message, pattern.span, help=help_line))
-        return
-    matching_files = file_patterns.expand_pattern(state.files, pattern.text)
-    # A folder is no file; with YAML files in it, these are what is meant.
-    if len(matching_files) == 1 and file_patterns.expand_pattern(state.files, f"{matching_files[0]}/*.yaml"):
-        matching_files = ()
-    if not matching_files and unmatched_patterns is not None:
-        unmatched_patterns.append(pattern)
-    elif not matching_files:
-        state.diagnostics.append(_diagnose_missing_source(pattern))
-    yield from matching_files

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 from archgen.diagnostics.diagnostic import Severity
 from archgen.project.project_loading import LoadedProject, find_severity_setting, read_rule_options
-from archgen.project.source_reading import ReadingState, expand_source_pattern
+from archgen.project.reading_state import ReadingState
+from archgen.project.source_patterns import expand_source_pattern
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
 
 

@@ -73,6 +73,7 @@ def _list_holders(root: MappingNode) -> Iterator[_Holder]:
         holder_id, body, is_group = waiting.popleft()
         if isinstance(body, MappingNode):
             yield _Holder(holder_id, body, is_group)
+            # Listed only now: who got this holder has replaced its lists meanwhile.
             parts = _list_entries(body.get("components"))
             waiting.extend((f"{holder_id}.{entry.key}", entry.value, False) for entry in parts)
 
@@ -176,6 +177,7 @@ def _move_targets(holder: MappingNode, diagnostics: list[Diagnostic]) -> None:
     for component in _list_entries(components):
         outputs = component.value.get("outputs") if isinstance(component.value, MappingNode) else None
         for output in _list_entries(outputs):
+            # Taken out of the output: from here on there is one way to write a connection.
             target_entry = output.value.entries.pop("to", None) if isinstance(output.value, MappingNode) else None
             if target_entry is not None and isinstance(components, MappingNode):
                 node = target_entry.value

@@ -26,7 +26,7 @@ def mend_exchanged_ports(document: YamlDocument) -> Iterator[Diagnostic]:
         for component in _list_entries(_get_child(group.value, "components")):
             body = component.value
             inputs, outputs = _get_child(body, "inputs"), _get_child(body, "outputs")
-            # What holds components gives on what they send: its outputs are references, and its inputs may be types.
+            # What holds components passes on what they send: its outputs are references, and its inputs may be types.
             is_leaf = isinstance(body, MappingNode) and _HOLDING_KEYS.isdisjoint(body.entries)
             if isinstance(body, MappingNode) and is_leaf and _are_references(outputs) and _are_types(inputs):
                 yield _diagnose_exchange(body, f"{group.key}.{component.key}")

@@ -179,16 +179,16 @@ def _list_activity_figures(state: ProjectState, activity: Activity) -> Iterator[
     timing = node.timing.get(activity.component or "", Timing(at=node.at))
     element = f"{node.id}.{activity.component}" if len(node.implements) > 1 and activity.component else node.id
     named = {"element": activity.id, "node": node.id}
-    yield {**named, "set": f"{element}.timing.wcet", "label": "Execution time", "value": _written(timing.wcet)}
+    yield {**named, "set": f"{element}.timing.wcet", "label": "Execution time", "value": _write_value(timing.wcet)}
     if timing.rate is not None or timing.period is not None:
         key = "rate" if timing.rate is not None else "period"
         label = "Rate" if key == "rate" else "Period"
-        yield {**named, "set": f"{element}.timing.{key}", "label": label, "value": _written(getattr(timing, key))}
-    yield {**named, "set": f"{element}.timing.priority", "label": "Priority", "value": _written(timing.priority)}
+        yield {**named, "set": f"{element}.timing.{key}", "label": label, "value": _write_value(getattr(timing, key))}
+    yield {**named, "set": f"{element}.timing.priority", "label": "Priority", "value": _write_value(timing.priority)}
     if node.container is None and len(architecture.hosts) > 1:
         hosts: Mapping[str, str] = {host.id: host.title for host in architecture.hosts.values()}
         yield {**named, "set": f"{node.id}.host", "label": "Host", "value": node.host or "", "options": hosts}
 
 
-def _written(value: object) -> str:
+def _write_value(value: object) -> str:
     return "" if value is None else str(value)

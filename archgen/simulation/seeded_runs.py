@@ -98,13 +98,13 @@ def find_late_runs(
             track.add_run(run)
             through, deadline = deadlines[key]
             figures = track.to_observed(through, plan.unit).bounded_figures
-            late_run = LateRun(seed, seconds, _largest(figures.reaction), _largest(figures.age))
+            late_run = LateRun(seed, seconds, _find_largest(figures.reaction), _find_largest(figures.age))
             if late_run.find_longest(samples_world=track.samples_world) > deadline:
                 late_runs[key] = late_run
     return late_runs
 
 
-def _largest(distribution: DurationDistribution | None) -> Fraction | None:
+def _find_largest(distribution: DurationDistribution | None) -> Fraction | None:
     return distribution.largest if distribution else None
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from random import Random
 
+from archgen.simulation.awaited_data import AwaitedData
 from archgen.simulation.executor_state import (
     CallbackStates,
     ExecutorStates,
@@ -15,7 +16,6 @@ from archgen.simulation.executor_state import (
 )
 from archgen.simulation.run_state import CRITICAL_INTERVAL, ActivityStates, WireStates
 from archgen.simulation.simulation_plan import ONCE, SimulationPlan
-from archgen.simulation.start_up import AwaitedData
 
 JOB_END, SAMPLE_ARRIVAL, ACTIVITY_RELEASE = range(3)
 """The order of events at one moment; two bits of the heap's keys."""

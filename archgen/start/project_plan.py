@@ -10,7 +10,7 @@ from pathlib import Path
 
 from archgen import pipeline
 from archgen.pipeline import CheckedProject
-from archgen.products import code_ownership, editor_schema_file, schema_renewal
+from archgen.products import code_ownership, editor_schema_file, editor_schema_marks
 from archgen.project import PROJECT_FILE
 from archgen.project.project_loading import load_from_files
 from archgen.start import start_templates
@@ -84,7 +84,7 @@ def plan_files(
 
 def _project_files(answers: StartAnswers, checked_project: CheckedProject) -> dict[str, bytes]:
     return {
-        schema_renewal.SCHEMA_FILE: editor_schema_file.render_schema(checked_project),
+        editor_schema_marks.SCHEMA_FILE: editor_schema_file.render_schema(checked_project),
         ".vscode/settings.json": start_templates.read_plain_file("vscode/settings.json"),
         ".vscode/extensions.json": start_templates.read_plain_file("vscode/extensions.json"),
         ".gitignore": start_templates.read_plain_file("gitignore"),

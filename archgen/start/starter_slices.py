@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from archgen.model.review_settings import agreement_file
-from archgen.products.schema_renewal import SCHEMA_FILE
+from archgen.products.editor_schema_marks import SCHEMA_FILE
 from archgen.project import PROJECT_FILE
 from archgen.start import start_templates
 from archgen.start.start_answers import StartAnswers

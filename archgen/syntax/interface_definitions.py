@@ -155,7 +155,7 @@ def explain_bad_name(kind: str, name: str, *, ros1: bool) -> str | None:
     return None if pattern.match(name) else _NAME_HELP[kind, ros1]
 
 
-def parse_definition(text: str, name: str, file: str, *, ros1: bool) -> InterfaceDefinition:
+def parse_interface_definition(text: str, name: str, file: str, *, ros1: bool) -> InterfaceDefinition:
     """Parse the definition of `package/msg/Name` (or srv, action). It never raises; unsound lines are left out."""
     package, kind = name.split("/")[:2]
     reader = _DefinitionReader(file, package, ros1)

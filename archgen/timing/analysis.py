@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
 from archgen.model.declared_timing import ActivityBehaviour, SchedulingOrder
-from archgen.timing.figures.figure_wording import describe_value, format_duration
+from archgen.timing.figures.figure_wording import describe_timing_value, format_duration
 from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
 from archgen.timing.figures.value_arithmetic import is_known_bound
@@ -49,7 +49,7 @@ class Reason:
 def _format_argument(argument: str | int | Fraction | TimingValue) -> str:
     """Format an argument of a sentence: a value is a rate, a Fraction a duration in ns."""
     if isinstance(argument, TimingValue):
-        return describe_value(argument, "Hz")
+        return describe_timing_value(argument, "Hz")
     return format_duration(argument) if isinstance(argument, Fraction) else str(argument)
 
 

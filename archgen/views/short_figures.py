@@ -35,9 +35,9 @@ def round_number(value: Decimal, sign: str = "") -> str:
 def shorten_bounds(text: str) -> str:
     """Return a text whose quantities are upper bounds with three significant digits each; what it says stays true."""
 
-    def shorten_bound(found: re.Match[str]) -> str:
-        number, unit = shorten_quantity(found[1] or "<", found[2], found[3])
-        return f"{found[1] or ''}{number} {unit}"
+    def shorten_bound(match: re.Match[str]) -> str:
+        number, unit = shorten_quantity(match[1] or "<", match[2], match[3])
+        return f"{match[1] or ''}{number} {unit}"
 
     return QUANTITY.sub(shorten_bound, text)
 
@@ -47,7 +47,7 @@ def split_figures(text: str) -> list[tuple[str, str]]:
 
     None has one where two quantities of the text would then read the same: their digits are what it is about.
     """
-    quantities = [(found.span(), *_shorten(found)) for found in QUANTITY.finditer(text)]
+    quantities = [(match.span(), *_shorten(match)) for match in QUANTITY.finditer(text)]
     forms = {whole: short for _, whole, short in quantities}
     if len(set(forms.values())) < len(forms):
         return [(text, "")]
@@ -59,7 +59,7 @@ def split_figures(text: str) -> list[tuple[str, str]]:
     return [*parts, (text[position:], "")]
 
 
-def _shorten(found: re.Match[str]) -> tuple[str, str]:
-    sign = found[1] or ""
-    number, unit = shorten_quantity(sign, found[2], found[3])
-    return found[0], f"{sign}{number} {unit}"
+def _shorten(match: re.Match[str]) -> tuple[str, str]:
+    sign = match[1] or ""
+    number, unit = shorten_quantity(sign, match[2], match[3])
+    return match[0], f"{sign}{number} {unit}"

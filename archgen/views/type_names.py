@@ -7,15 +7,15 @@ from archgen.model.component import Component, ComponentType
 from archgen.views.shapes import Text
 
 
-def find_type(architecture: Architecture, component: Component) -> ComponentType | None:
+def find_component_type(architecture: Architecture, component: Component) -> ComponentType | None:
     """Return the type that a component is made from; None where it is made from none, or from one that is not known."""
     return architecture.component_types.get(component.type_name)
 
 
-def name_type(architecture: Architecture, component: Component) -> str:
+def name_component_type(architecture: Architecture, component: Component) -> str:
     """Return the title of the type that a component is made from: `Filter<Pose>`; empty where it is made from none."""
     expression = component.component_type or ""
-    known_type = find_type(architecture, component)
+    known_type = find_component_type(architecture, component)
     _, bracket, bindings = expression.partition("<")
     return f"{known_type.title}{bracket}{bindings}" if known_type else expression
 
@@ -27,9 +27,9 @@ def type_page_link(component_type: ComponentType) -> Text:
 
 def link_type(architecture: Architecture, component: Component) -> Text:
     """Link to the type that a component is made from, with what its generic names stand for."""
-    known_type = find_type(architecture, component)
+    known_type = find_component_type(architecture, component)
     reference = f"component_type:{known_type.id}" if known_type else None
-    return Text(name_type(architecture, component), ref=reference)
+    return Text(name_component_type(architecture, component), ref=reference)
 
 
 def list_instances(architecture: Architecture, type_id: str) -> list[Component]:

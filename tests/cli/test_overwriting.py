@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.emit.written_formats import name_written_format
+from archgen.emit.own_file_marks import name_written_format
 from tests import repositories
 from tests.cli.conftest import Run
 

@@ -11,7 +11,7 @@ import pytest
 import yaml
 
 from archgen import resources
-from archgen.emit.written_formats import PACKED_HEADER
+from archgen.emit.own_file_marks import PACKED_HEADER
 from tests.cli.conftest import Run
 from tests.running import ROOT
 

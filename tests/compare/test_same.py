@@ -12,6 +12,7 @@ import pytest
 import yaml
 
 from archgen import pipeline
+from archgen.checking.checked_packing import pack_checked_project
 from archgen.compare import ArchitectureVersion, Change, Comparison, compare_versions
 from archgen.products.compared_versions import make_comparison_input
 from archgen.syntax import yaml_writer as writer
@@ -30,7 +31,7 @@ def ramcip() -> ArchitectureVersion:
 
 @pytest.fixture(scope="module")
 def packed() -> dict[str, object]:
-    data: dict[str, object] = judge_ramcip().pack_project().data
+    data: dict[str, object] = pack_checked_project(judge_ramcip()).data
     return data
 
 

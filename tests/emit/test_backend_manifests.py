@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from archgen.emit.backend_manifests import BackendFile, find_backends
+from archgen.emit.manifest_parsing import ManifestError, read_valid_manifest
 
 GOOD = "id: mine\ntitle: Mine\nemitter: text\nview: [record, pages]\nfiles:\n  - {template: a.j2, path: a}\n"
 
@@ -37,6 +38,13 @@ def test_shipped_and_own_backends(tmp_path: Path) -> None:
     assert backends["mine"].views == ("record", "pages")
     assert backends["mine"].files == (BackendFile("a.j2", "a"),)
     assert backends["mine"].name == "backends/mine"
+
+
+def test_the_error_of_a_manifest_that_ships_says_what_is_wrong(tmp_path: Path) -> None:
+    (tmp_path / "backend.yaml").write_text("id: mine\ntitle: Mine\nview: graphs\nfiles: []\n")
+    with pytest.raises(ManifestError) as error:
+        read_valid_manifest(tmp_path, "backends/mine")
+    assert "backends/mine/backend.yaml:1:1: the manifest lacks the key `emitter`" in str(error.value)
 
 
 def test_a_project_without_backends(tmp_path: Path) -> None:

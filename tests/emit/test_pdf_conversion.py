@@ -8,8 +8,8 @@ import shutil
 import pytest
 
 from archgen.emit.docx import write
+from archgen.emit.own_file_marks import name_written_format
 from archgen.emit.pdf_conversion import LibreOfficeError, convert_document, replace_clock
-from archgen.emit.written_formats import name_written_format
 from archgen.views.shapes import Outline, Paragraph, Section, Text
 
 OUTLINE = Outline("Arm", sections=(Section("s", "Reach", (Paragraph((Text("So far."),)),)),))

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from archgen.analyses.size_counts import measure_size
+from archgen.checking.checked_packing import pack_checked_project
 from archgen.compose.project_expansion import expand_project
 from archgen.link import mapping_values
 from archgen.pipeline import CheckedProject, check_project
@@ -70,7 +71,7 @@ def test_each_arm_has_frames_of_its_own(checked: CheckedProject) -> None:
 
 
 def test_the_same_written_out_by_hand_is_more_than_twice_as_long(checked: CheckedProject, tmp_path: Path) -> None:
-    short, long = write_yaml(checked.pack_project().data), write_yaml(write_out(checked))
+    short, long = write_yaml(pack_checked_project(checked).data), write_yaml(write_out(checked))
     file = tmp_path / "written_out.yaml"
     file.write_text(long, encoding="utf-8")
     written_out = check_project(file)

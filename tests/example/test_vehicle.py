@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from archgen.analyses.size_counts import measure_size
+from archgen.checking.checked_packing import pack_checked_project
 from archgen.pipeline import CheckedProject, check_project
 from archgen.syntax.yaml_writer import write_yaml
 from archgen.timing.chains.chain_bounds import bound_all_chains
@@ -120,7 +121,7 @@ def test_the_experiments_speak_of_the_same_messages(projects: dict[str, CheckedP
 @pytest.mark.parametrize("name", EXPERIMENTS)
 def test_the_packed_file_needs_no_library(projects: dict[str, CheckedProject], name: str, tmp_path: Path) -> None:
     file = tmp_path / "packed.yaml"
-    file.write_text(write_yaml(projects[name].pack_project().data), encoding="utf-8")
+    file.write_text(write_yaml(pack_checked_project(projects[name]).data), encoding="utf-8")
     packed = check_project(file)
     assert [str(finding) for finding in packed.findings] == []
     assert packed.architecture.components == projects[name].architecture.components

@@ -8,7 +8,7 @@ import yaml
 
 from archgen.importers.aadl.aadl_import import read_aadl
 from archgen.pipeline import check_project
-from archgen.views.generation.aadl_component_types import find_type
+from archgen.views.generation.aadl_component_types import find_type_of_node
 from tests.generators.test_aadl_devices import write_project
 from tests.importers.aadl.aadl_texts import merge_slices
 
@@ -100,7 +100,7 @@ def test_generic_types_are_written_out(tmp_path: Path) -> None:
         encoding="utf-8",
     )
     architecture = check_project(tmp_path).architecture
-    found = {node.implements[0]: find_type(architecture, node) for node in architecture.nodes.values()}
+    found = {node.implements[0]: find_type_of_node(architecture, node) for node in architecture.nodes.values()}
     assert {name: declared and declared.id for name, declared in found.items()} == {
         "g.a": "plain",
         "g.b": None,

@@ -13,8 +13,8 @@ import pytest
 from archgen.model.message_types import ConceptualType, DataField
 from archgen.pipeline import check_project
 from archgen.views.generation.generation_context import GenerationContext
+from archgen.views.generation.message_envelopes import is_envelope
 from archgen.views.generation.node_programs import make_view
-from archgen.views.generation.program_senders import is_envelope
 from tests.generators.test_ros2_python import AMENT_FLAKE8
 from tests.ros_2_kilted import build_interfaces, kilted_environment, make_kilted_python
 from tests.ros_environment import NEWEST_PYTHON

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from archgen.pipeline import check_project
 from archgen.products.output_options import OutputOptions
 from archgen.products.workspace_product import WorkspaceRequest, write_workspace
-from archgen.syntax.interface_definitions import parse_definition
+from archgen.syntax.interface_definitions import parse_interface_definition
 from archgen.syntax.yaml_writer import write_yaml
 from tests.property_sizes import count_examples
 from tests.running import ROOT, contents
@@ -125,7 +125,7 @@ def _definitions(made: Mapping[str, str]) -> dict[str, str]:
 def test_archgen_reads_back_what_it_knows(made: Mapping[str, str], distro: str, tmp_path: Path) -> None:
     known = check_project(tmp_path).architecture.interfaces.definitions
     for name, text in _definitions(made).items():
-        read = parse_definition(text, name, "x", ros1=distro == "noetic")
+        read = parse_interface_definition(text, name, "x", ros1=distro == "noetic")
         assert read.diagnostics == ()
         for parts, known_parts in zip(read.interface.parts, known[name].parts, strict=True):
             assert [(each.name, each.type, each.array) for each in parts] == [
@@ -197,6 +197,6 @@ def test_whatever_comments_say_the_fields_stay(
     }
     made = generate(tmp_path_factory.mktemp("any"), write_yaml(data))
     ((name, text),) = _definitions(made).items()
-    read = parse_definition(text, name, "x", ros1=False)
+    read = parse_interface_definition(text, name, "x", ros1=False)
     assert read.diagnostics == ()
     assert [(each.name, each.type) for each in read.interface.parts[0]] == [("a", "string"), ("b", "int8")]

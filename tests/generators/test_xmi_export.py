@@ -9,6 +9,7 @@ from xml.etree import ElementTree as ET
 
 import pytest
 
+from archgen.checking.checked_packing import pack_checked_project
 from archgen.importers.xmi import read_xmi
 from archgen.pipeline import CheckedProject, check_project
 from archgen.products.output_options import OutputOptions
@@ -181,8 +182,8 @@ def test_a_selection_has_what_its_components_are_made_from(library: Path) -> Non
 
 def test_types_parameters_and_values_come_back(library: Path, tmp_path: Path) -> None:
     back = import_back(export(check_project(library)), tmp_path / "back")
-    packed = check_project(back).pack_project().data
-    original = check_project(library).pack_project().data
+    packed = pack_checked_project(check_project(back)).data
+    original = pack_checked_project(check_project(library)).data
     types: Any = original["component_types"]
     assert packed["component_types"] == {
         **{name: types[name] for name in ("camera", "viewer", "filter")},

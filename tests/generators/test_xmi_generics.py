@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from archgen.checking.checked_packing import pack_checked_project
 from archgen.pipeline import check_project
 from tests.generators.test_xmi_export import check_model, export, import_back, list_facts, list_names
 from tests.running import archgen_here
@@ -44,7 +45,7 @@ def test_generic_types_go_out_as_templates_and_come_back(tmp_path: Path) -> None
     assert bound <= {*list_names(root, "Class")}
     back = check_project(import_back(text, tmp_path / "back"))
     assert export(back) == text
-    packed, before = back.pack_project().data, original.pack_project().data
+    packed, before = pack_checked_project(back).data, pack_checked_project(original).data
     assert packed["component_types"] == before["component_types"]
     assert packed["types"] == before["types"]
     assert list_facts(back) == list_facts(original)
@@ -55,7 +56,7 @@ def test_what_stands_inside_of_a_type_comes_back_without_an_instance(tmp_path: P
     original = check_project(tmp_path)
     text = export(original)
     back = check_project(import_back(text, tmp_path / "back"))
-    assert back.pack_project().data["component_types"] == original.pack_project().data["component_types"]
+    assert pack_checked_project(back).data["component_types"] == pack_checked_project(original).data["component_types"]
     assert export(back) == text
 
 
@@ -66,7 +67,7 @@ def test_composed_types_of_a_library_keep_what_their_inside_is_made_from(tmp_pat
     project = "project: {id: p}\nsources: []\nlibraries: {lib: lib}\ngroups: {g: {components: {long: {is: lib.chain<Pose>}}}}\n"
     (tmp_path / "archgen.yaml").write_text(project, encoding="utf-8")
     folder = import_back(export(check_project(tmp_path)), tmp_path / "back")
-    chain: Any = check_project(folder).pack_project().data["component_types"]["chain"]  # type: ignore[index]
+    chain: Any = pack_checked_project(check_project(folder)).data["component_types"]["chain"]  # type: ignore[index]
     assert {name: each["is"] for name, each in chain["components"].items()} == {
         "first": "filter<X>",
         "second": "filter<X>",

@@ -51,7 +51,7 @@ def test_a_rate_or_a_period(project: ImportedProject, text: str, unit: str, timi
     ],
 )
 def test_a_message_in_the_spelling_of_any_language(project: ImportedProject, text: str, message: str | None) -> None:
-    assert cell_values.read_message(project, _cell(text)) == message
+    assert cell_values.read_message_cell(project, _cell(text)) == message
     assert len(project.diagnostics) == (message is None)
 
 

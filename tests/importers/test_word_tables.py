@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from archgen.importers.office_files import OfficeFile, UnreadableOfficeFileError
-from archgen.importers.word_tables import read_document
+from archgen.importers.word_tables import read_word_tables
 from tests.workbooks import make_document, zip_parts
 
 
@@ -20,7 +20,7 @@ def _table(*rows: str) -> str:
 def _read(body: str) -> list[list[list[str]]]:
     return [
         [[f"{column}: {cell.text}" for column, cell in row.items()] for row in sheet.rows]
-        for sheet in read_document("d.docx", OfficeFile(make_document(body)))
+        for sheet in read_word_tables("d.docx", OfficeFile(make_document(body)))
     ]
 
 
@@ -61,4 +61,4 @@ def test_a_table_below_another_is_a_table_of_its_own() -> None:
 
 def test_what_is_no_document_says_so() -> None:
     with pytest.raises(UnreadableOfficeFileError, match=r"it is no \.docx"):
-        read_document("d.docx", OfficeFile(zip_parts({"word/document.xml": "<x/>"})))
+        read_word_tables("d.docx", OfficeFile(zip_parts({"word/document.xml": "<x/>"})))

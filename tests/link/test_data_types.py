@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline
+from archgen.checking.checked_packing import pack_checked_project
 from archgen.link.data_types import field_reading, generic_types, message_definitions, message_names, used_types
 from archgen.link.data_types.circular_fields import drop_circular_fields
 from archgen.link.data_types.field_types import FieldTypeReader, TypeSources
@@ -251,12 +252,12 @@ def test_packing_keeps_fields_where_they_are_and_makes_no_definitions_of_them(ch
   Set gain: {request: {gain: float64}, response: {}}
 """
     first = checked(project(types, "Pose", "Mode", "Envelope<Pose>", "Set gain"))
-    packed = first.pack_project()
+    packed = pack_checked_project(first)
     text = write_yaml(packed.data, packed.comments)
     assert packed.data["ros"] == {"distro": "jazzy"}
     (tmp_path / "packed.yaml").write_text(text, encoding="utf-8")
     second = pipeline.check_project(tmp_path / "packed.yaml")
-    again = second.pack_project()
+    again = pack_checked_project(second)
     assert write_yaml(again.data, again.comments) == text
     names = [name for name in first.architecture.interfaces.names if name.startswith("robot_msgs/")]
     assert sorted(names) == [

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from archgen.checking.checked_packing import pack_checked_project
 from archgen.compare import compare_versions
 from archgen.pipeline import CheckedProject, check_project
 from archgen.products.compared_versions import make_comparison_input
@@ -70,11 +71,11 @@ def test_only_what_is_used_is_in_the_model(robot: Path) -> None:
 
 def test_a_packed_file_holds_what_is_used_and_means_the_same(robot: Path) -> None:
     folder = check_project(robot)
-    packed_text = write_yaml(folder.pack_project().data)
+    packed_text = write_yaml(pack_checked_project(folder).data)
     file = robot / "packed.yaml"
     file.write_text(packed_text)
     packed = check_project(file)
-    assert write_yaml(packed.pack_project().data) == packed_text
+    assert write_yaml(pack_checked_project(packed).data) == packed_text
     assert "unused" not in packed_text
     assert "Never" not in packed_text
     assert "path:" not in packed_text

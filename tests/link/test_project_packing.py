@@ -14,6 +14,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from archgen.analyses.size_counts import measure_progress, measure_size
+from archgen.checking.checked_packing import pack_checked_project
 from archgen.pipeline import CheckedProject, check_project
 from archgen.schema.language_schema import load_schema
 from archgen.syntax.yaml_writer import write_yaml
@@ -33,7 +34,7 @@ def project(folder: Path, **files: str | bytes) -> CheckedProject:
 
 def text_of(checked: CheckedProject) -> str:
     """Pack a project."""
-    packed = checked.pack_project()
+    packed = pack_checked_project(checked)
     return write_yaml(packed.data, packed.comments)
 
 

@@ -54,13 +54,13 @@ class _ManyNames(list[str]):
 @pytest.mark.parametrize(("count", "guess"), [(299_999, "camera"), (300_000, "camera"), (300_001, None)])
 def test_names_are_guessed_until_the_budget_is_spent(count: int, guess: str | None) -> None:
     resolver = ReferenceResolver({kind: {} for kind in ("group", "component", "output", "input", "node")}, {}, [])
-    assert resolver.guess_name("camra", _ManyNames(["camera"], count)) == guess
+    assert resolver.guesser.guess_name("camra", _ManyNames(["camera"], count)) == guess
     left = 300_000 - count if guess else 0
-    assert resolver.guess_name("lidr", _ManyNames(["lidar"], left)) == "lidar"
-    assert resolver.guess_name("lidr", ["lidar"]) is None
+    assert resolver.guesser.guess_name("lidr", _ManyNames(["lidar"], left)) == "lidar"
+    assert resolver.guesser.guess_name("lidr", ["lidar"]) is None
 
 
 def test_a_budget_that_is_overdrawn_is_spent() -> None:
     resolver = ReferenceResolver({kind: {} for kind in ("group", "component", "output", "input", "node")}, {}, [])
-    assert resolver.guess_name("camra", _ManyNames(["camera"], 300_001)) is None
-    assert resolver.guess_name("camra", ["camera"]) is None
+    assert resolver.guesser.guess_name("camra", _ManyNames(["camera"], 300_001)) is None
+    assert resolver.guesser.guess_name("camra", ["camera"]) is None

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from archgen import pipeline
+from archgen.checking.checked_packing import pack_checked_project
 from archgen.link import report_front
 from archgen.model.report_settings import HistoryEntry, ReportSettings
 from archgen.products.output_options import OutputOptions
@@ -62,7 +63,7 @@ def test_everything_is_read(tmp_path: Path) -> None:
 
 
 def test_a_packed_project_keeps_it(tmp_path: Path) -> None:
-    packed = _check(tmp_path).pack_project()
+    packed = pack_checked_project(_check(tmp_path))
     again = _check(tmp_path / "packed", yaml_writer.write_yaml(packed.data, packed.comments))
     assert again.chapters.settings == SETTINGS
 

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline
+from archgen.checking.checked_packing import pack_checked_project
 from archgen.pipeline import CheckedProject
 from archgen.syntax.yaml_writer import write_yaml
 from tests.property_sizes import list_seeds
@@ -80,7 +81,7 @@ def test_a_variant_has_the_findings_of_what_is_packed_of_it(tmp_path: Path, seed
     checked = pipeline.check_project(file)
     assert set(checked.variants) == {"first", "second", "third"}
     for name, variant in checked.variants.items():
-        packed = variant.pack_project()
+        packed = pack_checked_project(variant)
         written = tmp_path / f"{name}.yaml"
         written.write_text(write_yaml(packed.data, packed.comments), encoding="utf-8")
         assert count_findings(variant) == count_findings(pipeline.check_project(written)), name

@@ -8,6 +8,7 @@ import pytest
 import yaml
 
 from archgen import pipeline
+from archgen.checking.checked_packing import pack_checked_project
 from archgen.findings.variant_findings import phrase_absence
 from archgen.pipeline import CheckedProject
 from archgen.schema.language_schema import load_schema
@@ -48,7 +49,7 @@ def check(folder: Path, variants: str, robot: str = ROBOT) -> CheckedProject:
 
 def write_packed(checked: CheckedProject) -> str:
     """Return the packed project as text."""
-    packed = checked.pack_project()
+    packed = pack_checked_project(checked)
     return write_yaml(packed.data, packed.comments)
 
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from archgen.git.text_merge import merge_lines
 from archgen.merge.slice_merge import SliceVersions, UnmergedSlice, merge_slices
-from archgen.merge.tree_merge import MergeConflictError, MergedValue, merge_values, read_value
+from archgen.merge.tree_merge import MergeConflictError, MergedValue, merge_values, read_merged_value
 from archgen.syntax import yaml_parser
 from archgen.syntax.yaml_writer import format_flow, write_yaml
 from tests.property_sizes import count_examples
@@ -300,7 +300,7 @@ def test_whatever_is_merged_says_what_both_sides_say(data: st.DataObject) -> Non
         document, _ = yaml_parser.parse_yaml("slice", text)
         if document is None:  # an empty file
             return
-        values.append(read_value(document.root))
+        values.append(read_merged_value(document.root))
     merged = merge_slices(SliceVersions(*texts))
     expected = _merge_or_conflict(*values)
     if not isinstance(merged, str):
@@ -308,7 +308,7 @@ def test_whatever_is_merged_says_what_both_sides_say(data: st.DataObject) -> Non
         return
     document, _ = yaml_parser.parse_yaml("slice", merged)
     assert document is not None
-    assert read_value(document.root) == expected
+    assert read_merged_value(document.root) == expected
 
 
 def _merge_or_conflict(base: MergedValue, ours: MergedValue, theirs: MergedValue) -> MergedValue | UnmergedSlice | None:

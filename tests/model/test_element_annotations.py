@@ -17,7 +17,7 @@ from archgen.model.element_annotations import (
     order_values,
     read_figure,
 )
-from archgen.model.property_conditions import find_component_properties, find_node_properties, parse_condition
+from archgen.model.property_conditions import find_component_properties, find_node_properties, parse_property_condition
 from archgen.model.selector_keys import matches_wildcard
 from tests.compare.test_element_kinds import SCHEMA, SECTIONS
 
@@ -117,14 +117,14 @@ def test_a_range_in_words() -> None:
 )
 def test_conditions(condition: str, names: str) -> None:
     elements = {"a": {"sil": "2", "mass": "5 kg"}, "b": {"sil": "1", "vendor": "Acme"}}
-    parsed = parse_condition(condition)
+    parsed = parse_property_condition(condition)
     assert parsed is not None
     assert " ".join(name for name, each in elements.items() if parsed.is_met(each, matches_wildcard)) == names
 
 
 @pytest.mark.parametrize("text", ["", ">=2", "sil=>", "sil!=2", "sil>=", "Sil", "sil 2"])
 def test_what_is_no_condition(text: str) -> None:
-    assert parse_condition(text) is None
+    assert parse_property_condition(text) is None
 
 
 def test_the_nearest_holder_of_a_property_counts(derived: Derived) -> None:

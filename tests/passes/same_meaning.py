@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from archgen.checking.checked_packing import pack_checked_project
 from archgen.pipeline import CheckedProject, check_project, transform_project
 from archgen.syntax.yaml_writer import write_yaml
 
@@ -29,7 +30,7 @@ def list_places(checked: CheckedProject) -> set[tuple[str, str]]:
 
 def pack(checked: CheckedProject) -> str:
     """Return a packed project."""
-    packed = checked.pack_project()
+    packed = pack_checked_project(checked)
     return write_yaml(packed.data, packed.comments)
 
 

@@ -11,7 +11,8 @@ import pytest
 from archgen.emit.file_tree import OutputError
 from archgen.pipeline import CheckedProject, check_project
 from archgen.products.editor_schema_file import explain_set_up, render_schema, write_schema
-from archgen.products.schema_renewal import SCHEMA_FILE, renew_schema
+from archgen.products.editor_schema_marks import SCHEMA_FILE
+from archgen.products.schema_renewal import renew_schema
 from tests.repositories import git, repository
 
 PROJECT = "archgen: 1\npartners: {lab: Lab}\n"

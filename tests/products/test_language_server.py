@@ -9,7 +9,7 @@ import pytest
 
 from archgen.pipeline import check_project
 from archgen.products.editor_schema_file import render_schema
-from archgen.products.schema_renewal import SCHEMA_FILE
+from archgen.products.editor_schema_marks import SCHEMA_FILE
 from archgen.start import project_plan, starter_slices
 from archgen.start.start_answers import collect_answers
 from tests.products.language_server import LanguageServer, run_language_server

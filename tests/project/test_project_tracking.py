@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from archgen import git, pipeline
+from archgen.checking.checked_packing import pack_checked_project
 from archgen.pipeline import check_at_revision, check_project
 from archgen.project import NotAtRevisionError, ProjectNotFoundError
 from tests.repositories import commit, repository, trap
@@ -30,7 +31,7 @@ def test_the_case_study_is_the_same_from_disk_and_from_a_commit(tmp_path: Path) 
     assert committed.architecture == disk.architecture
     assert said(committed) == said(disk)
     assert committed.yaml_files == disk.yaml_files
-    assert committed.pack_project().data == disk.pack_project().data
+    assert pack_checked_project(committed).data == pack_checked_project(disk).data
     assert committed.root == disk.root
     at = disk.findings[0].span
     assert committed.sources.line_of(at.file, at.line) == disk.sources.line_of(at.file, at.line) is not None

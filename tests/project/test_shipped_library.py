@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline, resources
+from archgen.checking.checked_packing import pack_checked_project
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.source_span import Span
 from archgen.link import mapping_values
@@ -235,7 +236,7 @@ def test_a_packed_file_holds_what_is_used_and_asks_archgen_for_nothing(
     file = tmp_path / "project.yaml"
     file.write_text(SMALL, encoding="utf-8")
     checked_project = pipeline.check_project(file)
-    packed_data = checked_project.pack_project().data
+    packed_data = pack_checked_project(checked_project).data
     assert list(packed_data["libraries"]["ros"]) == ["component_types"]  # type: ignore[index]
     assert list(packed_data["libraries"]["ros"]["component_types"]) == ["map_server"]  # type: ignore[index]
 

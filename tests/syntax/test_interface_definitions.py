@@ -17,14 +17,14 @@ from rosbags.typesys import get_types_from_msg
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.model.known_interfaces import InterfaceConstant, InterfaceField
-from archgen.syntax.interface_definitions import InterfaceDefinition, parse_definition
+from archgen.syntax.interface_definitions import InterfaceDefinition, parse_interface_definition
 
 JUDGES = Path(__file__).resolve().parents[1] / "judges" / "ros_definitions.py"
 Parts = list[list[list[str]]]
 
 
 def read(text: str, kind: str = "msg", *, ros1: bool = False) -> InterfaceDefinition:
-    return parse_definition(text, f"demo_msgs/{kind}/Foo", "Foo", ros1=ros1)
+    return parse_interface_definition(text, f"demo_msgs/{kind}/Foo", "Foo", ros1=ros1)
 
 
 def parts(definition: InterfaceDefinition) -> Parts:
@@ -298,7 +298,7 @@ def test_ros_agrees_on_made_up_definitions() -> None:
     cases = [made_up(source) for _ in range(4000)]
     taken = 0
     for (ros1, name, text), verdict in zip(cases, judged(cases), strict=True):
-        definition = parse_definition(text, name, "Foo", ros1=ros1)
+        definition = parse_interface_definition(text, name, "Foo", ros1=ros1)
         ours = None if definition.diagnostics else parts(definition)
         taken += ours is not None
         if not ros1 or ours is not None:
@@ -360,7 +360,7 @@ float64 wrist
 uint8 LEFT=0   # seen from behind
 # The last word.
 """
-    interface = parse_definition(text, "m/msg/Arm", "Arm.msg", ros1=False).interface
+    interface = parse_interface_definition(text, "m/msg/Arm", "Arm.msg", ros1=False).interface
     assert interface.parts == (
         (
             InterfaceField("elbow", "float64", "", "", "In radians, counted from the stretched arm. positive upwards"),
@@ -373,10 +373,10 @@ uint8 LEFT=0   # seen from behind
 
 def test_constants_and_defaults_are_as_written() -> None:
     text = 'uint8 A=1 # one\nstring B="x # y"\nint32[] c [1, 2]\n---\nuint8 A = 2\n'
-    interface = parse_definition(text, "m/srv/Do", "Do.srv", ros1=False).interface
+    interface = parse_interface_definition(text, "m/srv/Do", "Do.srv", ros1=False).interface
     assert [[(constant.name, constant.value) for constant in part] for part in interface.constants][1] == [("A", "2")]
     assert interface.constants[0][0] == InterfaceConstant("A", "uint8", "1", "one")
     assert interface.parts[0] == (InterfaceField("c", "int32", "[]", "[1, 2]"),)
     # In ROS 1 a text goes on to the end of the line.
-    old = parse_definition("string B=x # y\n", "m/msg/Old", "Old.msg", ros1=True).interface
+    old = parse_interface_definition("string B=x # y\n", "m/msg/Old", "Old.msg", ros1=True).interface
     assert old.constants == ((InterfaceConstant("B", "string", "x # y"),),)

@@ -21,7 +21,7 @@ from archgen.compare.kinds.component_keys import (
 )
 from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec
 from archgen.compare.kinds.port_kinds import INPUT, OUTPUT
-from archgen.compare.kinds.promise_keys import read_port_words
+from archgen.compare.kinds.promise_keys import read_own_output_words
 from archgen.compare.kinds.shared_keys import (
     ANNOTATIONS,
     CO_OWNERS,
@@ -97,7 +97,7 @@ COMPOSED = KindSpec(
         *_PLAIN_KEYS,
         _PERFORMANCE,
         timing_key(read_claimed_timing),
-        KeySpec("outputs.", read_port_words, Effect.SYSTEM),
+        KeySpec("outputs.", read_own_output_words, Effect.SYSTEM),
         *ANNOTATIONS,
     ),
     Effect.SYSTEM,
@@ -110,7 +110,7 @@ COMPOSED = KindSpec(
             lambda _, shell: word_set(shell.title),
             lambda shell: shell.title in {title_from_id(shell.name), shell.name},
         ),
-        # What it holds and gives on. Instances of one type are alike in this: of these the name decides.
+        # What it holds and passes on. Instances of one type are alike in this: of these the name decides.
         FeatureSpec("components", 6, lambda _, shell: frozenset(list_last_names(shell.children))),
         FeatureSpec("ports", 2, mark_ports),
         text_feature(3, "functionality", "description"),

@@ -79,8 +79,8 @@ def deprecation_key(kind: Literal["output", "type", "component_type"]) -> KeySpe
 OUTPUT_KEYS = (PROMISE, VERSION, deprecation_key("output"))
 
 
-def read_port_words(shell: Component, context: ReadContext) -> Mapping[str, object]:
-    """Return what a composed component says itself of its outputs, by `output:key`; what it gives on is told there."""
+def read_own_output_words(shell: Component, context: ReadContext) -> Mapping[str, object]:
+    """Return what a composed component says itself of its outputs, by `output:key`; what it passes on is told there."""
     return {
         f"{output.name}:{key}": value
         for output in shell.outputs.values()
@@ -104,7 +104,7 @@ def read_words(output: Output, context: ReadContext) -> dict[str, object]:
 
 
 def _find_given(architecture: Architecture, output: Output) -> Output | None:
-    """Return the one output that an output of a composed component gives on, None for none and for several."""
+    """Return the one output that an output of a composed component passes on, None for none and for several."""
     targets = architecture.shell_ports.get(f"output {output.id}", ())
     component = architecture.find_component(targets[0].rpartition(".")[0]) if len(targets) == 1 else None
     return component.outputs.get(targets[0].rpartition(".")[2]) if component else None

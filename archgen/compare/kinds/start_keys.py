@@ -7,9 +7,9 @@ from collections.abc import Iterable, Mapping
 from archgen.compare.kinds.kind_spec import Effect, KeySpec, ReadContext
 from archgen.compare.normal_values import unordered_values
 from archgen.derivation import ros_names
+from archgen.model.component_type_patterns import PATTERN_GROUP
 from archgen.model.node import Node
 from archgen.model.start_up import SIGN_KEYS, StartTarget
-from archgen.model.type_patterns import PATTERN_GROUP
 
 START_KEYS = (
     KeySpec("phase", effect=Effect.SYSTEM, noun="start phase"),

@@ -13,7 +13,7 @@ from archgen.compare.losses.loss_wording import tick_name
 from archgen.compare.losses.lost_connections import find_output_causes
 from archgen.model.architecture import Architecture
 from archgen.model.component import Output
-from archgen.model.coordinate_frames import list_children
+from archgen.model.coordinate_frames import index_child_frames
 from archgen.model.graph_search import find_reachable
 from archgen.model.quantity import Quantity, parse_quantity
 from archgen.model.review_settings import BreakCategory
@@ -88,7 +88,7 @@ class _FrameUsers:
         common_id = self._context.matched_ids.common_id
         return {
             common_id("frame", name): [common_id("frame", child.id) for child in children]
-            for name, children in list_children(self._context.before.frames).items()
+            for name, children in index_child_frames(self._context.before.frames).items()
         }
 
     @cached_property

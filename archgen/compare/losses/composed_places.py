@@ -1,4 +1,4 @@
-"""What composed components mean to whom a change breaks: an id below one follows its id, and their ports give on those of
+"""What composed components mean to whom a change breaks: an id below one follows its id, and their ports pass on those of
 the leaves inside.
 """
 
@@ -21,7 +21,7 @@ def find_component_renames(context: ChangeContext, component_id: str) -> list[in
 
 
 def needs_other_id(context: ChangeContext, input_id: str, output_id: str, new_output: str) -> bool:
-    """Whether the file that names an output for an input has to name it otherwise, since nothing gives it on under the
+    """Whether the file that names an output for an input has to name it otherwise, since nothing passes it on under the
     name that stands there.
     """
     if not (context.before.shells or context.after.shells):

@@ -25,13 +25,13 @@ def find_weakened_deadlines(
         if old_result is None or old_result.deadline is None or old_result.deadline.value is None:
             continue
         parts = _parts_by_owner(context, causes, old_result)
-        for indices, reason_text in _weakenings(context, causes, chain_change, old_result.deadline):
+        for indices, reason_text in _find_weakenings(context, causes, chain_change, old_result.deadline):
             if len(parts) > 1 or "" in parts:
                 owned_parts = {owner: names for owner, names in parts.items() if owner}
                 yield from context.shared_losses(indices, owned_parts, reason_text + "; {} on it", "is")
 
 
-def _weakenings(
+def _find_weakenings(
     context: ChangeContext, causes: TimingCauses, chain_change: ChainChange, old_deadline: TimingValue
 ) -> Iterator[tuple[list[int], str]]:
     """Yield what a change of a chain takes from its promise, with the indices of the changes that do so."""

@@ -16,8 +16,8 @@ from archgen.compare.losses.lost_connections import find_output_causes
 from archgen.compare.matched_ids import MatchedIds
 from archgen.model.architecture import Architecture
 from archgen.model.component import Output
-from archgen.model.counted_outputs import list_counted_outputs
 from archgen.model.promise import Deprecation, Promise, format_range
+from archgen.model.relied_outputs import list_relied_outputs
 from archgen.model.review_settings import BreakCategory
 
 
@@ -103,7 +103,7 @@ class _WordComparison:
         return self._outputs_after.get(common_id) or self._outputs_after.get(new_leaf)
 
     def _find_causes(self, leaf: str, new_port: Output, key: str) -> list[int]:
-        """Return the indices of the changes that say it: at the output, at the composed component, or what it gives on."""
+        """Return the indices of the changes that say it: at the output, at the composed component, or what it passes on."""
         context = self._context
         group = key.partition(".")[0]
         shell, _, name = new_port.id.rpartition(".")
@@ -126,7 +126,7 @@ class _WordComparison:
 
 def _index_readings(architecture: Architecture, matched_ids: MatchedIds) -> dict[_Reading, Output]:
     readings: dict[_Reading, Output] = {}
-    for counted in list_counted_outputs(architecture):
+    for counted in list_relied_outputs(architecture):
         if counted.reader.id in architecture.inputs:
             reading = (
                 matched_ids.common_id("input", counted.reader.id),

@@ -11,7 +11,7 @@ from docx.oxml.coreprops import CT_CoreProperties
 from docx.package import Package
 
 from archgen.emit.docx.word_xml import clean_line
-from archgen.emit.written_formats import PROGRAM_NAME, PROGRAM_PART
+from archgen.emit.own_file_marks import PROGRAM_NAME, PROGRAM_PART
 from archgen.views.shapes import Outline
 
 _MAX_LENGTH = 255

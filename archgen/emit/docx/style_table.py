@@ -159,12 +159,12 @@ def _add_style(table: StyleTable, own: etree._Element) -> etree._Element:
     for name in ("basedOn", "next"):
         reference = new.find(qn(f"w:{name}"))
         if reference is not None:
-            _redirect(table, new, reference)
+            _redirect_reference(table, new, reference)
     table.root.append(new)
     return new
 
 
-def _redirect(table: StyleTable, style: etree._Element, reference: etree._Element) -> None:
+def _redirect_reference(table: StyleTable, style: etree._Element, reference: etree._Element) -> None:
     """Let a reference of an added style point at the style that plays the same part in the document."""
     target = reference.get(qn("w:val"), "")
     part = _OWN_IDS.get(target, target)

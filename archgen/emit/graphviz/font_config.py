@@ -31,6 +31,7 @@ def write_font_config(folder: Path) -> Path:
     copy_folder.mkdir(parents=True, exist_ok=True)
     for font in sorted(FONT_FOLDER.glob("*.ttf")):
         font_copy = copy_folder / font.name
+        # Copied again only for another version of archgen: several processes may draw from the folder by then.
         if not font_copy.is_file() or font_copy.stat().st_size != font.stat().st_size:
             shutil.copyfile(font, font_copy)
     file = folder / "fonts.conf"

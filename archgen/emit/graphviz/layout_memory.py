@@ -28,6 +28,7 @@ class LayoutMemory(NamedTuple):
 
     def recall_choice(self, problem: str) -> LayoutCandidate | None:
         """Return what was chosen for a problem before."""
+        # What is not there and what is damaged end alike: `null` is no pair either.
         data = self._store.load(self._name_problem(problem)) if self.folder else None
         try:
             settings, statements = json.loads(data or b"null")

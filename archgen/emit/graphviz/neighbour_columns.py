@@ -24,6 +24,7 @@ def unwrap_tall_columns(styled_graph: StyledGraph) -> StyledGraph:
         boxes = [box for box in styled_graph.graph.boxes if box.side == side and box.style != "port"]
         names = [styled_graph.dot_names[box.id] for box in boxes]
         sizes = measure_nodes([styled_graph.box_attributes[name] for name in names])
+        # From Python 3.12 on `sum` rounds floats otherwise than before: a picture would depend on the version.
         if math.fsum(height + _BOX_GAP for _, height in sizes) > _TALLEST:
             new_attributes |= {
                 name: style_box(box, styled_graph.resolve_link, _TITLE_WIDTH)

@@ -33,6 +33,7 @@ class WrappedRanks:
         for column in self.columns:
             names = [name for row in column for name in row]
             statements.append(f"{{ rank=same; {'; '.join(names)}; }}")
+            # Boxes of one rank stand in any order to dot; invisible arrows keep the upper row above the lower one.
             statements += [
                 f'{above[-1]} -> {below[0]} [style="invis"];' for above, below in pairwise(column) if above and below
             ]
@@ -49,6 +50,7 @@ def wrap_ranks(scene: Scene, names: Sequence[str], row_count: int) -> WrappedRan
     ranks = _read_ranks([(part.x, -part.y, part.name) for part in scene.parts if part.name in names])
     if row_count < 2 or len(ranks) < 2 * row_count:  # noqa: PLR2004 - two rows, each of two ranks or more
         return None
+    # Rounded up: the last row may be shorter, and no row is added.
     width = -(-len(ranks) // row_count)
     columns = [[ranks[at] for at in range(column, len(ranks), width)] for column in range(width)]
     rows = {name: at // width for at, rank in enumerate(ranks) for name in rank}

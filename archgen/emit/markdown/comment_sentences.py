@@ -47,10 +47,10 @@ def write_title(text: str) -> str:
 
 def write_code(text: str) -> str:
     """Return a name or a place as code."""
-    return make_code_span(shorten_name(text))
+    return make_code_span(shorten_sentence_name(text))
 
 
-def shorten_name(text: str) -> str:
+def shorten_sentence_name(text: str) -> str:
     """Return a name that is not escaped yet, no longer than a sentence."""
     return make_visible(text)[:_MAX_SENTENCE]
 

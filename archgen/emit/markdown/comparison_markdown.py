@@ -11,7 +11,13 @@ from collections.abc import Sequence
 from archgen.compare.edits import Edit
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.emit.markdown.comment_sentences import ElementNames, shorten_name, write_code, write_sentence, write_title
+from archgen.emit.markdown.comment_sentences import (
+    ElementNames,
+    shorten_sentence_name,
+    write_code,
+    write_sentence,
+    write_title,
+)
 from archgen.emit.markdown.inert_text import escape_inert, make_code_cell
 from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE, LimitedComment
 from archgen.emit.markdown.mermaid_chart import write_flowchart
@@ -187,7 +193,7 @@ def _add_figures(comment: LimitedComment, heading: str, lines: Sequence[FigureLi
 def _add_chains(comment: LimitedComment, chain_rows: Sequence[ChainRow]) -> None:
     rows = [
         (
-            make_code_cell(shorten_name(row.id)),
+            make_code_cell(shorten_sentence_name(row.id)),
             *(escape_inert(cell) for cell in (row.before, row.after, row.growth, row.deadline)),
             f"**{row.verdict}**" if row.verdict else "",
         )
@@ -197,7 +203,7 @@ def _add_chains(comment: LimitedComment, chain_rows: Sequence[ChainRow]) -> None
         comment.add_block(f"#### {comparison_document.CHAINS_HEADING}")
         comment.add_table(("chain", "before", "after", "difference", "deadline", "verdict"), rows)
     reasons = [
-        f"- {write_code(shorten_name(row.id))} because of {write_sentence(row.reason)}"
+        f"- {write_code(shorten_sentence_name(row.id))} because of {write_sentence(row.reason)}"
         for row in chain_rows
         if row.reason
     ]

@@ -92,10 +92,10 @@ def _attribute_id(type_id: str, name: str) -> str:
 
 
 def _word_id(name: str, word: str) -> str:
-    return f"word-{name}-{_digest(word)}"
+    return f"word-{name}-{_shorten_digest(word)}"
 
 
-def _digest(text: str) -> str:
+def _shorten_digest(text: str) -> str:
     return hashlib.sha256(text.encode("utf-8", "replace")).hexdigest()[:16]
 
 
@@ -112,7 +112,7 @@ def _list_objects(exchange: RequirementExchange, identifiers: Mapping[str, str])
 
 
 def _verifier_id(kind: str, text: str) -> str:
-    return f"usecase-{text}" if kind == "use_case" else f"verification-{_digest(text)}"
+    return f"usecase-{text}" if kind == "use_case" else f"verification-{_shorten_digest(text)}"
 
 
 def _list_requirement(requirement: ExchangedRequirement, identifier: str) -> Iterator[str]:
@@ -169,7 +169,7 @@ def _list_relations(exchange: RequirementExchange, identifiers: Mapping[str, str
             *(("use-case", f"usecase-{name}") for name in requirement.use_cases),
         )
         for relation, target in targets:
-            relation_id = f"relation-{_digest(f'{relation} {requirement.id} {target}')}"
+            relation_id = f"relation-{_shorten_digest(f'{relation} {requirement.id} {target}')}"
             yield f'<SPEC-RELATION IDENTIFIER="{relation_id}" {_CHANGE}>'
             yield f"<TYPE><SPEC-RELATION-TYPE-REF>relation-{relation}</SPEC-RELATION-TYPE-REF></TYPE>"
             yield f"<SOURCE><SPEC-OBJECT-REF>{identifiers[requirement.id]}</SPEC-OBJECT-REF></SOURCE>"

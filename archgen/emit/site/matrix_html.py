@@ -30,7 +30,7 @@ def write_matrix(matrix: Matrix, current_page: CurrentPage) -> str:
     )
     return (
         f'<section class="matrix-view" aria-label="{escape_html(matrix.title)}">\n'
-        f'<div class="matrix-tools"><p class="matrix-summary">{escape_html(_describe(shown, cells))}</p>{files}</div>\n{_write_related(matrix, current_page)}'
+        f'<div class="matrix-tools"><p class="matrix-summary">{escape_html(_describe_matrix(shown, cells))}</p>{files}</div>\n{_write_related(matrix, current_page)}'
         f'<div class="matrix-frame">\n<div class="matrix-box" role="group" tabindex="0" aria-label="{escape_html(matrix.title)}">\n{table}\n</div>\n'
         f"{_write_side(matrix)}\n</div>\n</section>"
         f"{_write_scripts(matrix, current_page) if is_drawable(matrix) else ''}"
@@ -59,7 +59,7 @@ def _is_folded(matrix: Matrix) -> bool:
     return matrix.is_square and len(matrix.groups) > 1 and len(matrix.rows) > MAX_UNFOLDED_ROWS
 
 
-def _describe(matrix: Matrix, cells: Mapping[tuple[int, int], Sequence[MatrixFlow]]) -> str:
+def _describe_matrix(matrix: Matrix, cells: Mapping[tuple[int, int], Sequence[MatrixFlow]]) -> str:
     """Return what a matrix shows on one line: `rows give, columns take; 126 flows between 10 groups, 18 run back`."""
     between = sum(len(flows) for (row, column), flows in cells.items() if not matrix.is_square or row != column)
     words = f"{matrix.giver_word}; {count_noun(between, matrix.flow_word)}"

@@ -52,7 +52,7 @@ def _write_names(rows_by_kind: dict[str, list[_Row]]) -> Iterator[tuple[str, tup
     """Yield the name and the arguments of each part: `title, line, keys` with tabs between, and the addresses."""
     for kind, rows in rows_by_kind.items():
         lines = [
-            ("\t".join(map(_clean, (entry.title, entry.line, " ".join(entry.keys)))), address)
+            ("\t".join(map(_join_lines, (entry.title, entry.line, " ".join(entry.keys)))), address)
             for entry, address in rows
         ]
         for number, part in enumerate(_split_by_size(lines), 1):
@@ -67,7 +67,9 @@ def _write_texts(rows_by_kind: dict[str, list[_Row]]) -> Iterator[tuple[str, tup
     """Yield the name and the arguments of each part with texts: `row text`, by the place of the row in its kind."""
     for kind, rows in rows_by_kind.items():
         lines = [
-            (f"{place}\t{piece}",) for place, (entry, _) in enumerate(rows) for piece in _split_text(_clean(entry.text))
+            (f"{place}\t{piece}",)
+            for place, (entry, _) in enumerate(rows)
+            for piece in _split_text(_join_lines(entry.text))
         ]
         for number, part in enumerate(_split_by_size(lines), 1):
             yield f"{_file_stem(kind)}-text-{number}", ("texts", kind, "\n".join(line for (line,) in part))
@@ -111,14 +113,14 @@ def _choose_examples(rows: Iterable[_Row]) -> list[str]:
     """Return the first selector of each sort that finds something here."""
     keys = [key for entry, _ in rows for key in entry.keys if key.startswith(_EXAMPLE_PREFIXES)]
     firsts = (next((key for key in keys if key.startswith(prefix)), None) for prefix in _EXAMPLE_PREFIXES)
-    return [_clean(key) for key in firsts if key]
+    return [_join_lines(key) for key in firsts if key]
 
 
 def _file_stem(kind: str) -> str:
     return kind.replace(" ", "-")
 
 
-def _clean(text: str) -> str:
+def _join_lines(text: str) -> str:
     """Return a text on one line: lines and tabs separate entries and their fields."""
     return " ".join(replace_forbidden(text).split())
 

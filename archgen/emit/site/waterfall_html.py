@@ -81,7 +81,7 @@ def _write_label(position: float, text: str, kind: str = "") -> str:
     return f'<text{class_attribute} x="{_percent(position)}" y="43" text-anchor="{anchor}">{escape_html(text)}</text>'
 
 
-def _fill(kind: str) -> str:
+def _fill_attribute(kind: str) -> str:
     return f' fill="url(#{HATCH_ID})"' if kind == "unknown" else ""
 
 
@@ -89,7 +89,7 @@ def _write_piece(piece: WaterfallPiece, top: int, height: int) -> str:
     tip = f"<title>{escape_html(shorten_figures(piece.tip))}</title>" if piece.tip else ""
     length = max(piece.end - piece.start, 0.002)
     html = (
-        f'<rect class="{piece.kind}" x="{_percent(piece.start)}" width="{_percent(length)}" y="{top}" height="{height}"{_fill(piece.kind)}>'
+        f'<rect class="{piece.kind}" x="{_percent(piece.start)}" width="{_percent(length)}" y="{top}" height="{height}"{_fill_attribute(piece.kind)}>'
         f"{tip}</rect>"
     )
     if piece.is_cut:
@@ -108,7 +108,7 @@ def _write_legend(waterfall: Waterfall) -> str:
     kinds = {piece.kind for pieces in (waterfall.total, *(step.pieces for step in waterfall.steps)) for piece in pieces}
     return "".join(
         [
-            f'<span><svg width="16" height="10"><rect class="{kind}" width="16" height="10"{_fill(kind)}/></svg> {escape_html(words)}</span>'
+            f'<span><svg width="16" height="10"><rect class="{kind}" width="16" height="10"{_fill_attribute(kind)}/></svg> {escape_html(words)}</span>'
             for kind, words in waterfall.legend
             if kind in kinds
         ]

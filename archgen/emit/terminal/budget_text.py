@@ -9,7 +9,7 @@ from typing import Any
 from archgen.diagnostics.text_columns import TextRow, align_rows
 from archgen.emit.data import timing_json
 from archgen.emit.terminal.chain_remedies import describe_slack
-from archgen.emit.terminal.timing_text import format_figure
+from archgen.emit.terminal.figure_text import format_figure
 from archgen.timing.analysis import ChainResult
 from archgen.timing.chains.chain_verdicts import VERDICT_WORDS
 from archgen.timing.figures import figure_wording
@@ -52,7 +52,7 @@ def sort_shares(shares: tuple[PartnerShare, ...]) -> list[PartnerShare]:
 
 
 def _figure_row(budget: FigureBudget) -> TextRow:
-    largest = "any" if budget.is_free else "none keeps it" if budget.largest is None else _write(budget.largest)
+    largest = "any" if budget.is_free else "none keeps it" if budget.largest is None else _write_share(budget.largest)
     written = figure_wording.format_duration(budget.written)
     return budget.activity, _FIGURE_WORDS[budget.key], written, largest
 
@@ -66,11 +66,11 @@ def _describe_factor(budget: FactorBudget) -> str:
 
 def _share_row(share: PartnerShare, partner_titles: Mapping[str, str]) -> TextRow:
     owners = ", ".join(partner_titles.get(owner, owner) for owner in share.owners) or "nobody"
-    may_take = _write(share.may_take) if share.key == "wcet" else f"{_write(share.may_take)} (response)"
-    return owners, share.activity, _write(share.written), may_take, "" if share.on_chain else "beside the chain"
+    may_take = _write_share(share.may_take) if share.key == "wcet" else f"{_write_share(share.may_take)} (response)"
+    return owners, share.activity, _write_share(share.written), may_take, "" if share.on_chain else "beside the chain"
 
 
-def _write(duration: Fraction) -> str:
+def _write_share(duration: Fraction) -> str:
     """Write a duration exactly: as it is printed it can be set, and still keeps the deadline."""
     return figure_wording.write_exact_duration(duration)
 

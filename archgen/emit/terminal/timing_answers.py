@@ -8,10 +8,11 @@ from typing import Any
 
 from archgen.diagnostics.common_wording import format_transition
 from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.text_columns import TextRow, align_rows
 from archgen.emit.data import timing_json
 from archgen.emit.terminal.chain_gaps import describe_gaps
-from archgen.emit.terminal.timing_text import format_figure
+from archgen.emit.terminal.figure_text import format_figure
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.chain_sensitivity import ChainSensitivity, UnknownFigure
 from archgen.timing.chains.working_lines import ReasonLine
@@ -132,7 +133,7 @@ def format_sensitivity(
     if ranking.gains:
         yield "Improved by 10 %, each figure takes off"
         rows = (
-            (figure_wording.format_duration(gain.gain), gain.figure, f"now {gain.written}", _span_text(gain.at))
+            (figure_wording.format_duration(gain.gain), gain.figure, f"now {gain.written}", _format_span(gain.at))
             for gain in ranking.gains
         )
         yield from align_rows(rows, width)
@@ -160,8 +161,8 @@ def _format_lack(gap: UnknownFigure) -> str:
     return f"a link between {first} and {second}" if is_pair else f"{gap.what} of {gap.element}"
 
 
-def _span_text(span: object) -> str:
-    return str(span) if getattr(span, "file", "") else ""
+def _format_span(span: Span) -> str:
+    return str(span) if span.file else ""
 
 
 def sensitivity_to_json(chain: ChainResult, ranking: ChainSensitivity) -> AnswerJson:
@@ -175,7 +176,7 @@ def sensitivity_to_json(chain: ChainResult, ranking: ChainSensitivity) -> Answer
                 "figure": gain.figure,
                 "written": gain.written,
                 "gain": float(gain.gain / 10**6),
-                "at": _span_text(gain.at) or None,
+                "at": _format_span(gain.at) or None,
             }
             for gain in ranking.gains
         ],

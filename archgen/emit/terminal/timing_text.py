@@ -1,24 +1,23 @@
-"""Timing for people: a summary for the terminal, chains term by term, ways between two elements."""
+"""Timing for people: the summary for the terminal."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 
 from archgen.diagnostics.text_columns import TextRow, align_rows
 from archgen.emit.terminal import chain_remedies, timing_legend
 from archgen.emit.terminal.chain_gaps import describe_gaps
+from archgen.emit.terminal.figure_text import format_figure, format_missing
 from archgen.simulation.chain_evidence import NO_EVIDENCE, ChainEvidence
-from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, HostLoad
+from archgen.timing.analysis import Analysis, ChainResult, HostLoad
 from archgen.timing.chains.chain_advice import advise_on_chain
-from archgen.timing.chains.chain_bounds import BoundedPath
 from archgen.timing.chains.chain_verdicts import VERDICT_WORDS
 from archgen.timing.chains.figure_explanations import describe_behaviour
 from archgen.timing.chains.fused_inputs import find_fused_inputs
 from archgen.timing.chains.loop_rounds import LoopRound
 from archgen.timing.figures import figure_wording
-from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.figures.value_arithmetic import NO_MATCH_NOTE, is_unfound, list_assumptions
+from archgen.timing.figures.value_arithmetic import NO_MATCH_NOTE, is_unfound
 from archgen.timing.load.host_verdicts import is_done_in_time
 from archgen.timing.system.thread_pools import find_joint_nodes
 
@@ -245,111 +244,3 @@ def _fault_lines(analysis: Analysis) -> Iterator[str]:
         yield f"deadlock: each waits for the other in {' > '.join(ring)}"
     if analysis.diverged:
         yield f"no bound was found for {figure_wording.join_first_names(analysis.diverged)}"
-
-
-def format_chain(  # noqa: PLR0913, PLR0917 - what is shown of one chain
-    result: ChainResult,
-    analysis: Analysis,
-    age: TimingValue,
-    published: tuple[Fraction, Fraction] | None = None,
-    width: int | None = None,
-    evidence: ChainEvidence = NO_EVIDENCE,
-) -> Iterator[str]:
-    """Yield a chain term by term, with the reason and the place of each; `age` is its largest data age."""
-    yield f"{result.id}: {' > '.join(result.through)}"
-    if result.terms:
-        yield from align_rows(_term_rows(result.terms), width)
-        yield ""
-    rows: list[TextRow] = [
-        (
-            "largest reaction time = largest data age",
-            format_figure(result.bound),
-            describe_gaps(result, analysis) or "hold it against the deadline",
-        )
-    ]
-    if age != result.bound:
-        rows = [
-            (
-                "largest reaction time, from the event on",
-                format_figure(result.bound),
-                describe_gaps(result, analysis) or "hold it against the deadline",
-            ),
-            ("largest data age, until the next event's comes", format_figure(age), format_missing(age)),
-        ]
-    rows += [
-        (
-            "reduced reaction time (from the first sample on)",
-            format_figure(result.reduced_reaction),
-            "hold it against a stopwatch, or a trace that begins with the sample",
-        ),
-        (
-            "reduced data age (when the last element sends)",
-            format_figure(result.reduced_age),
-            "hold it against the age of the stamps in what the last element sends",
-        ),
-        ("best case", format_figure(result.best), "the shortest time that a trace may show"),
-    ]
-    if result.spread is not None:
-        spread = figure_wording.format_duration(result.spread)
-        rows.append(("best to worst", spread, "how much the end of the chain may jitter (actuation jitter)"))
-    if published:
-        rows.append(
-            (
-                "with priorities and implicit communication (Duerr): reaction",
-                figure_wording.format_duration(published[0]),
-                "",
-            )
-        )
-        rows.append(("    reduced data age", figure_wording.format_duration(published[1]), ""))
-    if result.deadline:
-        verdict_text = ", ".join(filter(None, (VERDICT_WORDS[result.verdict], chain_remedies.describe_slack(result))))
-        rows.append(("deadline", format_figure(result.deadline), verdict_text))
-    yield from align_rows(rows, width)
-    if result.id in evidence.witnesses:
-        yield f"  {chain_remedies.describe_witness(result.id, evidence.witnesses[result.id])}"
-    advice, remedy = advise_on_chain(analysis, result), evidence.remedies.get(result.id)
-    if advice is not None:
-        yield ""
-        yield from (f"  {sentence}" for sentence in chain_remedies.replace_advice(advice, remedy) if sentence)
-    if remedy is not None and (advice is None or not remedy.changes):
-        yield f"  what would prove it: {', '.join(chain_remedies.describe_chain_remedy(remedy))}"
-    for assumption in list_assumptions(result.bound) if result.terms else ():
-        yield f"  assumes: {assumption}"
-
-
-def _term_rows(terms: Iterable[ChainTerm]) -> Iterator[TextRow]:
-    yield "element", "link", "waits", "response", "why"
-    for term in terms:
-        place = f" ({term.at})" if term.at.file else ""
-        link = format_figure(term.link) if term.link.value != 0 else "-"
-        yield term.activity, link, format_figure(term.sampling), format_figure(term.response), f"{term.why}{place}"
-
-
-def format_ways(
-    source: str, target: str, count: int, worst: Iterable[BoundedPath], best: Iterable[BoundedPath]
-) -> Iterator[str]:
-    """Yield the ways between two elements."""
-    yield f"{source} to {target}: {count} way{'s' if count != 1 else ''}"
-    if not count:
-        yield "  nothing that leaves the first reaches the second; ask the other way round?"
-    for title, listed_ways in (("worst", worst), ("best case", best)):
-        for number, way in enumerate(listed_ways, 1):
-            yield f"  {title} {number}: {format_figure(way.bound)}   {' > '.join(way.through)}"
-            if not way.bound.complete:
-                yield f"      no bound: {format_missing(way.bound)}"
-
-
-def format_missing(value: TimingValue) -> str:
-    """Return which elements' figures a value lacks."""
-    return f"unknown: {figure_wording.join_first_names(value.missing)}" if value.missing and not value.complete else ""
-
-
-def format_figure(value: TimingValue | None, write: Callable[[Fraction], str] = figure_wording.format_duration) -> str:
-    """Format a value: `202 ms`, `>= 468 ms`, `unknown`, `unbounded (overload)`."""
-    if value is None:
-        return ""
-    if value.value is None:
-        reason = figure_wording.name_unknown_reason(value)
-        return f"unbounded ({reason})" if reason == "overload" else reason
-    sign = "" if value.complete else {"at least": ">= ", "at most": "<= "}.get(value.side, ">= ")
-    return sign + write(value.value)

@@ -30,7 +30,7 @@ class GeneratedFile:
     """Where the element stands that it is made for, such as `archgen.yaml:12:3`; empty where there is none."""
 
 
-def fold_path(path: str) -> str:
+def fold_file_path(path: str) -> str:
     """Return a path as file systems compare it that ignore case, or write letters and accents apart."""
     return unicodedata.normalize("NFC", unicodedata.normalize("NFC", path).casefold())
 
@@ -44,7 +44,7 @@ def find_path_problems(files: Iterable[GeneratedFile]) -> Iterator[str]:
         if refusal:
             yield f"{_name_file(file)} {refusal}"
             continue
-        fold = fold_path(file.path)
+        fold = fold_file_path(file.path)
         other = files_by_fold.get(fold) or folders_by_fold.get(fold)
         for parent in _list_parents(fold):
             other = other or files_by_fold.get(parent)
@@ -63,7 +63,7 @@ def explain_bad_path(path: str) -> str:
     parts = path.split("/")
     if any(len(part.encode("utf-8", "surrogatepass")) > _MAX_PART_BYTES for part in parts):
         return f"has a part of more than {_MAX_PART_BYTES} bytes"
-    folded_parts = [fold_path(part) for part in parts]
+    folded_parts = [fold_file_path(part) for part in parts]
     if any(part in _TOOL_FOLDERS or part.startswith("git~") for part in folded_parts):
         return "leads into a folder of another tool"
     return ""

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from archgen.emit.file_tree import OutputError
-from archgen.emit.workspace.generated_file import explain_bad_path, fold_path
+from archgen.emit.workspace.generated_file import explain_bad_path, fold_file_path
 
 RECORD_FOLDER = ".archgen"
 _FORMAT = 1
@@ -55,14 +55,14 @@ def read_run_record(workspace: Path, backend: str) -> RunRecord:
     if not os.path.lexists(path):
         return RunRecord(backend)
     if path.is_symlink() or not path.is_file() or path.stat().st_size > _MAX_RECORD_BYTES:
-        raise _refuse(path, "it is no plain file")
+        raise _explain_bad_record(path, "it is no plain file")
     try:
         data = json.loads(path.read_bytes())
         if data["archgen"] != _FORMAT:
-            raise _refuse(path, "another version of archgen wrote it")
+            raise _explain_bad_record(path, "another version of archgen wrote it")
         files = {str(name): _read_file(name, entry) for name, entry in data["files"].items()}
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        raise _refuse(path, "it is damaged") from None
+        raise _explain_bad_record(path, "it is damaged") from None
     return RunRecord(backend, files)
 
 
@@ -71,7 +71,10 @@ def read_other_records(workspace: Path, backend: str) -> Mapping[str, str]:
     folder = workspace / RECORD_FOLDER
     names = sorted(path.stem for path in folder.glob("*.json")) if folder.is_dir() else []
     return {
-        fold_path(path): name for name in names if name != backend for path in read_run_record(workspace, name).files
+        fold_file_path(path): name
+        for name in names
+        if name != backend
+        for path in read_run_record(workspace, name).files
     }
 
 
@@ -109,7 +112,7 @@ def _write_file(file: RecordedFile) -> dict[str, object]:
     return entry
 
 
-def _refuse(path: Path, reason: str) -> OutputError:
+def _explain_bad_record(path: Path, reason: str) -> OutputError:
     return OutputError(
         f"{path} does not say what archgen wrote: {reason}",
         "take it from the version control again, or remove it: files that are as archgen would write them are then known again",

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from archgen.emit.workspace.disk_files import DiskFile, DiskReader
-from archgen.emit.workspace.generated_file import GeneratedFile, fold_path
+from archgen.emit.workspace.generated_file import GeneratedFile, fold_file_path
 from archgen.emit.workspace.run_record import RecordedFile, RunRecord
 
 FileVerb = Literal["new", "changed", "same", "removed", "yours", "left", "edited", "foreign", "blocked"]
@@ -103,7 +103,7 @@ class _Planner:
     def __post_init__(self) -> None:
         for path, entry in self.old_record.files.items():
             # By folded path: where case is ignored, `Node.py` is what stands at `node.py`.
-            self.known_digests[fold_path(path)] |= set() if entry.is_own else entry.digests
+            self.known_digests[fold_file_path(path)] |= set() if entry.is_own else entry.digests
 
     def plan_unwanted(self, path: str, entry: RecordedFile) -> None:
         """Plan what happens to a file that this run does not make."""
@@ -142,7 +142,7 @@ class _Planner:
             self._keep_own(file, entry, digest, "")
         elif on_disk.digest == digest:
             self._keep_same(file, entry, digest, on_disk)
-        elif on_disk.digest in self.known_digests[fold_path(file.path)] or (
+        elif on_disk.digest in self.known_digests[fold_file_path(file.path)] or (
             entry and file.path in self.choices.overwritten
         ):
             self._write(file, entry, digest, on_disk, "changed")

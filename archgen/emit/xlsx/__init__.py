@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Any
 
-from archgen.emit.written_formats import PROGRAM_NAME, PROGRAM_PART
+from archgen.emit.own_file_marks import PROGRAM_NAME, PROGRAM_PART
 from archgen.views.shapes import Facts, Inlines, Outline, Section, Table
 
 _MAX_NAME = 31
@@ -54,7 +54,7 @@ def write_workbook(outline: Outline) -> bytes:
     # Text that begins with = + - or @ is text: from a stranger's project it must never run as a formula.
     options = {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False, "strings_to_numbers": False}
     workbook = xlsxwriter.Workbook(stream, options)
-    workbook.set_properties({"title": _clean(outline.title), "created": datetime(*_STAMP[:3])})  # noqa: DTZ001 - no clock
+    workbook.set_properties({"title": _replace_forbidden(outline.title), "created": datetime(*_STAMP[:3])})  # noqa: DTZ001 - no clock
     names: set[str] = set()
     for content in collect_sheets(outline):
         _write_sheet(workbook, content, _name_sheet(content.title, names))
@@ -101,7 +101,7 @@ def _write_sheet(workbook: Any, content: SheetContent, name: str) -> None:  # no
     wrapped = workbook.add_format({"text_wrap": True, "valign": "top"})
     for at, (title, is_number) in enumerate(content.columns.items()):
         texts = [_join_text(row.get(title, "")) for row in content.rows]
-        sheet.write_string(0, at, _clean(title), heading)
+        sheet.write_string(0, at, _replace_forbidden(title), heading)
         for line, text in enumerate(texts, start=1):
             if is_number and _NUMBER.fullmatch(text):
                 sheet.write_number(line, at, float(text), wrapped)
@@ -117,17 +117,17 @@ def _join_text(cell: Inlines | str) -> str:
     text = (
         cell if isinstance(cell, str) else "".join(f"\n{part.text}" if part.line_break else part.text for part in cell)
     )
-    return _clean(text)[:_MAX_CELL]
+    return _replace_forbidden(text)[:_MAX_CELL]
 
 
-def _clean(text: str) -> str:
+def _replace_forbidden(text: str) -> str:
     """Return text with a visible sign for each character that XML cannot hold."""
     return _FORBIDDEN_TEXT.sub("\ufffd", text)
 
 
 def _name_sheet(title: str, names: set[str]) -> str:
     """Return a name for a sheet that Excel allows and that no other has, whatever the case of its letters."""
-    base = _FORBIDDEN_NAME.sub(" ", _clean(title)).strip("' ")[:_MAX_NAME] or "Table"
+    base = _FORBIDDEN_NAME.sub(" ", _replace_forbidden(title)).strip("' ")[:_MAX_NAME] or "Table"
     name, number = base, 1
     while name.casefold() in names:
         number += 1

@@ -8,21 +8,21 @@ from pathlib import Path
 from typing import Any
 
 from archgen.diagnostics.source_span import Span
+from archgen.importers.aadl.aadl_data_types import AadlDataTypes
 from archgen.importers.aadl.aadl_tokens import MAX_TOKENS, AadlText, TooManyTokensError
 from archgen.importers.aadl.archgen_words import find_own_text
 from archgen.importers.aadl.chain_mapping import ChainMapper
 from archgen.importers.aadl.classifier_names import ClassifierNames
 from archgen.importers.aadl.component_bodies import Body, ComponentBuilder, TooManyPartsError, map_node_ports
-from archgen.importers.aadl.data_types import DataTypes
 from archgen.importers.aadl.hardware_mapping import HardwareMapper
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.model_roots import ModelRoots
 from archgen.importers.aadl.package_parsing import ParsedText, parse_text
 from archgen.importers.aadl.port_mapping import PortMapper
-from archgen.importers.aadl.property_values import Scope, UsedProperties
+from archgen.importers.aadl.property_values import PropertyScope, UsedProperties
 from archgen.importers.aadl.resolved_classifiers import ClassifierResolver
 from archgen.importers.aadl.robot_groups import GroupBuilder
-from archgen.importers.aadl.structures import Structure, StructureFinder
+from archgen.importers.aadl.structures import ClassifierStructure, StructureFinder
 from archgen.importers.aadl.system_walk import MAX_INSTANCES, NodeWriter, TooManyInstancesError, find_instances
 from archgen.importers.aadl.untaken_notes import tell_untaken
 from archgen.importers.foreign.bounded_files import read_bounded
@@ -47,7 +47,7 @@ def read_aadl(files: Sequence[Path]) -> ForeignImport:
 
 
 def _read_file(file: Path, notes: NoteList, max_tokens: int) -> ParsedText:
-    text = _decode(str(file), read_bounded(file), notes)
+    text = _decode_text(str(file), read_bounded(file), notes)
     try:
         parsed = parse_text(str(file), text, max_tokens)
     except TooManyTokensError as error:
@@ -70,7 +70,7 @@ def _read_file(file: Path, notes: NoteList, max_tokens: int) -> ParsedText:
     return parsed
 
 
-def _decode(file: str, data: bytes, notes: NoteList) -> str:
+def _decode_text(file: str, data: bytes, notes: NoteList) -> str:
     """Return the text of a file. Raise ForeignFileError for what is no text."""
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         encoding = "utf-16"
@@ -99,7 +99,7 @@ class _ModelImport:
     def __init__(self, names: ClassifierNames, notes: NoteList) -> None:
         self._names, self._notes, self._used = names, notes, UsedProperties()
         self._resolver = ClassifierResolver(names, notes)
-        self._types = DataTypes(self._resolver, notes, self._used)
+        self._types = AadlDataTypes(self._resolver, notes, self._used)
         mapper = PortMapper(self._resolver, self._types, self._used, notes)
         self._finder = StructureFinder(self._resolver, mapper, self._used, notes)
 
@@ -158,8 +158,8 @@ class _ModelImport:
             distro,
         )
 
-    def _build_type(self, structure: Structure, builder: ComponentBuilder) -> Body:
-        scope = Scope(self._resolver, self._used, structure.resolved)
+    def _build_type(self, structure: ClassifierStructure, builder: ComponentBuilder) -> Body:
+        scope = PropertyScope(self._resolver, self._used, structure.resolved)
         body = builder.build_body(structure, scope)
         if structure.is_node:
             node = map_node_ports(structure, scope, is_type=True)
@@ -203,7 +203,7 @@ def _subtract_base(body: Body, base_id: str, component_types: Mapping[str, Body]
     if _adds_inside(body, base):
         # A part was refined to one that has more: what is made from a type adds nothing inside of its parts.
         return body
-    return {"is": base_id, **_subtract(body, base)}
+    return {"is": base_id, **_subtract_body(body, base)}
 
 
 def _adds_inside(body: Body, base: Body) -> bool:
@@ -237,13 +237,13 @@ def _add_over(base: Body, body: Body) -> Body:
     return merged
 
 
-def _subtract(body: Body, base: Body) -> Body:
+def _subtract_body(body: Body, base: Body) -> Body:
     left: Body = {}
     for key, value in body.items():
         if key not in base:
             left[key] = value
         elif isinstance(value, dict) and isinstance(base[key], dict):
-            if inner := _subtract(value, base[key]):
+            if inner := _subtract_body(value, base[key]):
                 left[key] = inner
         elif value != base[key]:
             left[key] = value

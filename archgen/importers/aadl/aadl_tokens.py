@@ -101,6 +101,6 @@ def scan_tokens(text: str, max_tokens: int = MAX_TOKENS) -> Iterator[Token]:
         yield Token(END, "", size, "")
 
 
-def read_text(token: Token) -> str:
+def unquote_text(token: Token) -> str:
     """Return what a token of kind text says, without its quotes."""
     return token.text[1:-1].replace('""', '"').replace('\\"', '"')

@@ -31,7 +31,7 @@ class AadlRange:
 
 
 @dataclass(slots=True)
-class AadlText:
+class AadlString:
     """A text in quotes."""
 
     text: str
@@ -66,11 +66,11 @@ class AadlLink:
     path: Path
 
 
-AadlValue = AadlNumber | AadlRange | AadlText | AadlName | AadlRecord | AadlList | AadlLink
+AadlValue = AadlNumber | AadlRange | AadlString | AadlName | AadlRecord | AadlList | AadlLink
 
 
 @dataclass(slots=True)
-class Property:
+class AadlProperty:
     """A property association; `paths` is what it applies to, empty where that is what it stands in."""
 
     name: str
@@ -81,12 +81,12 @@ class Property:
     modes: Modes = ()
     other_values: tuple[tuple[AadlValue, Modes], ...] = ()
     """Further values, with the modes in which they count."""
-    made_from: tuple[Property, ...] = ()
+    made_from: tuple[AadlProperty, ...] = ()
     """The associations that it was put together from: what its list goes on behind, or the one with all values."""
 
 
 @dataclass(slots=True)
-class Feature:
+class AadlFeature:
     """A feature; `kind` is `data port`, `event data port`, `event port`, `data access`, `feature group`, ..."""
 
     name: str
@@ -98,16 +98,16 @@ class Feature:
     inverse: bool = False
     refined: bool = False
     dimensions: tuple[str, ...] = ()
-    properties: list[Property] = field(default_factory=list)
+    properties: list[AadlProperty] = field(default_factory=list)
 
 
 @dataclass(slots=True)
-class Binding:
+class PrototypeBinding:
     """What a prototype stands for: a category and a classifier with bindings of its own."""
 
     category: str
     classifier: str
-    bindings: dict[str, Binding] = field(default_factory=dict)
+    bindings: dict[str, PrototypeBinding] = field(default_factory=dict)
 
 
 @dataclass(slots=True)
@@ -128,15 +128,15 @@ class Subcomponent:
     category: str
     span: Span
     classifier: str = ""
-    bindings: dict[str, Binding] = field(default_factory=dict)
+    bindings: dict[str, PrototypeBinding] = field(default_factory=dict)
     refined: bool = False
     dimensions: tuple[str, ...] = ()
     modes: Modes = ()
-    properties: list[Property] = field(default_factory=list)
+    properties: list[AadlProperty] = field(default_factory=list)
 
 
 @dataclass(slots=True)
-class Connection:
+class AadlConnection:
     """A connection; one that refines another may have no ends."""
 
     name: str
@@ -146,12 +146,12 @@ class Connection:
     span: Span
     both_ways: bool = False
     refined: bool = False
-    properties: list[Property] = field(default_factory=list)
+    properties: list[AadlProperty] = field(default_factory=list)
     modes: Modes = ()
 
 
 @dataclass(slots=True)
-class Flow:
+class AadlFlow:
     """A flow: `kind` is source, sink, path or `end to end`; `steps` are the features, or subcomponents and connections."""
 
     name: str
@@ -159,7 +159,7 @@ class Flow:
     steps: tuple[Path, ...]
     span: Span
     refined: bool = False
-    properties: list[Property] = field(default_factory=list)
+    properties: list[AadlProperty] = field(default_factory=list)
     modes: Modes = ()
 
 
@@ -172,17 +172,17 @@ class Classifier:
     """`talker`, or `talker.impl`."""
     span: Span
     extends: str = ""
-    bindings: dict[str, Binding] = field(default_factory=dict)
+    bindings: dict[str, PrototypeBinding] = field(default_factory=dict)
     inverse_of: str = ""
     prototypes: list[Prototype] = field(default_factory=list)
-    features: list[Feature] = field(default_factory=list)
+    features: list[AadlFeature] = field(default_factory=list)
     subcomponents: list[Subcomponent] = field(default_factory=list)
-    connections: list[Connection] = field(default_factory=list)
+    connections: list[AadlConnection] = field(default_factory=list)
     calls: list[Subcomponent] = field(default_factory=list)
-    flows: list[Flow] = field(default_factory=list)
+    flows: list[AadlFlow] = field(default_factory=list)
     modes: list[str] = field(default_factory=list)
     initial_mode: str = ""
-    properties: list[Property] = field(default_factory=list)
+    properties: list[AadlProperty] = field(default_factory=list)
     annexes: list[tuple[str, Span]] = field(default_factory=list)
 
     @property
@@ -192,7 +192,7 @@ class Classifier:
 
 
 @dataclass(slots=True)
-class Package:
+class AadlPackage:
     """A package, its public and its private part as one."""
 
     name: str
@@ -202,7 +202,7 @@ class Package:
     renames: dict[str, str] = field(default_factory=dict)
     """What short names stand for, in lower case; a key `*` plus a package's name is `renames package::all`."""
     classifiers: list[Classifier] = field(default_factory=list)
-    properties: list[Property] = field(default_factory=list)
+    properties: list[AadlProperty] = field(default_factory=list)
     annexes: list[tuple[str, Span]] = field(default_factory=list)
 
 

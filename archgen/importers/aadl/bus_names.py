@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 
 from archgen.importers.aadl.aadl_tree import Path
-from archgen.importers.aadl.property_values import Scope, read_references
-from archgen.importers.aadl.resolved_classifiers import Part
+from archgen.importers.aadl.classifier_shapes import ResolvedPart
+from archgen.importers.aadl.property_values import PropertyScope, read_references
 from archgen.model.element_ids import make_id
 from archgen.model.port_media import MEDIUM_NAMES
 
 
-def name_bus_medium(part: Part) -> str:
+def name_bus_medium(part: ResolvedPart) -> str:
     """Return a medium that the name of a bus or of its classifier holds, else the classifier's own name as a word."""
     classifier = part.use.full_name.rpartition("::")[2].partition(".")[0]
     names: tuple[str, str] = (classifier, part.written.name)
@@ -23,7 +23,7 @@ def name_bus_medium(part: Part) -> str:
     return make_id(classifier or part.written.name, "bus")[:40].strip("_")
 
 
-def read_bound_path(scope: Scope, connection_name: str) -> Path:
+def read_bound_path(scope: PropertyScope, connection_name: str) -> Path:
     """Return the path of the bus that a connection is bound to, the first of several; empty where it is bound to none."""
     if not connection_name:
         return ()

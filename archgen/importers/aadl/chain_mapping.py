@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from archgen.frozen import dataclass
-from archgen.importers.aadl.aadl_tree import Flow, Path
+from archgen.importers.aadl.aadl_tree import AadlFlow, Path
 from archgen.importers.aadl.archgen_words import find_own_texts
 from archgen.importers.aadl.component_bodies import Body
 from archgen.importers.aadl.import_notes import NoteList
-from archgen.importers.aadl.property_values import Scope, read_time_range
+from archgen.importers.aadl.property_values import PropertyScope, read_time_range
 from archgen.importers.aadl.robot_groups import LaunchedSystem
-from archgen.importers.aadl.structures import Structure
+from archgen.importers.aadl.structures import ClassifierStructure
 from archgen.model.element_ids import make_id, make_unique_id
 
 
@@ -19,8 +19,8 @@ from archgen.model.element_ids import make_id, make_unique_id
 class _FlowPlace:
     """Where end to end flows stand: the ids from the group on, and what archgen says of the flows there, by their names."""
 
-    structure: Structure
-    scope: Scope
+    structure: ClassifierStructure
+    scope: PropertyScope
     ids: tuple[str, ...]
     own_words: Mapping[str, Mapping[str, str]]
 
@@ -36,7 +36,9 @@ class ChainMapper:
     def add_chains(self, system: LaunchedSystem) -> None:
         """Add the end to end flows of a root, of its groups, and of the components in them."""
         group_of_root = next((frame.group_id for frame in system.frames if not frame.path), "")
-        places: list[tuple[Structure, Scope, tuple[str, ...]]] = [(system.structure, system.scope, (group_of_root,))]
+        places: list[tuple[ClassifierStructure, PropertyScope, tuple[str, ...]]] = [
+            (system.structure, system.scope, (group_of_root,))
+        ]
         places += [(frame.structure, frame.scope, (frame.group_id,)) for frame in system.frames if frame.path]
         places += [(inst.structure, inst.scope, inst.ids) for inst in system.instances.values() if inst.structure.parts]
         for structure, scope, ids in places:
@@ -45,7 +47,7 @@ class ChainMapper:
                 if flow.kind == "end to end":
                     self._add_chain(system, _FlowPlace(structure, scope, ids, own_words), flow)
 
-    def _add_chain(self, system: LaunchedSystem, place: _FlowPlace, flow: Flow) -> None:
+    def _add_chain(self, system: LaunchedSystem, place: _FlowPlace, flow: AadlFlow) -> None:
         own_way = place.own_words["flow_ways"].get(flow.name, "")
         through = own_way.split(", ") if own_way else []
         for step in () if through else flow.steps:
@@ -72,7 +74,7 @@ class ChainMapper:
         self.chains[chain_id] = {**body, "hints": {"aadl": hints}} if hints else body
 
 
-def _leads_nowhere(structure: Structure, step: Path) -> bool:
+def _leads_nowhere(structure: ClassifierStructure, step: Path) -> bool:
     """Whether a step of a flow names nothing that stands there."""
     name, resolved = step[0].lower(), structure.resolved
     return not any(name in known for known in (resolved.parts, resolved.connections, resolved.ports)) and not any(
@@ -80,7 +82,9 @@ def _leads_nowhere(structure: Structure, step: Path) -> bool:
     )
 
 
-def _name_step(system: LaunchedSystem, structure: Structure, ids: tuple[str, ...], step: Path) -> Iterator[str]:
+def _name_step(
+    system: LaunchedSystem, structure: ClassifierStructure, ids: tuple[str, ...], step: Path
+) -> Iterator[str]:
     """Yield the components that a step of a flow leads through; a connection is none."""
     names = tuple(name.lower() for name in step)
     part = structure.parts.get(names[0])
@@ -94,7 +98,7 @@ def _name_step(system: LaunchedSystem, structure: Structure, ids: tuple[str, ...
         yield from _go_through(part.structure, group_id, names[1])
 
 
-def _go_through(structure: Structure, group_id: str, flow_name: str) -> Iterator[str]:
+def _go_through(structure: ClassifierStructure, group_id: str, flow_name: str) -> Iterator[str]:
     """Yield the components of a group through which its own flow leads."""
     flow = structure.resolved.flows.get((flow_name, True))
     for step in flow.steps if flow else ():

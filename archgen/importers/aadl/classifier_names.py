@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from archgen.diagnostics.source_span import Span
-from archgen.importers.aadl.aadl_tree import AadlValue, Classifier, Package, PropertySet
+from archgen.importers.aadl.aadl_tree import AadlPackage, AadlValue, Classifier, PropertySet
 
 LIBRARY_PACKAGES = frozenset({"cnc", "ros"})
 STANDARD_SETS = frozenset(
@@ -30,7 +30,7 @@ STANDARD_SETS = frozenset(
 class KnownClassifier:
     """A classifier, the package in which it stands, and its complete name."""
 
-    package: Package
+    package: AadlPackage
     classifier: Classifier
 
     @property
@@ -53,7 +53,7 @@ class KnownClassifier:
 class ClassifierNames:
     """All that was read, by names in lower case."""
 
-    packages: dict[str, Package] = field(default_factory=dict)
+    packages: dict[str, AadlPackage] = field(default_factory=dict)
     property_sets: dict[str, PropertySet] = field(default_factory=dict)
     known: dict[str, KnownClassifier] = field(default_factory=dict)
     repeated: list[tuple[str, Span, Span]] = field(default_factory=list)
@@ -64,7 +64,7 @@ class ClassifierNames:
         """Whether an export of archgen's made the model: then names in AADL follow from the ids, and are not kept."""
         return "archgen" in self.property_sets
 
-    def add_packages(self, packages: Iterable[Package]) -> None:
+    def add_packages(self, packages: Iterable[AadlPackage]) -> None:
         """Add packages; the same package in several files is one (its public part may stand apart)."""
         for package in packages:
             first = self.packages.setdefault(package.name.lower(), package)
@@ -85,11 +85,11 @@ class ClassifierNames:
                 first = self.property_sets[found.name.lower()]
                 self.repeated.append((f"property set {found.name}", found.span, first.span))
 
-    def find(self, name: str, package: Package) -> KnownClassifier | None:
+    def find(self, name: str, package: AadlPackage) -> KnownClassifier | None:
         """Return the classifier that a name means in a package, or None."""
         return next((self.known[key] for key in self._list_keys(name.lower(), package) if key in self.known), None)
 
-    def _list_keys(self, name: str, package: Package) -> Iterator[str]:
+    def _list_keys(self, name: str, package: AadlPackage) -> Iterator[str]:
         yield f"{package.name.lower()}::{name}" if package.name else name
         yield name
         head, separator, rest = name.rpartition("::")

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from archgen.diagnostics.source_span import Span
 from archgen.importers.aadl.aadl_tokens import END
-from archgen.importers.aadl.aadl_tree import Classifier, Connection, Flow, Path, Subcomponent
+from archgen.importers.aadl.aadl_tree import AadlConnection, AadlFlow, Classifier, Path, Subcomponent
 from archgen.importers.aadl.feature_parsing import (
     ACCESSES,
     CATEGORIES,
@@ -43,31 +43,33 @@ def parse_classifier(cursor: TokenCursor) -> Classifier:
     if is_implementation:
         cursor.expect(".")
         name += f".{cursor.expect_name('an implementation')}"
-    found = Classifier(category, name, cursor.span_from(start))
+    classifier = Classifier(category, name, cursor.span_from(start))
     try:
         if cursor.accept("extends"):
-            found.extends = cursor.expect_path("a classifier")
-            found.bindings = parse_bindings(cursor)
+            classifier.extends = cursor.expect_path("a classifier")
+            classifier.bindings = parse_bindings(cursor)
         elif cursor.at("("):
-            found.bindings = parse_bindings(cursor)
+            classifier.bindings = parse_bindings(cursor)
     except AadlSyntaxError as error:
         cursor.tell(error)
         cursor.skip_statement()
-    _parse_sections(cursor, found)
-    _parse_end(cursor, found)
-    return found
+    _parse_sections(cursor, classifier)
+    _parse_end(cursor, classifier)
+    return classifier
 
 
-def _parse_end(cursor: TokenCursor, found: Classifier) -> None:
+def _parse_end(cursor: TokenCursor, classifier: Classifier) -> None:
     if cursor.token.kind == END or not cursor.at("end"):
-        words = f"`end {found.name};` is missing before {_name_place(cursor)}"
-        cursor.tell(cursor.make_error(words, f"{found.category} {found.name} begins in line {found.span.line}"))
+        words = f"`end {classifier.name};` is missing before {_name_place(cursor)}"
+        cursor.tell(
+            cursor.make_error(words, f"{classifier.category} {classifier.name} begins in line {classifier.span.line}")
+        )
         return
     end = cursor.advance()
     closing = cursor.expect_path("a classifier")
-    if closing.lower() != found.name.lower():
-        error = AadlSyntaxError(f"this ends `{closing}`, but what is open is `{found.name}`", end)
-        error.help_line = f"write `end {found.name};`"
+    if closing.lower() != classifier.name.lower():
+        error = AadlSyntaxError(f"this ends `{closing}`, but what is open is `{classifier.name}`", end)
+        error.help_line = f"write `end {classifier.name};`"
         cursor.tell(error)
     cursor.expect(";")
 
@@ -76,10 +78,10 @@ def _name_place(cursor: TokenCursor) -> str:
     return "the end of the file" if cursor.token.kind == END else f"`{cursor.token.text}`"
 
 
-def _parse_sections(cursor: TokenCursor, found: Classifier) -> None:
+def _parse_sections(cursor: TokenCursor, classifier: Classifier) -> None:
     while cursor.token.kind != END and not cursor.at("end"):
         try:
-            if not _parse_section(cursor, found):
+            if not _parse_section(cursor, classifier):
                 return
         except AadlSyntaxError as error:
             cursor.tell(error)
@@ -89,40 +91,40 @@ def _parse_sections(cursor: TokenCursor, found: Classifier) -> None:
                 cursor.advance()
 
 
-def _parse_section(cursor: TokenCursor, found: Classifier) -> bool:
+def _parse_section(cursor: TokenCursor, classifier: Classifier) -> bool:
     """Parse a section. Return whether one was here; raise AadlSyntaxError for what is none."""
-    parsers = _list_section_parsers(cursor, found)
+    parsers = _list_section_parsers(cursor, classifier)
     words = next((words for words in parsers if cursor.accept(*words.split())), "")
     if words:
         _parse_list(cursor, parsers[words])
     elif cursor.accept("inverse", "of"):
-        found.inverse_of = cursor.expect_path("a feature group")
+        classifier.inverse_of = cursor.expect_path("a feature group")
     elif cursor.at("annex"):
-        parse_annex(cursor, found.annexes)
+        parse_annex(cursor, classifier.annexes)
     elif at_classifier(cursor) or cursor.at("private") or cursor.at("public"):
         return False
     else:
         cursor.fail(
-            f"no section of a {found.category} begins with `{cursor.token.text[:40]}`",
+            f"no section of a {classifier.category} begins with `{cursor.token.text[:40]}`",
             "features, subcomponents, connections, calls, flows, modes, properties and annexes may stand here",
         )
     return True
 
 
-def _list_section_parsers(cursor: TokenCursor, found: Classifier) -> dict[str, Callable[[], None]]:
+def _list_section_parsers(cursor: TokenCursor, classifier: Classifier) -> dict[str, Callable[[], None]]:
     """Return what parses an entry of each section, by the words with which the section begins."""
     return {
-        "prototypes": lambda: found.prototypes.append(parse_prototype(cursor)),
-        "features": lambda: found.features.append(parse_feature(cursor)),
-        "subcomponents": lambda: found.subcomponents.append(parse_subcomponent(cursor)),
+        "prototypes": lambda: classifier.prototypes.append(parse_prototype(cursor)),
+        "features": lambda: classifier.features.append(parse_feature(cursor)),
+        "subcomponents": lambda: classifier.subcomponents.append(parse_subcomponent(cursor)),
         "internal features": cursor.skip_statement,
         "processor features": cursor.skip_statement,
-        "connections": lambda: found.connections.append(_parse_connection(cursor)),
-        "calls": lambda: _parse_call_sequence(cursor, found),
-        "flows": lambda: found.flows.append(_parse_flow(cursor)),
-        "requires modes": lambda: _parse_mode(cursor, found),
-        "modes": lambda: _parse_mode(cursor, found),
-        "properties": lambda: found.properties.append(parse_property(cursor)),
+        "connections": lambda: classifier.connections.append(_parse_connection(cursor)),
+        "calls": lambda: _parse_call_sequence(cursor, classifier),
+        "flows": lambda: classifier.flows.append(_parse_flow(cursor)),
+        "requires modes": lambda: _parse_mode(cursor, classifier),
+        "modes": lambda: _parse_mode(cursor, classifier),
+        "properties": lambda: classifier.properties.append(parse_property(cursor)),
     }
 
 
@@ -179,20 +181,20 @@ def parse_subcomponent(cursor: TokenCursor) -> Subcomponent:
     category = accept_one_of(cursor, CATEGORIES)
     if not category:
         cursor.fail("a category is missing here: process, thread, data, device, ...")
-    found = Subcomponent(name, category, cursor.span_from(start), refined=refined)
+    subcomponent = Subcomponent(name, category, cursor.span_from(start), refined=refined)
     if cursor.token.kind == "name" and not cursor.at("in", "modes"):
         # A call may name a processor's subprogram, or one of a data component: `processor.s`.
         cursor.accept("processor", ".")
-        found.classifier = cursor.expect_path("a classifier")
-    found.bindings = parse_bindings(cursor)
-    found.dimensions = parse_dimensions(cursor)
-    if found.dimensions and cursor.at("("):
+        subcomponent.classifier = cursor.expect_path("a classifier")
+    subcomponent.bindings = parse_bindings(cursor)
+    subcomponent.dimensions = parse_dimensions(cursor)
+    if subcomponent.dimensions and cursor.at("("):
         _parse_array_elements(cursor)
-    found.properties = parse_property_list(cursor)
-    found.modes = parse_modes(cursor)
+    subcomponent.properties = parse_property_list(cursor)
+    subcomponent.modes = parse_modes(cursor)
     cursor.expect(";")
-    found.span = cursor.span_from(start)
-    return found
+    subcomponent.span = cursor.span_from(start)
+    return subcomponent
 
 
 def _parse_array_elements(cursor: TokenCursor) -> None:
@@ -204,7 +206,7 @@ def _parse_array_elements(cursor: TokenCursor) -> None:
             cursor.expect(",")
 
 
-def _parse_connection(cursor: TokenCursor) -> Connection:
+def _parse_connection(cursor: TokenCursor) -> AadlConnection:
     start = cursor.token.offset
     name, refined = "", False
     if cursor.peek().text == ":":
@@ -214,27 +216,27 @@ def _parse_connection(cursor: TokenCursor) -> Connection:
     kind = accept_one_of(cursor, _CONNECTION_KINDS)
     if not kind:
         cursor.fail("a kind of connection is missing here: port, data access, feature group, ...")
-    found = Connection(name, kind, (), (), cursor.span_from(start), refined=refined)
+    connection = AadlConnection(name, kind, (), (), cursor.span_from(start), refined=refined)
     if cursor.token.kind == "name" and not cursor.at("in", "modes"):
-        found.source = parse_contained_path(cursor)
-        found.both_ways = cursor.accept("<->")
-        if not found.both_ways:
+        connection.source = parse_contained_path(cursor)
+        connection.both_ways = cursor.accept("<->")
+        if not connection.both_ways:
             cursor.expect("->")
-        found.target = parse_contained_path(cursor)
-    found.properties = parse_property_list(cursor)
-    found.modes = parse_modes(cursor)
+        connection.target = parse_contained_path(cursor)
+    connection.properties = parse_property_list(cursor)
+    connection.modes = parse_modes(cursor)
     cursor.expect(";")
-    found.span = cursor.span_from(start)
-    return found
+    connection.span = cursor.span_from(start)
+    return connection
 
 
-def _parse_call_sequence(cursor: TokenCursor, found: Classifier) -> None:
+def _parse_call_sequence(cursor: TokenCursor, classifier: Classifier) -> None:
     if not cursor.at("{"):
         cursor.expect_name("a call sequence")
         cursor.expect(":")
     cursor.expect("{")
     cursor.parse_entries(
-        lambda: found.calls.append(parse_subcomponent(cursor)), lambda: cursor.at("}") or cursor.at("end")
+        lambda: classifier.calls.append(parse_subcomponent(cursor)), lambda: cursor.at("}") or cursor.at("end")
     )
     cursor.expect("}")
     parse_property_list(cursor)
@@ -242,7 +244,7 @@ def _parse_call_sequence(cursor: TokenCursor, found: Classifier) -> None:
     cursor.expect(";")
 
 
-def _parse_flow(cursor: TokenCursor) -> Flow:
+def _parse_flow(cursor: TokenCursor) -> AadlFlow:
     start = cursor.token.offset
     name = cursor.expect_name("a flow")
     cursor.expect(":")
@@ -261,18 +263,18 @@ def _parse_flow(cursor: TokenCursor) -> Flow:
     properties = parse_property_list(cursor)
     modes = parse_modes(cursor)
     cursor.expect(";")
-    return Flow(name, kind, tuple(steps), cursor.span_from(start), refined, properties, modes)
+    return AadlFlow(name, kind, tuple(steps), cursor.span_from(start), refined, properties, modes)
 
 
-def _parse_mode(cursor: TokenCursor, found: Classifier) -> None:
+def _parse_mode(cursor: TokenCursor, classifier: Classifier) -> None:
     """Parse a mode or go over a transition between modes."""
     name = cursor.expect_name("a mode") if cursor.peek().text in {":", "-["} else ""
     if name and cursor.accept(":"):
         cursor.accept("refined", "to")
         initial = cursor.accept("initial")
         if cursor.accept("mode") or initial:
-            found.modes.append(name)
-            found.initial_mode = name if initial else found.initial_mode
+            classifier.modes.append(name)
+            classifier.initial_mode = name if initial else classifier.initial_mode
             parse_property_list(cursor)
             cursor.expect(";")
             return

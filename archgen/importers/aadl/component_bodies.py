@@ -8,12 +8,13 @@ from typing import Any
 from archgen.importers.aadl.aadl_tree import Path
 from archgen.importers.aadl.archgen_words import find_own_text, read_component_words, read_port_words
 from archgen.importers.aadl.bus_names import name_bus_medium, read_bound_path
+from archgen.importers.aadl.classifier_shapes import ResolvedClassifier
 from archgen.importers.aadl.element_hints import keep_sources, keep_structure, keep_thread
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.port_mapping import MappedPort
-from archgen.importers.aadl.property_values import Scope, read_count, read_text
-from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, Resolved
-from archgen.importers.aadl.structures import Structure, StructuredPart, Wire
+from archgen.importers.aadl.property_values import PropertyScope, read_count, read_first_text
+from archgen.importers.aadl.resolved_classifiers import ClassifierResolver
+from archgen.importers.aadl.structures import ClassifierStructure, StructuredPart, Wire
 from archgen.importers.aadl.thread_timing import add_port_hints, add_trigger, find_role, fits_role, map_timing
 
 Body = dict[str, Any]
@@ -28,12 +29,14 @@ class TooManyPartsError(Exception):
 class ComponentBuilder:
     """Makes the bodies of components; what stands in several places is an instance of a component type."""
 
-    def __init__(self, resolver: ClassifierResolver, notes: NoteList, find_type: Callable[[Structure], str]) -> None:
+    def __init__(
+        self, resolver: ClassifierResolver, notes: NoteList, find_type: Callable[[ClassifierStructure], str]
+    ) -> None:
         """Ask `find_type` for the component type that a structure is; it answers nothing for what is written in place."""
         self._resolver, self._notes, self._find_type = resolver, notes, find_type
         self._count = 0
 
-    def build_body(self, structure: Structure, scope: Scope) -> Body:
+    def build_body(self, structure: ClassifierStructure, scope: PropertyScope) -> Body:
         """Return the body of a component that has all of a classifier."""
         self._count += 1
         if self._count > MAX_COMPONENTS:
@@ -58,13 +61,13 @@ class ComponentBuilder:
             body["tags"] = ["device"]
             for port_body in outputs.values():
                 port_body.setdefault("medium", "physical")
-        own_scope = Scope(self._resolver, scope.used, resolved)
+        own_scope = PropertyScope(self._resolver, scope.used, resolved)
         hints |= keep_sources(own_scope, ()) | keep_structure(structure, scope, self._notes)
         body |= {"hints": {"aadl": hints}} if hints else {}
         self._wire_inside(structure, body, scope)
         return body | read_component_words(scope)
 
-    def build_instance(self, part: StructuredPart, scope_around: Scope) -> Body:
+    def build_instance(self, part: StructuredPart, scope_around: PropertyScope) -> Body:
         """Return the body of a part: an instance of a component type, or all of it."""
         structure = part.structure
         scope = scope_around.go_into(part.part, structure.resolved if structure else None)
@@ -86,7 +89,7 @@ class ComponentBuilder:
             body.setdefault("hints", {})["aadl"] = {**names, **body.get("hints", {}).get("aadl", {})}
         return body
 
-    def build_overlay(self, structure: Structure, scope: Scope) -> Body:
+    def build_overlay(self, structure: ClassifierStructure, scope: PropertyScope) -> Body:
         """Return what is written around an instance of its parts and threads."""
         if not scope.says_anything():
             return {}
@@ -103,7 +106,7 @@ class ComponentBuilder:
             body["timing"] = timing
         return body
 
-    def _describe_leaf(self, structure: Structure, scope: Scope, hints: Body) -> Body:
+    def _describe_leaf(self, structure: ClassifierStructure, scope: PropertyScope, hints: Body) -> Body:
         resolved, body = structure.resolved, {}
         path = _find_thread_path(structure)
         thread = self._resolver.resolve(structure.thread.use) if structure.thread else None
@@ -122,7 +125,7 @@ class ComponentBuilder:
             body["role"] = role
         return {**body, "timing": timing} if timing else body
 
-    def _wire_inside(self, structure: Structure, body: Body, scope: Scope) -> None:
+    def _wire_inside(self, structure: ClassifierStructure, body: Body, scope: PropertyScope) -> None:
         for wire in structure.wires:
             producer, consumer = wire.producer, wire.consumer
             reference = f"{producer.part.id if producer.part else 'self'}.{producer.port.id}"
@@ -156,7 +159,7 @@ def reach_port(body: Body, section: str, port_id: str) -> Body:
     return port_body
 
 
-def set_media(structure: Structure, bodies: dict[str, Body], scope: Scope, notes: NoteList) -> None:
+def set_media(structure: ClassifierStructure, bodies: dict[str, Body], scope: PropertyScope, notes: NoteList) -> None:
     """Say what the ports of devices travel over: the bus that a connection is bound to.
 
     Of a model that archgen wrote, the ports say it.
@@ -185,20 +188,20 @@ def set_media(structure: Structure, bodies: dict[str, Body], scope: Scope, notes
                 reach_port(bodies[consumer.part.id], "inputs", consumer.port.id)["medium"] = medium
 
 
-def find_medium(wire: Wire, structure: Structure, scope: Scope) -> str:
+def find_medium(wire: Wire, structure: ClassifierStructure, scope: PropertyScope) -> str:
     """Return the word for the bus that a connection is bound to; physical where it is bound to none."""
     path = read_bound_path(scope, wire.connection.name)
     part = structure.resolved.parts.get(path[0]) if path else None
     return name_bus_medium(part) if part else "physical"
 
 
-def map_node_ports(structure: Structure, scope: Scope, *, is_type: bool) -> Body:
+def map_node_ports(structure: ClassifierStructure, scope: PropertyScope, *, is_type: bool) -> Body:
     """Return what a node calls its topics, and how long its queues are."""
     node: Body = {}
     for port in structure.ports.ports:
         path = port.path
         use: Body = {}
-        default_name = read_text(scope.value(path, "topic_properties::default_name"))
+        default_name = read_first_text(scope.value(path, "topic_properties::default_name"))
         if default_name:
             key = "name" if port.is_call else "topic"
             use["own_name" if port.is_input or not is_type else key] = default_name
@@ -218,17 +221,17 @@ def name_use_section(*, is_input: bool, is_call: bool) -> str:
     return _USES[is_input, is_call]
 
 
-def _find_thread_path(structure: Structure) -> Path:
+def _find_thread_path(structure: ClassifierStructure) -> Path:
     return (structure.thread.written.name.lower(),) if structure.thread else ()
 
 
-def _is_triggered(structure: Structure, thread: Resolved | None, port_id: str) -> bool:
+def _is_triggered(structure: ClassifierStructure, thread: ResolvedClassifier | None, port_id: str) -> bool:
     inner = structure.thread_ports.get((port_id, True))
     port = thread.ports.get(inner) if thread and inner else None
     return port is not None and port.kind.startswith("event")
 
 
-def _keep_connection_names(structure: Structure, scope: Scope) -> Body:
+def _keep_connection_names(structure: ClassifierStructure, scope: PropertyScope) -> Body:
     names = (
         {}
         if scope.resolver.names.is_own

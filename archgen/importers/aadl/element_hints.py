@@ -5,24 +5,24 @@ from __future__ import annotations
 from pathlib import Path as FilePath
 from typing import Any
 
-from archgen.importers.aadl.aadl_tree import Connection, Path, Property
+from archgen.importers.aadl.aadl_tree import AadlConnection, AadlProperty, Path
+from archgen.importers.aadl.classifier_shapes import ResolvedClassifier, ResolvedPart
 from archgen.importers.aadl.import_notes import NoteList
-from archgen.importers.aadl.property_values import Scope, read_text, read_texts, read_time_range
-from archgen.importers.aadl.resolved_classifiers import Part, Resolved
-from archgen.importers.aadl.structures import Structure
+from archgen.importers.aadl.property_values import PropertyScope, read_first_text, read_texts, read_time_range
+from archgen.importers.aadl.structures import ClassifierStructure
 
 
-def keep_sources(scope: Scope, path: Path) -> dict[str, Any]:
+def keep_sources(scope: PropertyScope, path: Path) -> dict[str, Any]:
     """Return the hints of Source_Text and Source_Name at a path."""
     hints: dict[str, Any] = {}
     if texts := read_texts(scope.value(path, "source_text")):
         hints["source_text"] = texts
-    if text := read_text(scope.value(path, "source_name")):
+    if text := read_first_text(scope.value(path, "source_name")):
         hints["source_name"] = text
     return hints
 
 
-def keep_thread(scope: Scope, path: Path, thread: Resolved | None) -> dict[str, Any]:
+def keep_thread(scope: PropertyScope, path: Path, thread: ResolvedClassifier | None) -> dict[str, Any]:
     """Return the hints of a thread: what it is made from, its functions with header and entry."""
     is_own = scope.resolver.names.is_own
     hints: dict[str, Any] = {"classifier": thread.known.full_name} if thread and not is_own else {}
@@ -34,11 +34,11 @@ def keep_thread(scope: Scope, path: Path, thread: Resolved | None) -> dict[str, 
     return {**hints, **({"functions": functions} if functions else {})}
 
 
-def _is_library_function(part: Part) -> bool:
+def _is_library_function(part: ResolvedPart) -> bool:
     return part.use.full_name.lower().rpartition("::")[2] in {"function", ""}
 
 
-def keep_structure(structure: Structure, scope: Scope, notes: NoteList) -> dict[str, Any]:
+def keep_structure(structure: ClassifierStructure, scope: PropertyScope, notes: NoteList) -> dict[str, Any]:
     """Return the hints of what stands in a component beside its parts."""
     resolved = structure.resolved
     hints: dict[str, Any] = {}
@@ -79,16 +79,16 @@ def keep_structure(structure: Structure, scope: Scope, notes: NoteList) -> dict[
     return hints | _keep_data(structure, scope, notes)
 
 
-def _list_own_ends(connection: Connection) -> list[Path]:
+def _list_own_ends(connection: AadlConnection) -> list[Path]:
     """Return the ends of a connection that are features of what it stands in."""
     return [end for end in (connection.source, connection.target) if len(end) == 1]
 
 
-def _name_connection(connection: Connection) -> str:
+def _name_connection(connection: AadlConnection) -> str:
     return connection.name or f"{'.'.join(connection.source)} -> {'.'.join(connection.target)}"
 
 
-def _keep_flows(structure: Structure, scope: Scope) -> dict[str, Any]:
+def _keep_flows(structure: ClassifierStructure, scope: PropertyScope) -> dict[str, Any]:
     flows: dict[str, Any] = {}
     for (name, is_of_implementation), flow in structure.resolved.flows.items():
         if flow.kind == "end to end" or is_of_implementation or not flow.steps:
@@ -102,7 +102,7 @@ def _keep_flows(structure: Structure, scope: Scope) -> dict[str, Any]:
     return flows
 
 
-def _keep_data(structure: Structure, scope: Scope, notes: NoteList) -> dict[str, Any]:
+def _keep_data(structure: ClassifierStructure, scope: PropertyScope, notes: NoteList) -> dict[str, Any]:
     hints: dict[str, Any] = {}
     for name, part in structure.resolved.parts.items():
         classifier = part.use.full_name
@@ -123,13 +123,13 @@ def _keep_data(structure: Structure, scope: Scope, notes: NoteList) -> dict[str,
     return hints
 
 
-def is_internal_state(part: Part) -> bool:
+def is_internal_state(part: ResolvedPart) -> bool:
     """Whether a data subcomponent is the internal state of a node, as the component-connector library has it."""
     type_name = part.use.full_name.lower().rpartition("::")[2].partition(".")[0]
     return "internal_state" in {part.written.name.lower(), type_name}
 
 
-def check_schema_file(name: str, association: Property, notes: NoteList) -> None:
+def check_schema_file(name: str, association: AadlProperty, notes: NoteList) -> None:
     """Tell of a schema that is not beside the AADL file or below it; no other place is looked at."""
     folder = FilePath(association.span.file).parent.resolve()
     help_line = "Source_Text names it from the folder of the AADL file"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from archgen.importers.aadl.aadl_tree import Binding, Feature, Prototype
+from archgen.importers.aadl.aadl_tree import AadlFeature, Prototype, PrototypeBinding
 from archgen.importers.aadl.property_parsing import parse_property_list
 from archgen.importers.aadl.token_cursor import AadlSyntaxError, TokenCursor
 
@@ -74,11 +74,11 @@ def _parse_prototype_category(cursor: TokenCursor) -> str:
     return category
 
 
-def parse_bindings(cursor: TokenCursor) -> dict[str, Binding]:
+def parse_bindings(cursor: TokenCursor) -> dict[str, PrototypeBinding]:
     """Parse `(message => data chat::Chat, ...)` if it stands here."""
     if not cursor.accept("("):
         return {}
-    bindings: dict[str, Binding] = {}
+    bindings: dict[str, PrototypeBinding] = {}
     with cursor.deeper():
         while not cursor.accept(")"):
             name = cursor.expect_name("a prototype")
@@ -89,7 +89,7 @@ def parse_bindings(cursor: TokenCursor) -> dict[str, Binding]:
     return bindings
 
 
-def _parse_actual(cursor: TokenCursor) -> Binding:
+def _parse_actual(cursor: TokenCursor) -> PrototypeBinding:
     if cursor.accept("("):
         # An array of actuals: the first stands for all.
         with cursor.deeper():
@@ -104,15 +104,15 @@ def _parse_actual(cursor: TokenCursor) -> Binding:
     else:
         category = accept_one_of(cursor, ("feature group", "feature", *CATEGORIES))
     classifier = "" if cursor.at(")") or cursor.at(",") else cursor.expect_path("a classifier")
-    return Binding(category, classifier, parse_bindings(cursor))
+    return PrototypeBinding(category, classifier, parse_bindings(cursor))
 
 
-def parse_feature(cursor: TokenCursor) -> Feature:
+def parse_feature(cursor: TokenCursor) -> AadlFeature:
     """Parse a feature up to its `;`."""
     start = cursor.token.offset
     name = cursor.expect_name("a feature")
     cursor.expect(":")
-    feature = Feature(name, "", cursor.span_from(start))
+    feature = AadlFeature(name, "", cursor.span_from(start))
     feature.refined = cursor.accept("refined", "to")
     feature.direction = parse_direction(cursor)
     if not feature.direction:
@@ -137,7 +137,7 @@ def parse_feature(cursor: TokenCursor) -> Feature:
     return feature
 
 
-def _parse_feature_type(cursor: TokenCursor, feature: Feature) -> None:
+def _parse_feature_type(cursor: TokenCursor, feature: AadlFeature) -> None:
     if cursor.accept("inverse", "of"):
         feature.inverse = True
     if feature.kind == "feature" or feature.kind in ACCESSES:

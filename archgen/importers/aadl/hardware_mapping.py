@@ -12,7 +12,7 @@ from archgen.importers.aadl.element_hints import keep_sources
 from archgen.importers.aadl.hardware_tree import HardwareFinder, HardwarePart, HardwareTree
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.property_values import (
-    Scope,
+    PropertyScope,
     read_bandwidth,
     read_references,
     read_time_range,
@@ -20,8 +20,8 @@ from archgen.importers.aadl.property_values import (
     write_number,
 )
 from archgen.importers.aadl.resolved_classifiers import ClassifierResolver
-from archgen.importers.aadl.robot_groups import LaunchedSystem, list_leaf_ports
-from archgen.importers.aadl.structures import Structure
+from archgen.importers.aadl.robot_groups import LaunchedSystem, list_ports_behind_end
+from archgen.importers.aadl.structures import ClassifierStructure
 from archgen.model.element_ids import make_id, make_unique_id
 from archgen.model.port_media import MEDIUM_NAMES
 
@@ -216,7 +216,7 @@ def _name_device(tree: HardwareTree, owner: Path, system: LaunchedSystem) -> dic
 
 def _list_wired(system: LaunchedSystem, place: Path, connection_name: str) -> list[Path]:
     """Return the processes and devices that a connection joins."""
-    structure: Structure | None = system.structure if not place else None
+    structure: ClassifierStructure | None = system.structure if not place else None
     if place:
         instance, frame = system.instances.get(place), system.find_frame(place)
         structure = instance.structure if instance else frame.structure if frame else None
@@ -225,10 +225,10 @@ def _list_wired(system: LaunchedSystem, place: Path, connection_name: str) -> li
         if structure
         else ()
     )
-    return [path for end in ends for path, _ in list_leaf_ports(end, place)]
+    return [path for end in ends for path, _ in list_ports_behind_end(end, place)]
 
 
-def _read_speed(scope: Scope) -> Body:
+def _read_speed(scope: PropertyScope) -> Body:
     """Return latency and bandwidth of a bus."""
     body: Body = {}
     lowest, highest = read_time_range(scope.value((), "latency"))

@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from archgen.importers.aadl.aadl_tree import Path, Property
+from archgen.importers.aadl.aadl_tree import AadlProperty, Path
 from archgen.importers.aadl.archgen_words import find_own_text
 from archgen.importers.aadl.bus_names import read_bound_path
 from archgen.importers.aadl.classifier_names import fold_property_name
+from archgen.importers.aadl.classifier_shapes import ResolvedClassifier, ResolvedPart
 from archgen.importers.aadl.import_notes import NoteList
-from archgen.importers.aadl.property_values import Scope, read_references
-from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, Part, Resolved
-from archgen.importers.aadl.structures import HARDWARE_CATEGORIES, fold_path
+from archgen.importers.aadl.property_values import PropertyScope, read_references
+from archgen.importers.aadl.resolved_classifiers import ClassifierResolver
+from archgen.importers.aadl.structures import HARDWARE_CATEGORIES, fold_part_path
 from archgen.importers.aadl.system_walk import MAX_INSTANCES, TooManyInstancesError
 
 PROCESSORS = frozenset({"processor", "virtual processor"})
@@ -25,9 +26,9 @@ _MAX_DEPTH = 40
 class HardwarePart:
     """A processor or bus where it stands."""
 
-    part: Part
-    resolved: Resolved | None
-    scope: Scope
+    part: ResolvedPart
+    resolved: ResolvedClassifier | None
+    scope: PropertyScope
 
 
 @dataclass(slots=True)
@@ -79,7 +80,7 @@ class HardwareFinder:
         self.tree = HardwareTree()
         self._resolver, self._notes = resolver, notes
 
-    def walk(self, resolved: Resolved, scope: Scope, path: Path = ()) -> None:
+    def walk(self, resolved: ResolvedClassifier, scope: PropertyScope, path: Path = ()) -> None:
         """Add all that stands in a classifier at a path."""
         tree = self.tree
         tree.count += 1
@@ -88,7 +89,7 @@ class HardwareFinder:
         self._add_bindings(resolved, scope, path)
         for connection in resolved.connections.values():
             if connection.kind in _BUS_ACCESSES and connection.source:
-                tree.join(fold_path((*path, *connection.source)), fold_path((*path, *connection.target)))
+                tree.join(fold_part_path((*path, *connection.source)), fold_part_path((*path, *connection.target)))
         for name, part in resolved.parts.items():
             inner = self._resolver.resolve(part.use)
             inner_path, inner_scope = (*path, name), scope.go_into(part, inner)
@@ -104,7 +105,7 @@ class HardwareFinder:
             if len(path) < _MAX_DEPTH:
                 self.walk(inner, inner_scope, inner_path)
 
-    def _add_bindings(self, resolved: Resolved, scope: Scope, path: Path) -> None:
+    def _add_bindings(self, resolved: ResolvedClassifier, scope: PropertyScope, path: Path) -> None:
         # What is written farther out was found before, and counts.
         for (target, name), association in _list_bindings(resolved):
             if name == "actual_processor_binding":
@@ -124,7 +125,7 @@ class HardwareFinder:
                 self.tree.bound_connections.setdefault((*path, *bus), {})[path, connection.name.lower()] = None
 
 
-def _list_bindings(resolved: Resolved) -> Iterator[tuple[tuple[Path, str], Property]]:
+def _list_bindings(resolved: ResolvedClassifier) -> Iterator[tuple[tuple[Path, str], AadlProperty]]:
     """Yield what is bound in a classifier, in braces of its parts as well; references there begin at the classifier, too."""
     yield from resolved.properties.items()
     for name, part in resolved.parts.items():
@@ -132,4 +133,4 @@ def _list_bindings(resolved: Resolved) -> Iterator[tuple[tuple[Path, str], Prope
             key = fold_property_name(association.name)
             if key in {"actual_processor_binding", "actual_connection_binding"}:
                 for path in association.paths or ((),):
-                    yield ((name, *fold_path(path)), key), association
+                    yield ((name, *fold_part_path(path)), key), association

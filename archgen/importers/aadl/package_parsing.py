@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from archgen.importers.aadl.aadl_tokens import END, MAX_TOKENS, AadlText
-from archgen.importers.aadl.aadl_tree import Package, PropertySet
+from archgen.importers.aadl.aadl_tree import AadlPackage, PropertySet
 from archgen.importers.aadl.classifier_parsing import at_classifier, parse_annex, parse_classifier
 from archgen.importers.aadl.feature_parsing import CATEGORIES, accept_one_of
-from archgen.importers.aadl.property_parsing import parse_definition, parse_property
+from archgen.importers.aadl.property_parsing import parse_property, parse_property_definition
 from archgen.importers.aadl.token_cursor import AadlSyntaxError, SyntaxFault, TokenCursor
 
 _MAX_NAME_TOKENS = 50
@@ -19,10 +19,10 @@ _MAX_NAME_TOKENS = 50
 class ParsedText:
     """What an AADL text holds."""
 
-    packages: list[Package] = field(default_factory=list)
+    packages: list[AadlPackage] = field(default_factory=list)
     property_sets: list[PropertySet] = field(default_factory=list)
     faults: list[SyntaxFault] = field(default_factory=list)
-    unpackaged: Package | None = None
+    unpackaged: AadlPackage | None = None
     """What stands in no package, as AADL's first version has it; it is among the packages, with an empty name."""
     token_count: int = 0
 
@@ -42,7 +42,7 @@ def parse_text(file: str, text: str, max_tokens: int = MAX_TOKENS) -> ParsedText
             elif at_classifier(cursor) and cursor.peek().kind == "name":
                 _parse_unpackaged(cursor, parsed)
             elif cursor.at("with") and not is_lost:
-                _parse_uses(cursor, Package("", cursor.span_from(cursor.token.offset)))
+                _parse_uses(cursor, AadlPackage("", cursor.span_from(cursor.token.offset)))
                 continue
             else:
                 cursor.fail("a package or a property set is missing here")
@@ -58,11 +58,11 @@ def parse_text(file: str, text: str, max_tokens: int = MAX_TOKENS) -> ParsedText
 
 def _parse_unpackaged(cursor: TokenCursor, parsed: ParsedText) -> None:
     start = cursor.token.offset
-    found = parse_classifier(cursor)
+    classifier = parse_classifier(cursor)
     if parsed.unpackaged is None:
-        parsed.unpackaged = Package("", cursor.source.span(start, start))
+        parsed.unpackaged = AadlPackage("", cursor.source.span(start, start))
         parsed.packages.append(parsed.unpackaged)
-    parsed.unpackaged.classifiers.append(found)
+    parsed.unpackaged.classifiers.append(classifier)
 
 
 def _skip_to_unit(cursor: TokenCursor) -> None:
@@ -74,7 +74,7 @@ def _skip_to_unit(cursor: TokenCursor) -> None:
 
 def _parse_package(cursor: TokenCursor, parsed: ParsedText) -> None:
     start = cursor.expect("package").offset
-    package = Package(_parse_package_name(cursor), cursor.span_from(start))
+    package = AadlPackage(_parse_package_name(cursor), cursor.span_from(start))
     parsed.packages.append(package)
     while cursor.token.kind != END:
         if cursor.at("end"):
@@ -97,7 +97,7 @@ def _parse_package(cursor: TokenCursor, parsed: ParsedText) -> None:
     cursor.tell(cursor.make_error(words, f"package {package.name} begins in line {package.span.line}"))
 
 
-def _is_package_end(cursor: TokenCursor, package: Package) -> bool:
+def _is_package_end(cursor: TokenCursor, package: AadlPackage) -> bool:
     """Whether the `end` that stands here is the package's: by its name, or by what comes behind it."""
     distance, name = 1, cursor.peek().word
     while distance < _MAX_NAME_TOKENS and cursor.peek(distance + 1).text in {"::", "."}:
@@ -107,7 +107,7 @@ def _is_package_end(cursor: TokenCursor, package: Package) -> bool:
     return name == package.name.lower() or following.kind == END or following.word in {"package", "property"}
 
 
-def _parse_package_end(cursor: TokenCursor, package: Package) -> None:
+def _parse_package_end(cursor: TokenCursor, package: AadlPackage) -> None:
     end = cursor.expect("end")
     name = _parse_package_name(cursor)
     if name.lower() != package.name.lower():
@@ -123,7 +123,7 @@ def _parse_package_name(cursor: TokenCursor) -> str:
     return "::".join(parts)
 
 
-def _parse_package_entry(cursor: TokenCursor, package: Package) -> None:
+def _parse_package_entry(cursor: TokenCursor, package: AadlPackage) -> None:
     if cursor.accept("public") or cursor.accept("private"):
         return
     if cursor.at("with"):
@@ -147,7 +147,7 @@ def _parse_package_entry(cursor: TokenCursor, package: Package) -> None:
         )
 
 
-def _parse_uses(cursor: TokenCursor, package: Package | PropertySet) -> None:
+def _parse_uses(cursor: TokenCursor, package: AadlPackage | PropertySet) -> None:
     cursor.expect("with")
     while True:
         start = cursor.token.offset
@@ -158,7 +158,7 @@ def _parse_uses(cursor: TokenCursor, package: Package | PropertySet) -> None:
     cursor.expect(";")
 
 
-def _parse_renaming(cursor: TokenCursor, package: Package) -> bool:
+def _parse_renaming(cursor: TokenCursor, package: AadlPackage) -> bool:
     """Parse `x renames package p;`, `renames p::all;`, `renames data p::c;` if one stands here."""
     name = ""
     if cursor.token.kind == "name" and cursor.peek().word == "renames":
@@ -182,24 +182,24 @@ def _parse_renaming(cursor: TokenCursor, package: Package) -> bool:
 
 def _parse_property_set(cursor: TokenCursor) -> PropertySet:
     start = cursor.expect("property", "set").offset
-    found = PropertySet(cursor.expect_name("a property set"), cursor.span_from(start))
+    property_set = PropertySet(cursor.expect_name("a property set"), cursor.span_from(start))
     cursor.expect("is")
     while cursor.at("with"):
-        _parse_uses(cursor, found)
+        _parse_uses(cursor, property_set)
     cursor.parse_entries(
-        lambda: _parse_set_entry(cursor, found), lambda: cursor.at("end") and cursor.peek().kind == "name"
+        lambda: _parse_set_entry(cursor, property_set), lambda: cursor.at("end") and cursor.peek().kind == "name"
     )
     end = cursor.expect("end")
     name = cursor.expect_name("a property set")
-    if name.lower() != found.name.lower():
-        words = f"this ends `{name}`, but what is open is property set `{found.name}`"
-        cursor.tell(AadlSyntaxError(words, end, f"write `end {found.name};`"))
+    if name.lower() != property_set.name.lower():
+        words = f"this ends `{name}`, but what is open is property set `{property_set.name}`"
+        cursor.tell(AadlSyntaxError(words, end, f"write `end {property_set.name};`"))
     cursor.expect(";")
-    return found
+    return property_set
 
 
-def _parse_set_entry(cursor: TokenCursor, found: PropertySet) -> None:
+def _parse_set_entry(cursor: TokenCursor, property_set: PropertySet) -> None:
     if cursor.at("annex"):
         parse_annex(cursor, [])
     else:
-        parse_definition(cursor, found)
+        parse_property_definition(cursor, property_set)

@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+from archgen.importers.aadl.aadl_data_types import AadlDataTypes
 from archgen.importers.aadl.aadl_tree import Path
 from archgen.importers.aadl.archgen_words import find_own_text, is_marked, read_port_words
-from archgen.importers.aadl.data_types import DataTypes
+from archgen.importers.aadl.classifier_shapes import ResolvedClassifier, ResolvedPort
 from archgen.importers.aadl.import_notes import NoteList
-from archgen.importers.aadl.property_values import Scope, UsedProperties
-from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, Port, Resolved
+from archgen.importers.aadl.property_values import PropertyScope, UsedProperties
+from archgen.importers.aadl.resolved_classifiers import ClassifierResolver
 from archgen.model.element_ids import make_id, make_unique_id
 
 PORT_KINDS = frozenset({"data port", "event data port", "event port", "feature", "subprogram access"})
@@ -37,10 +38,10 @@ class MappedPort:
 class MappedPorts:
     """The ports of a classifier, and the accesses that are kept as hints."""
 
-    scope: Scope
+    scope: PropertyScope
     ports: list[MappedPort] = field(default_factory=list)
     accesses: dict[str, dict[str, str]] = field(default_factory=dict)
-    internal: list[Port] = field(default_factory=list)
+    internal: list[ResolvedPort] = field(default_factory=list)
     """What a node has that is no port of a component."""
     call_paths: set[Path] = field(default_factory=set)
     """What an export of archgen's wrote for flows through calls."""
@@ -70,15 +71,17 @@ class MappedPorts:
 class PortMapper:
     """Maps the features of classifiers, each classifier once."""
 
-    def __init__(self, resolver: ClassifierResolver, types: DataTypes, used: UsedProperties, notes: NoteList) -> None:
+    def __init__(
+        self, resolver: ClassifierResolver, types: AadlDataTypes, used: UsedProperties, notes: NoteList
+    ) -> None:
         """Name types by `types`."""
         self._resolver, self._types, self._used, self._notes = resolver, types, used, notes
         self._mapped: dict[int, MappedPorts] = {}
 
-    def map_ports(self, resolved: Resolved) -> MappedPorts:
+    def map_ports(self, resolved: ResolvedClassifier) -> MappedPorts:
         """Return the ports of a classifier."""
         if id(resolved) not in self._mapped:
-            mapped = MappedPorts(Scope(self._resolver, self._used, resolved))
+            mapped = MappedPorts(PropertyScope(self._resolver, self._used, resolved))
             used: tuple[set[str], set[str]] = (set(), set())
             for port in resolved.ports.values():
                 self._add_port(mapped, port, (), used, is_inverse=False)
@@ -86,7 +89,13 @@ class PortMapper:
         return self._mapped[id(resolved)]
 
     def _add_port(
-        self, mapped: MappedPorts, port: Port, prefix: Path, used: tuple[set[str], set[str]], *, is_inverse: bool
+        self,
+        mapped: MappedPorts,
+        port: ResolvedPort,
+        prefix: Path,
+        used: tuple[set[str], set[str]],
+        *,
+        is_inverse: bool,
     ) -> list[MappedPort]:
         written = port.written
         path = (*prefix, written.name.lower())
@@ -130,7 +139,7 @@ class PortMapper:
         return added
 
     def _add_group(
-        self, mapped: MappedPorts, port: Port, path: Path, used: tuple[set[str], set[str]], *, is_inverse: bool
+        self, mapped: MappedPorts, port: ResolvedPort, path: Path, used: tuple[set[str], set[str]], *, is_inverse: bool
     ) -> list[MappedPort]:
         resolved = self._resolver.resolve(port.use)
         if resolved is None or len(path) > _MAX_GROUP_DEPTH:

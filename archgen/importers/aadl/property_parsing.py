@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from archgen.importers.aadl.aadl_tokens import END, read_text
+from archgen.importers.aadl.aadl_tokens import END, unquote_text
 from archgen.importers.aadl.aadl_tree import (
     AadlLink,
     AadlList,
     AadlName,
     AadlNumber,
+    AadlProperty,
     AadlRange,
     AadlRecord,
-    AadlText,
+    AadlString,
     AadlValue,
     Modes,
     Path,
-    Property,
     PropertySet,
 )
 from archgen.importers.aadl.token_cursor import SECTION_WORDS, TokenCursor
@@ -27,9 +27,9 @@ _BEHIND_NUMBERS = frozenset({"applies", "in", "delta", "units"})
 _MAX_EXPONENT = 400
 
 
-def parse_property_list(cursor: TokenCursor) -> list[Property]:
+def parse_property_list(cursor: TokenCursor) -> list[AadlProperty]:
     """Parse `{ a => 1; b => 2; }` if it stands here."""
-    found: list[Property] = []
+    found: list[AadlProperty] = []
     if cursor.accept("{"):
         cursor.parse_entries(
             lambda: found.append(parse_property(cursor)), lambda: cursor.at("}") or _at_section(cursor)
@@ -43,7 +43,7 @@ def _at_section(cursor: TokenCursor) -> bool:
     return cursor.token.word in SECTION_WORDS and cursor.peek().kind in {"name", END}
 
 
-def parse_property(cursor: TokenCursor) -> Property:
+def parse_property(cursor: TokenCursor) -> AadlProperty:
     """Parse an association up to its `;`."""
     start = cursor.token.offset
     name = cursor.expect_path("a property")
@@ -51,15 +51,15 @@ def parse_property(cursor: TokenCursor) -> Property:
     if not appended:
         cursor.expect("=>")
     cursor.accept("constant")
-    values = [(parse_value(cursor), parse_modes(cursor))]
+    values = [(parse_property_value(cursor), parse_modes(cursor))]
     while cursor.accept(","):
-        values.append((parse_value(cursor), parse_modes(cursor)))
+        values.append((parse_property_value(cursor), parse_modes(cursor)))
     paths = parse_targets(cursor)
     if cursor.accept("in", "binding"):
         _skip_brackets(cursor)
     modes = parse_modes(cursor) or values[0][1]
     cursor.expect(";")
-    return Property(name, values[0][0], cursor.span_from(start), paths, appended, modes, tuple(values[1:]))
+    return AadlProperty(name, values[0][0], cursor.span_from(start), paths, appended, modes, tuple(values[1:]))
 
 
 def parse_targets(cursor: TokenCursor) -> tuple[Path, ...]:
@@ -110,7 +110,7 @@ def parse_contained_path(cursor: TokenCursor) -> Path:
             return tuple(parts)
 
 
-def parse_value(cursor: TokenCursor) -> AadlValue:
+def parse_property_value(cursor: TokenCursor) -> AadlValue:
     """Parse a value, which may be a range."""
     with cursor.deeper():
         value = _parse_single_value(cursor)
@@ -124,7 +124,7 @@ def parse_value(cursor: TokenCursor) -> AadlValue:
 def _parse_single_value(cursor: TokenCursor) -> AadlValue:
     token = cursor.token
     if token.kind == "text":
-        return AadlText(read_text(cursor.advance()))
+        return AadlString(unquote_text(cursor.advance()))
     if token.kind == "number" or token.text in {"-", "+"}:
         return _parse_number(cursor)
     if cursor.accept("("):
@@ -205,7 +205,7 @@ def _make_number(text: str) -> Fraction | None:
 def _parse_list(cursor: TokenCursor) -> AadlList:
     items: list[AadlValue] = []
     while not cursor.accept(")"):
-        items.append(parse_value(cursor))
+        items.append(parse_property_value(cursor))
         if not cursor.at(")"):
             cursor.expect(",")
     return AadlList(tuple(items))
@@ -216,34 +216,34 @@ def _parse_record(cursor: TokenCursor) -> AadlRecord:
     while not cursor.accept("]"):
         name = cursor.advance().text
         cursor.expect("=>")
-        fields[name] = parse_value(cursor)
+        fields[name] = parse_property_value(cursor)
         if not cursor.at("]"):
             cursor.expect(";")
     return AadlRecord(fields)
 
 
-def parse_definition(cursor: TokenCursor, known: PropertySet) -> None:
+def parse_property_definition(cursor: TokenCursor, property_set: PropertySet) -> None:
     """Parse a definition of a property set: a property, a type, or a constant."""
     start = cursor.token.offset
     name = cursor.expect_name("a property")
     cursor.expect(":")
     if cursor.accept("type"):
         parse_property_type(cursor)
-        known.types[name.lower()] = cursor.span_from(start)
+        property_set.types[name.lower()] = cursor.span_from(start)
     elif cursor.accept("constant"):
         parse_property_type(cursor)
         cursor.expect("=>")
-        known.constants[name.lower()] = parse_value(cursor)
+        property_set.constants[name.lower()] = parse_property_value(cursor)
     else:
         cursor.accept("access")
         cursor.accept("inherit")
         parse_property_type(cursor)
         if cursor.accept("=>"):
             cursor.accept("inherit")
-            parse_value(cursor)
+            parse_property_value(cursor)
         cursor.expect("applies", "to")
         _skip_brackets(cursor)
-        known.properties[name.lower()] = cursor.span_from(start)
+        property_set.properties[name.lower()] = cursor.span_from(start)
     cursor.expect(";")
 
 
@@ -278,7 +278,7 @@ def _parse_property_type(cursor: TokenCursor) -> None:
 
 def _parse_number_type(cursor: TokenCursor) -> None:
     if not (cursor.at("units") or cursor.at("=>") or cursor.at(";") or cursor.at("applies") or cursor.at(")")):
-        parse_value(cursor)
+        parse_property_value(cursor)
     if cursor.accept("units"):
         _parse_units(cursor)
 

@@ -10,14 +10,15 @@ from archgen.importers.aadl.aadl_tree import (
     AadlList,
     AadlName,
     AadlNumber,
+    AadlProperty,
     AadlRange,
-    AadlText,
+    AadlString,
     AadlValue,
     Path,
-    Property,
 )
 from archgen.importers.aadl.classifier_names import ClassifierNames, fold_property_name
-from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, Part, Resolved
+from archgen.importers.aadl.classifier_shapes import ResolvedClassifier, ResolvedPart
+from archgen.importers.aadl.resolved_classifiers import ClassifierResolver
 
 _UNITS = {"ns": "ns", "us": "us", "ms": "ms", "sec": "s", "s": "s", "min": "min", "hr": "h", "h": "h"}
 _BYTES_A_SECOND = {
@@ -46,7 +47,7 @@ class UsedProperties:
 
     ids: set[int] = field(default_factory=set)
 
-    def add(self, association: Property | None) -> None:
+    def add(self, association: AadlProperty | None) -> None:
         """Remember one, with what it was put together from."""
         waiting = [association] if association else []
         while waiting:
@@ -56,7 +57,7 @@ class UsedProperties:
 
 
 @dataclass(slots=True)
-class Scope:
+class PropertyScope:
     """Where a classifier stands: the associations around it count before its own.
 
     `layers` are what is around it, the outermost first, each with the path from there to it.
@@ -64,13 +65,13 @@ class Scope:
 
     resolver: ClassifierResolver
     used: UsedProperties
-    inner: Resolved | None
-    layers: tuple[tuple[Resolved, Path], ...] = ()
-    hidden: Resolved | None = None
+    inner: ResolvedClassifier | None
+    layers: tuple[tuple[ResolvedClassifier, Path], ...] = ()
+    hidden: ResolvedClassifier | None = None
     """The type of an instance of which only what is written around it is asked for; `hidden_path` leads on from there."""
     hidden_path: Path = ()
 
-    def find(self, path: Path, name: str) -> Property | None:
+    def find(self, path: Path, name: str) -> AadlProperty | None:
         """Return the association of a property to what stands at a path, or None."""
         found = [outer.properties.get((prefix + path, name)) for outer, prefix in self.layers]
         found.append(self._find_inside(self.inner, path, name) if self.inner else None)
@@ -79,7 +80,7 @@ class Scope:
             self.used.add(association)
         return next(filter(None, found), None)
 
-    def _find_inside(self, resolved: Resolved, path: Path, name: str) -> Property | None:
+    def _find_inside(self, resolved: ResolvedClassifier, path: Path, name: str) -> AadlProperty | None:
         if found := resolved.properties.get((path, name)):
             self.used.add(found)
             return found
@@ -101,7 +102,7 @@ class Scope:
         inner = self.resolver.resolve(part.use)
         return self._find_inside(inner, path[1:], name) if inner else None
 
-    def _find_written(self, written: list[Property], path: Path, name: str) -> Property | None:
+    def _find_written(self, written: list[AadlProperty], path: Path, name: str) -> AadlProperty | None:
         for association in reversed(written):
             paths = [tuple(step.lower() for step in target) for target in association.paths] or [()]
             if path in paths and fold_property_name(association.name) == name:
@@ -116,7 +117,7 @@ class Scope:
                 return fold_value(found.value, self.resolver.names)
         return None
 
-    def find_inherited(self, path: Path, name: str) -> Property | None:
+    def find_inherited(self, path: Path, name: str) -> AadlProperty | None:
         """Return the association of a property that counts for all that stands in what it is written of."""
         ways = [path[:length] for length in range(len(path), -1, -1)]
         for way in ways:
@@ -136,7 +137,7 @@ class Scope:
         found = self.find_inherited(path, name)
         return fold_value(found.value, self.resolver.names) if found else None
 
-    def go_into(self, part: Part, inner: Resolved | None) -> Scope:
+    def go_into(self, part: ResolvedPart, inner: ResolvedClassifier | None) -> PropertyScope:
         """Return the scope of a subcomponent."""
         name = part.written.name.lower()
         layers = [(outer, (*prefix, name)) for outer, prefix in self.layers]
@@ -144,17 +145,17 @@ class Scope:
             layers.append((self.inner, (name,)))
         if part.written.properties:
             layers.append((_wrap_properties(part), ()))
-        return Scope(self.resolver, self.used, inner, tuple(layers))
+        return PropertyScope(self.resolver, self.used, inner, tuple(layers))
 
-    def find_hidden(self, path: Path, name: str) -> Property | None:
+    def find_hidden(self, path: Path, name: str) -> AadlProperty | None:
         """Return what the type of an instance itself says of it."""
         return self._find_inside(self.hidden, (*self.hidden_path, *path), name) if self.hidden else None
 
-    def go_below(self, part: Part) -> Scope:
+    def go_below(self, part: ResolvedPart) -> PropertyScope:
         """Return what is written around an instance of something in whose type a subcomponent stands, for that."""
         name = part.written.name.lower()
         layers = tuple((outer, (*prefix, name)) for outer, prefix in self.layers)
-        return Scope(self.resolver, self.used, None, layers, self.hidden, (*self.hidden_path, name))
+        return PropertyScope(self.resolver, self.used, None, layers, self.hidden, (*self.hidden_path, name))
 
     def says_anything(self) -> bool:
         """Whether an association around the classifier applies to it or to something in it, or is handed down to it."""
@@ -164,14 +165,14 @@ class Scope:
             for outer, prefix in self.layers
         )
 
-    def only_around(self) -> Scope:
+    def only_around(self) -> PropertyScope:
         """Return the scope without the classifier's own associations: what is written of this instance alone."""
-        return Scope(self.resolver, self.used, None, self.layers, self.inner)
+        return PropertyScope(self.resolver, self.used, None, self.layers, self.inner)
 
 
-def _wrap_properties(part: Part) -> Resolved:
+def _wrap_properties(part: ResolvedPart) -> ResolvedClassifier:
     """Return the associations in the braces of a subcomponent, as if they were a classifier's."""
-    wrapped = Resolved(part.owner)
+    wrapped = ResolvedClassifier(part.owner)
     for association in part.written.properties:
         for path in association.paths or ((),):
             key = (tuple(step.lower() for step in path), fold_property_name(association.name))
@@ -195,14 +196,14 @@ def fold_value(value: AadlValue, names: ClassifierNames) -> AadlValue:
 
 def read_texts(value: AadlValue | None) -> list[str]:
     """Return the texts of a list of texts, or of one."""
-    if isinstance(value, AadlText):
+    if isinstance(value, AadlString):
         return [value.text]
     if isinstance(value, AadlList):
-        return [item.text for item in value.items if isinstance(item, AadlText)]
+        return [item.text for item in value.items if isinstance(item, AadlString)]
     return []
 
 
-def read_text(value: AadlValue | None) -> str:
+def read_first_text(value: AadlValue | None) -> str:
     """Return the text of a value, the first of a list, or nothing."""
     return next(iter(read_texts(value)), "")
 

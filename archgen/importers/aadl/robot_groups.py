@@ -11,9 +11,9 @@ from archgen.importers.aadl.element_hints import keep_sources, keep_structure
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.model_roots import ModelRoots
 from archgen.importers.aadl.port_mapping import MappedPort
-from archgen.importers.aadl.property_values import Scope, UsedProperties
+from archgen.importers.aadl.property_values import PropertyScope, UsedProperties
 from archgen.importers.aadl.resolved_classifiers import ClassifierResolver
-from archgen.importers.aadl.structures import End, Structure, StructuredPart
+from archgen.importers.aadl.structures import ClassifierStructure, StructuredPart, WireEnd
 from archgen.model.element_ids import make_id, make_unique_id
 
 PortPlace = tuple[Path, bool, str]
@@ -21,24 +21,24 @@ PortPlace = tuple[Path, bool, str]
 
 
 @dataclass(slots=True)
-class Frame:
+class GroupFrame:
     """A system whose parts are components of a group: `path` leads to it from its root."""
 
     group_id: str
-    structure: Structure
-    scope: Scope
+    structure: ClassifierStructure
+    scope: PropertyScope
     path: Path
     bodies: dict[str, Body] = field(default_factory=dict)
 
 
 @dataclass(slots=True)
-class Instance:
+class ProcessInstance:
     """A process or device where it stands: its ids from the group on, and its names in AADL from the root on."""
 
     ids: tuple[str, ...]
     path: Path
-    structure: Structure
-    scope: Scope
+    structure: ClassifierStructure
+    scope: PropertyScope
     is_of_type: bool
 
 
@@ -47,10 +47,10 @@ class LaunchedSystem:
     """A root: what stands in it, for hosts, links and chains."""
 
     name: str
-    structure: Structure
-    scope: Scope
-    frames: list[Frame]
-    instances: dict[Path, Instance] = field(default_factory=dict)
+    structure: ClassifierStructure
+    scope: PropertyScope
+    frames: list[GroupFrame]
+    instances: dict[Path, ProcessInstance] = field(default_factory=dict)
     topics: dict[PortPlace, list[str]] = field(default_factory=dict)
     senders: dict[PortPlace, list[PortPlace]] = field(default_factory=dict)
     """Who sends what an input reads, by connections that name a topic."""
@@ -62,9 +62,9 @@ class LaunchedSystem:
     """What is kept of buses that join fewer than two."""
     groups: dict[str, str] = field(default_factory=dict)
     """Groups by the names of the parts of the root that they are."""
-    frames_by_path: dict[Path, Frame] = field(default_factory=dict)
+    frames_by_path: dict[Path, GroupFrame] = field(default_factory=dict)
 
-    def find_frame(self, path: Path) -> Frame | None:
+    def find_frame(self, path: Path) -> GroupFrame | None:
         """Return the group that stands at a path."""
         if not self.frames_by_path:
             self.frames_by_path = {frame.path: frame for frame in self.frames}
@@ -88,9 +88,9 @@ class GroupBuilder:
         self._resolver, self._roots, self._builder = resolver, roots, builder
         self._used, self._notes = used, notes
 
-    def add_root(self, root: Structure) -> None:
+    def add_root(self, root: ClassifierStructure) -> None:
         """Build the groups of a root."""
-        scope = Scope(self._resolver, self._used, root.resolved)
+        scope = PropertyScope(self._resolver, self._used, root.resolved)
         system = LaunchedSystem(root.resolved.known.full_name, root, scope, [])
         parts = list(root.parts.values())
         grouped = {part.name: part for part in parts if self._is_group(part)}
@@ -98,14 +98,16 @@ class GroupBuilder:
             if part.structure:
                 inner_scope = scope.go_into(part.part, part.structure.resolved)
                 group_id = self._open_group(part.id, part.part.written.name, part.structure, inner_scope)
-                frame = Frame(group_id, part.structure, inner_scope, (part.name,))
+                frame = GroupFrame(group_id, part.structure, inner_scope, (part.name,))
                 system.groups[part.name] = frame.group_id
                 self._add_components(frame, list(part.structure.parts.values()))
                 system.frames.append(frame)
         if loose := [part for part in parts if part.name not in grouped]:
             name = root.resolved.known.classifier.name.partition(".")[0]
             wanted = make_id(find_own_text(scope, (), "id") or name, "group")
-            frame = Frame(self._open_group(wanted, root.resolved.known.classifier.name, root, scope), root, scope, ())
+            frame = GroupFrame(
+                self._open_group(wanted, root.resolved.known.classifier.name, root, scope), root, scope, ()
+            )
             self._add_components(frame, loose)
             system.frames.append(frame)
         for frame in system.frames:
@@ -123,13 +125,13 @@ class GroupBuilder:
             and self._roots.is_single(structure)
         )
 
-    def _open_group(self, wanted_id: str, name: str, structure: Structure, scope: Scope) -> str:
+    def _open_group(self, wanted_id: str, name: str, structure: ClassifierStructure, scope: PropertyScope) -> str:
         group_id = make_unique_id(wanted_id, self.groups.keys())
         hints: Body = {}
         if not self._resolver.names.is_own:
             hints = {"name": name} if name != group_id else {}
             hints["classifier"] = structure.resolved.known.full_name
-        own_scope = Scope(self._resolver, self._used, structure.resolved)
+        own_scope = PropertyScope(self._resolver, self._used, structure.resolved)
         hints |= keep_sources(own_scope, ()) | keep_structure(structure, scope, self._notes)
         kept = {"hints": {"aadl": hints}} if hints else {}
         # What archgen says of the launch as a whole is the project's.
@@ -137,12 +139,12 @@ class GroupBuilder:
         self.groups[group_id] = {**words, **kept, "components": {}}
         return group_id
 
-    def _add_components(self, frame: Frame, parts: list[StructuredPart]) -> None:
+    def _add_components(self, frame: GroupFrame, parts: list[StructuredPart]) -> None:
         for part in parts:
             frame.bodies[part.id] = self._builder.build_instance(part, frame.scope)
         self.groups[frame.group_id]["components"].update(frame.bodies)
 
-    def _wire_frame(self, system: LaunchedSystem, frame: Frame) -> None:
+    def _wire_frame(self, system: LaunchedSystem, frame: GroupFrame) -> None:
         """Join the parts of a frame; what leads out of the robot is external."""
         is_root = frame.structure is system.structure
         for wire in frame.structure.wires:
@@ -177,7 +179,7 @@ class GroupBuilder:
                     body["external"] = wire.consumer.port.written_name
 
 
-def _list_references(end: End, frames: dict[str, Frame], root_frame: Frame | None) -> list[str]:
+def _list_references(end: WireEnd, frames: dict[str, GroupFrame], root_frame: GroupFrame | None) -> list[str]:
     """Return the outputs of components that stand behind an output of a part of a root."""
     if end.part is None:
         return []
@@ -191,7 +193,9 @@ def _list_references(end: End, frames: dict[str, Frame], root_frame: Frame | Non
     ]
 
 
-def _list_bodies(end: End, frames: dict[str, Frame], root_frame: Frame | None, *, is_input: bool) -> list[Body]:
+def _list_bodies(
+    end: WireEnd, frames: dict[str, GroupFrame], root_frame: GroupFrame | None, *, is_input: bool
+) -> list[Body]:
     """Return the ports of components that stand behind a port of a part of a root."""
     if end.part is None:
         return []
@@ -206,7 +210,7 @@ def _list_bodies(end: End, frames: dict[str, Frame], root_frame: Frame | None, *
     ]
 
 
-def list_leaf_ports(end: End, place: Path) -> list[tuple[Path, MappedPort]]:
+def list_ports_behind_end(end: WireEnd, place: Path) -> list[tuple[Path, MappedPort]]:
     """Return the ports of processes and devices that stand behind an end of a wire, with their paths; `place` is the wire's."""
     leaves: list[tuple[Path, MappedPort]] = []
     waiting, seen = [(place, end)], set[tuple[Path, MappedPort]]()

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from archgen.importers.aadl.aadl_tree import Connection, Path
+from archgen.importers.aadl.aadl_tree import AadlConnection, Path
 from archgen.importers.aadl.archgen_words import find_own_text
+from archgen.importers.aadl.classifier_shapes import ResolvedClassifier, ResolvedPart
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.port_mapping import MappedPort, MappedPorts, PortMapper
-from archgen.importers.aadl.property_values import Scope, UsedProperties
-from archgen.importers.aadl.resolved_classifiers import ClassifierResolver, Part, Resolved
+from archgen.importers.aadl.property_values import PropertyScope, UsedProperties
+from archgen.importers.aadl.resolved_classifiers import ClassifierResolver
 from archgen.model.element_ids import make_id, make_unique_id
 
 COMPONENT_CATEGORIES = frozenset({"system", "process", "device", "abstract", "thread", "thread group"})
@@ -35,8 +36,8 @@ class StructuredPart:
     """A part that is a component: the id that it gets, and how it is built (None where its classifier is in no file)."""
 
     id: str
-    part: Part
-    structure: Structure | None
+    part: ResolvedPart
+    structure: ClassifierStructure | None
 
     @property
     def name(self) -> str:
@@ -45,7 +46,7 @@ class StructuredPart:
 
 
 @dataclass(frozen=True, slots=True)
-class End:
+class WireEnd:
     """An end of a wire: a port of a part, or of the classifier itself where `part` is None."""
 
     part: StructuredPart | None
@@ -56,37 +57,37 @@ class End:
 class Wire:
     """Data that flows from an end to another, by a connection."""
 
-    producer: End
-    consumer: End
-    connection: Connection
+    producer: WireEnd
+    consumer: WireEnd
+    connection: AadlConnection
 
 
 @dataclass(slots=True, eq=False)
-class Structure:
+class ClassifierStructure:
     """How a classifier is built."""
 
-    resolved: Resolved
+    resolved: ResolvedClassifier
     ports: MappedPorts
     parts: dict[str, StructuredPart] = field(default_factory=dict)
     wires: list[Wire] = field(default_factory=list)
-    thread: Part | None = None
+    thread: ResolvedPart | None = None
     """The only thread of a process, which is one component with it."""
     thread_ports: dict[tuple[str, bool], str] = field(default_factory=dict)
     """The ports of that thread behind those of the process, by id and whether they are inputs."""
-    access_connections: dict[str, Connection] = field(default_factory=dict)
+    access_connections: dict[str, AadlConnection] = field(default_factory=dict)
 
-    _inner_ends: dict[int, list[End]] | None = None
+    _inner_ends: dict[int, list[WireEnd]] | None = None
     _wires_by_name: dict[str, list[Wire]] | None = None
 
-    def find_inner_ends(self, port: MappedPort) -> list[End]:
+    def find_inner_ends(self, port: MappedPort) -> list[WireEnd]:
         """Return the ports of its parts that stand behind one of its own, each once."""
         if self._inner_ends is None:
-            ends: dict[int, dict[End, None]] = {}
+            ends: dict[int, dict[WireEnd, None]] = {}
             for wire in self.wires:
                 for outer, inner in ((wire.producer, wire.consumer), (wire.consumer, wire.producer)):
                     if outer.part is None and inner.part is not None:
                         ends.setdefault(id(outer.port), {})[inner] = None
-            self._inner_ends = {key: list(found) for key, found in ends.items()}
+            self._inner_ends = {key: list(inner_ends) for key, inner_ends in ends.items()}
         return self._inner_ends.get(id(port), [])
 
     def find_wires(self, connection_name: str) -> list[Wire]:
@@ -109,10 +110,10 @@ class StructureFinder:
     def __init__(self, resolver: ClassifierResolver, mapper: PortMapper, used: UsedProperties, notes: NoteList) -> None:
         """Look up by `resolver`, map ports by `mapper`."""
         self._resolver, self._mapper, self._used, self._notes = resolver, mapper, used, notes
-        self._found: dict[int, Structure] = {}
-        self._open: list[Resolved] = []
+        self._found: dict[int, ClassifierStructure] = {}
+        self._open: list[ResolvedClassifier] = []
 
-    def find(self, resolved: Resolved) -> Structure:
+    def find(self, resolved: ResolvedClassifier) -> ClassifierStructure:
         """Return how a classifier is built."""
         if id(resolved) not in self._found:
             self._open.append(resolved)
@@ -120,8 +121,8 @@ class StructureFinder:
             self._open.pop()
         return self._found[id(resolved)]
 
-    def _build(self, resolved: Resolved) -> Structure:
-        found = Structure(resolved, self._mapper.map_ports(resolved))
+    def _build(self, resolved: ResolvedClassifier) -> ClassifierStructure:
+        structure = ClassifierStructure(resolved, self._mapper.map_ports(resolved))
         # What each node has from the library, such as its main thread, is no behaviour of its own.
         parts = [
             part
@@ -132,17 +133,17 @@ class StructureFinder:
             and not (part.category == "device" and self._read_own_text(resolved, part, "component"))
         ]
         if resolved.category == "process" and len(parts) == 1 and parts[0].category == "thread":
-            found.thread = parts[0]
-            self._join_thread(found, parts[0])
+            structure.thread = parts[0]
+            self._join_thread(structure, parts[0])
             parts = []
         used_ids: set[str] = set()
         for part in parts:
             if structured := self._build_part(resolved, part, used_ids):
-                found.parts[structured.name] = structured
-        self._add_wires(found)
-        return found
+                structure.parts[structured.name] = structured
+        self._add_wires(structure)
+        return structure
 
-    def _build_part(self, around: Resolved, part: Part, used_ids: set[str]) -> StructuredPart | None:
+    def _build_part(self, around: ResolvedClassifier, part: ResolvedPart, used_ids: set[str]) -> StructuredPart | None:
         inner = self._resolver.resolve(part.use)
         if inner is not None and (inner in self._open or len(self._open) > _MAX_LEVELS):
             words = (
@@ -165,78 +166,81 @@ class StructureFinder:
         used_ids.add(part_id)
         return StructuredPart(part_id, part, structure)
 
-    def _read_own_text(self, around: Resolved, part: Part, key: str) -> str:
+    def _read_own_text(self, around: ResolvedClassifier, part: ResolvedPart, key: str) -> str:
         """Return what an export of archgen's wrote at a part, or nothing."""
-        scope = Scope(self._resolver, self._used, around)
+        scope = PropertyScope(self._resolver, self._used, around)
         return find_own_text(scope, (part.written.name.lower(),), key)
 
-    def _join_thread(self, found: Structure, thread: Part) -> None:
+    def _join_thread(self, structure: ClassifierStructure, thread: ResolvedPart) -> None:
         """Find which port of the thread stands behind which of the process."""
         name = thread.written.name.lower()
-        for connection in found.resolved.connections.values():
-            ends = [fold_path(connection.source), fold_path(connection.target)]
+        for connection in structure.resolved.connections.values():
+            ends = [fold_part_path(connection.source), fold_part_path(connection.target)]
             inside = next((end[1:] for end in ends if len(end) > 1 and end[0] == name), None)
             outside = next((end for end in ends if end and end[0] != name), None)
             if connection.kind not in WIRE_KINDS:
-                found.access_connections[connection.name] = connection
+                structure.access_connections[connection.name] = connection
             elif inside and outside:
-                for port in found.ports.by_path.get(outside, ()):
-                    found.thread_ports[port.id, port.is_input] = ".".join(inside)
+                for port in structure.ports.by_path.get(outside, ()):
+                    structure.thread_ports[port.id, port.is_input] = ".".join(inside)
 
-    def _add_wires(self, found: Structure) -> None:
-        if found.thread is not None:
+    def _add_wires(self, structure: ClassifierStructure) -> None:
+        if structure.thread is not None:
             return
-        for connection in found.resolved.connections.values():
+        for connection in structure.resolved.connections.values():
             if connection.kind not in WIRE_KINDS:
-                found.access_connections[connection.name] = connection
+                structure.access_connections[connection.name] = connection
                 continue
-            sources, targets = self._list_ends(found, connection.source), self._list_ends(found, connection.target)
+            sources, targets = (
+                self._list_ends(structure, connection.source),
+                self._list_ends(structure, connection.target),
+            )
             wires = list(_join_ends(sources, targets, connection))
             if not wires and sources is not None and targets is not None:
                 words = f"connection {connection.name} joins no output to an input".replace("  ", " ")
                 self._notes.add("connection", words, connection.span, "are its ends called so, and in the right order?")
-            found.wires += wires
+            structure.wires += wires
 
-    def _list_ends(self, found: Structure, written_path: Path) -> list[tuple[Path, End]] | None:
+    def _list_ends(self, structure: ClassifierStructure, written_path: Path) -> list[tuple[Path, WireEnd]] | None:
         """Return the ports that an end of a connection means, with their paths below it; None if it is no component's."""
-        path = fold_path(written_path)
+        path = fold_part_path(written_path)
         if not path:
             return []
-        part = found.parts.get(path[0]) if len(path) > 1 else None
-        if part is None and len(path) > 1 and path[0] in found.resolved.parts:
+        part = structure.parts.get(path[0]) if len(path) > 1 else None
+        if part is None and len(path) > 1 and path[0] in structure.resolved.parts:
             return None
         if part is not None and part.structure is None:
             return None
-        ports = part.structure.ports if part and part.structure else found.ports
+        ports = part.structure.ports if part and part.structure else structure.ports
         port_path = path[1:] if part else path
         if port_path in ports.groups:
-            return [(port.path[len(port_path) :], End(part, port)) for port in ports.groups[port_path]]
+            return [(port.path[len(port_path) :], WireEnd(part, port)) for port in ports.groups[port_path]]
         if ".".join(port_path) in ports.accesses or port_path in ports.call_paths:
             return None
-        return [((), End(part, port)) for port in ports.by_path.get(port_path, ())]
+        return [((), WireEnd(part, port)) for port in ports.by_path.get(port_path, ())]
 
 
 def _join_ends(
-    sources: list[tuple[Path, End]] | None, targets: list[tuple[Path, End]] | None, connection: Connection
+    sources: list[tuple[Path, WireEnd]] | None, targets: list[tuple[Path, WireEnd]] | None, connection: AadlConnection
 ) -> Iterator[Wire]:
     """Yield who sends to whom: ends of feature groups are joined by their names below the group."""
-    targets_by_path: dict[Path, list[End]] = {}
+    targets_by_path: dict[Path, list[WireEnd]] = {}
     for path, end in targets or ():
         targets_by_path.setdefault(path, []).append(end)
     for path, source in sources or ():
         for target in targets_by_path.get(path, ()):
-            if _sends(source) and not _sends(target):
+            if _is_sending(source) and not _is_sending(target):
                 yield Wire(source, target, connection)
-            elif _sends(target) and not _sends(source):
+            elif _is_sending(target) and not _is_sending(source):
                 yield Wire(target, source, connection)
 
 
-def _sends(end: End) -> bool:
+def _is_sending(end: WireEnd) -> bool:
     """Whether data comes out of an end: out of a part's output, or into the classifier by its own input."""
     return end.port.is_input == (end.part is None)
 
 
-def _is_only_hardware(structure: Structure) -> bool:
+def _is_only_hardware(structure: ClassifierStructure) -> bool:
     parts = structure.resolved.parts.values()
     return (
         not structure.parts
@@ -245,6 +249,6 @@ def _is_only_hardware(structure: Structure) -> bool:
     )
 
 
-def fold_path(path: Path) -> Path:
+def fold_part_path(path: Path) -> Path:
     """Return a path as it is compared: in lower case, without `self`."""
     return tuple(step.lower() for step in path if step.lower() != "self")

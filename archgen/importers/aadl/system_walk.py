@@ -8,9 +8,9 @@ from archgen.importers.aadl.component_bodies import Body, map_node_ports, name_u
 from archgen.importers.aadl.element_hints import keep_sources
 from archgen.importers.aadl.model_roots import ModelRoots
 from archgen.importers.aadl.port_mapping import MappedPort
-from archgen.importers.aadl.property_values import Scope, read_text
-from archgen.importers.aadl.robot_groups import Instance, LaunchedSystem, PortPlace, list_leaf_ports
-from archgen.importers.aadl.structures import End, Structure, StructuredPart
+from archgen.importers.aadl.property_values import PropertyScope, read_first_text
+from archgen.importers.aadl.robot_groups import LaunchedSystem, PortPlace, ProcessInstance, list_ports_behind_end
+from archgen.importers.aadl.structures import ClassifierStructure, StructuredPart, WireEnd
 from archgen.model.element_ids import make_id, make_unique_id
 
 MAX_INSTANCES = 50_000
@@ -28,40 +28,40 @@ def find_instances(system: LaunchedSystem, roots: ModelRoots) -> None:
     for frame in system.frames:
         if frame.path:
             _find_topics(system, frame.structure, frame.scope, frame.path)
-        group = Instance((frame.group_id,), frame.path, frame.structure, frame.scope, is_of_type=False)
+        group = ProcessInstance((frame.group_id,), frame.path, frame.structure, frame.scope, is_of_type=False)
         for part in frame.structure.parts.values():
             if part.id in frame.bodies:
-                _walk(system, roots, part, group)
+                _walk_part(system, roots, part, group)
 
 
-def _count_instances(structure: Structure, known: dict[int, int]) -> int:
-    """Return how many parts a structure has, to any depth; `known` are those that were counted."""
-    if id(structure) not in known:
+def _count_instances(structure: ClassifierStructure, counts_by_id: dict[int, int]) -> int:
+    """Return how many parts a structure has, to any depth; `counts_by_id` has those that were counted."""
+    if id(structure) not in counts_by_id:
         inner = (part.structure for part in structure.parts.values() if part.structure and not structure.is_node)
-        known[id(structure)] = sum(1 + _count_instances(each, known) for each in inner)
-    return known[id(structure)]
+        counts_by_id[id(structure)] = sum(1 + _count_instances(each, counts_by_id) for each in inner)
+    return counts_by_id[id(structure)]
 
 
-def _walk(system: LaunchedSystem, roots: ModelRoots, part: StructuredPart, around: Instance) -> None:
+def _walk_part(system: LaunchedSystem, roots: ModelRoots, part: StructuredPart, around: ProcessInstance) -> None:
     structure = part.structure
     if structure is None:
         return
     scope = around.scope.go_into(part.part, structure.resolved)
     is_of_type = around.is_of_type or bool(roots.find_type_id(structure))
-    instance = Instance((*around.ids, part.id), (*around.path, part.name), structure, scope, is_of_type)
+    instance = ProcessInstance((*around.ids, part.id), (*around.path, part.name), structure, scope, is_of_type)
     system.instances[instance.path] = instance
     if structure.is_node:
         return
     _find_topics(system, structure, scope, instance.path)
     for inner in structure.parts.values():
-        _walk(system, roots, inner, instance)
+        _walk_part(system, roots, inner, instance)
 
 
-def _find_topics(system: LaunchedSystem, structure: Structure, scope: Scope, path: Path) -> None:
+def _find_topics(system: LaunchedSystem, structure: ClassifierStructure, scope: PropertyScope, path: Path) -> None:
     for wire in structure.wires:
         if not wire.connection.name:
             continue
-        name = read_text(scope.value((wire.connection.name.lower(),), "topic_properties::name"))
+        name = read_first_text(scope.value((wire.connection.name.lower(),), "topic_properties::name"))
         if not name:
             continue
         producers, consumers = _list_leaves(wire.producer, path), _list_leaves(wire.consumer, path)
@@ -73,9 +73,9 @@ def _find_topics(system: LaunchedSystem, structure: Structure, scope: Scope, pat
             system.senders.setdefault(leaf, []).extend(producers)
 
 
-def _list_leaves(end: End, path: Path) -> list[PortPlace]:
+def _list_leaves(end: WireEnd, path: Path) -> list[PortPlace]:
     """Return the ports of processes and devices behind an end of a wire."""
-    return [(leaf_path, port.is_input, port.id) for leaf_path, port in list_leaf_ports(end, path)]
+    return [(leaf_path, port.is_input, port.id) for leaf_path, port in list_ports_behind_end(end, path)]
 
 
 class NodeWriter:
@@ -102,7 +102,7 @@ class NodeWriter:
             node_id = make_unique_id(make_id(wanted, "node"), self.nodes.keys())
             self.nodes[node_id] = {"implements": ".".join(instance.ids), **body}
 
-    def _describe_node(self, system: LaunchedSystem, instance: Instance, fed: set[PortPlace]) -> Body:
+    def _describe_node(self, system: LaunchedSystem, instance: ProcessInstance, fed: set[PortPlace]) -> Body:
         scope = instance.scope
         default_uses = map_node_ports(instance.structure, scope, is_type=False)
         written_uses = default_uses
@@ -125,7 +125,7 @@ class NodeWriter:
 
 
 def _name_topic(
-    system: LaunchedSystem, instance: Instance, port: MappedPort, default_name: str, *, is_fed: bool
+    system: LaunchedSystem, instance: ProcessInstance, port: MappedPort, default_name: str, *, is_fed: bool
 ) -> Body:
     """Return the topic or name of a port, and what the program itself calls it."""
     key = "name" if port.is_call else "topic"
@@ -149,7 +149,7 @@ def _name_topic(
 def _find_fed_ports(system: LaunchedSystem) -> set[PortPlace]:
     """Return the inputs of programs that a wire feeds."""
     fed: set[PortPlace] = set()
-    containers: list[tuple[Structure, Path]] = [(system.structure, ())]
+    containers: list[tuple[ClassifierStructure, Path]] = [(system.structure, ())]
     containers += [(frame.structure, frame.path) for frame in system.frames if frame.path]
     containers += [(inst.structure, inst.path) for inst in system.instances.values() if not inst.structure.is_node]
     for structure, path in containers:

@@ -6,16 +6,16 @@ from typing import Any
 
 from archgen.importers.aadl.aadl_tree import Path
 from archgen.importers.aadl.archgen_words import find_own_text
+from archgen.importers.aadl.classifier_shapes import ResolvedClassifier
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.port_mapping import MappedPorts
-from archgen.importers.aadl.property_values import Scope, read_count, read_duration, read_time_range, read_word
-from archgen.importers.aadl.resolved_classifiers import Resolved
+from archgen.importers.aadl.property_values import PropertyScope, read_count, read_duration, read_time_range, read_word
 
 _ROLES = {"message_source": "source", "filter": "filter", "message_sink": "sink", "reactive": "reactive"}
 _BEHAVIOURS = {"periodic": "periodic", "sporadic": "event", "aperiodic": "event"}
 
 
-def find_role(thread: Resolved) -> str:
+def find_role(thread: ResolvedClassifier) -> str:
     """Return the role of what is made from a thread of the component-connector library, or nothing."""
     return next((role for name, role in _ROLES.items() if thread.is_made_from(name)), "")
 
@@ -33,7 +33,7 @@ def fits_role(role: str, ports: MappedPorts) -> bool:
     }[role]
 
 
-def map_timing(scope: Scope, path: Path, notes: NoteList) -> dict[str, Any]:
+def map_timing(scope: PropertyScope, path: Path, notes: NoteList) -> dict[str, Any]:
     """Return what the properties of a thread say: all but its trigger."""
     timing = _map_dispatch(scope, path, notes)
     for name, key in (("deadline", "deadline"), ("dispatch_jitter", "jitter")):
@@ -49,7 +49,7 @@ def map_timing(scope: Scope, path: Path, notes: NoteList) -> dict[str, Any]:
     return timing if priority is None else {**timing, "priority": priority}
 
 
-def _map_dispatch(scope: Scope, path: Path, notes: NoteList) -> dict[str, Any]:
+def _map_dispatch(scope: PropertyScope, path: Path, notes: NoteList) -> dict[str, Any]:
     """Return behaviour and period."""
     timing: dict[str, Any] = {}
     protocol_property = scope.find(path, "dispatch_protocol")

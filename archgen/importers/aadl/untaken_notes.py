@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from archgen.importers.aadl.aadl_tree import Classifier, Connection, Flow, Modes, Property, Subcomponent
+from archgen.importers.aadl.aadl_tree import AadlConnection, AadlFlow, AadlProperty, Classifier, Modes, Subcomponent
 from archgen.importers.aadl.classifier_names import ClassifierNames, KnownClassifier, fold_property_name
 from archgen.importers.aadl.import_notes import NoteList
 from archgen.importers.aadl.property_values import UsedProperties
@@ -47,7 +47,7 @@ def tell_untaken(resolver: ClassifierResolver, used: UsedProperties, notes: Note
             _tell_property(association, known_sets, notes)
 
 
-def _list_associations(classifier: Classifier) -> list[Property]:
+def _list_associations(classifier: Classifier) -> list[AadlProperty]:
     found = list(classifier.properties)
     elements = (classifier.features, classifier.subcomponents, classifier.connections, classifier.flows)
     for written in elements:
@@ -55,13 +55,13 @@ def _list_associations(classifier: Classifier) -> list[Property]:
     return found
 
 
-def _is_computed(association: Property, names: ClassifierNames) -> bool:
+def _is_computed(association: AadlProperty, names: ClassifierNames) -> bool:
     """Whether a tool has computed a property: what archgen writes of flows and connections is, too."""
     name = fold_property_name(association.name)
     return name == "actual_latency" or (names.is_own and name == "latency")
 
 
-def _tell_property(association: Property, known_sets: frozenset[str], notes: NoteList) -> None:
+def _tell_property(association: AadlProperty, known_sets: frozenset[str], notes: NoteList) -> None:
     name = fold_property_name(association.name)
     set_name = name.rpartition("::")[0]
     if set_name == "archgen":
@@ -74,7 +74,7 @@ def _tell_property(association: Property, known_sets: frozenset[str], notes: Not
     notes.add_counted(f"property {association.name}", words, association.span)
 
 
-def _tell_values(association: Property, notes: NoteList) -> None:
+def _tell_values(association: AadlProperty, notes: NoteList) -> None:
     """Tell a property that was taken as it is in some modes."""
     name, others = association.name, association.other_values
     if others:
@@ -87,9 +87,9 @@ def _tell_values(association: Property, notes: NoteList) -> None:
     notes.add("in modes", words, association.span, fate="noted")
 
 
-def _tell_modes(known: KnownClassifier, notes: NoteList) -> None:
+def _tell_modes(known_classifier: KnownClassifier, notes: NoteList) -> None:
     """Tell what stands in some modes alone, each at its place."""
-    classifier = known.classifier
+    classifier = known_classifier.classifier
     if classifier.modes:
         words = "archgen has no modes: what changes when one follows another is not taken"
         notes.add_counted("modes", words, classifier.span)
@@ -101,7 +101,7 @@ def _tell_modes(known: KnownClassifier, notes: NoteList) -> None:
             notes.add("in modes", words, element.span, fate="noted")
 
 
-def _list_elements(classifier: Classifier) -> Iterator[tuple[Subcomponent | Connection | Flow, str]]:
+def _list_elements(classifier: Classifier) -> Iterator[tuple[Subcomponent | AadlConnection | AadlFlow, str]]:
     yield from ((part, part.category) for part in classifier.subcomponents)
     yield from ((connection, "connection") for connection in classifier.connections)
     yield from ((flow, "flow") for flow in classifier.flows)

@@ -52,6 +52,7 @@ class XmlElement:
         while stack:
             element = stack.pop()
             yield element
+            # The one that was put down last is taken first.
             stack.extend(reversed(element.children))
 
     def span(self, file: str) -> Span:
@@ -73,6 +74,7 @@ class _TreeBuilder:
         self._count = 0
         self._open: list[tuple[XmlElement, Mapping[str, str], list[str]]] = []
         self._parser = expat.ParserCreate()
+        # Else expat calls back for each line of a text by itself.
         self._parser.buffer_text = True
         self._parser.StartElementHandler = self._start
         self._parser.EndElementHandler = self._end
@@ -104,6 +106,7 @@ class _TreeBuilder:
 
     def _start(self, name: str, attributes: dict[str, str]) -> None:
         namespaces = self._open[-1][1] if self._open else _NO_NAMESPACES
+        # Most elements declare none and share the mapping of the one around: half a million copies would fill memory.
         declared = {
             attribute.partition(":")[2]: value
             for attribute, value in attributes.items()
@@ -131,6 +134,7 @@ class _TreeBuilder:
 
     def _end(self, _name: str) -> None:
         element, _, texts = self._open.pop()
+        # Text comes in pieces between the children; added up piece by piece it would take the square of its length.
         element.text = "".join(texts)
 
 

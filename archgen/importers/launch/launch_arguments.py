@@ -34,9 +34,9 @@ class LaunchArguments:
         if known is None or (known.is_fixed and not argument.is_fixed):
             self._declared[name] = argument
 
-    def refuse_unknown(self, asked: Iterable[str], file: str) -> None:
+    def refuse_unknown(self, asked_names: Iterable[str], file: str) -> None:
         """Raise ForeignFileError for what is given and no file declares or asks for, or what it cannot be."""
-        asked_names = frozenset(asked)
+        asked_names = frozenset(asked_names)
         for name, value in self.given.items():
             argument = self._declared.get(name)
             if argument is None and name in asked_names:

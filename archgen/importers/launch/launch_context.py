@@ -16,7 +16,7 @@ from archgen.importers.launch.launch_values import (
     LaunchValue,
     Substitution,
     UnknownValue,
-    describe_value,
+    describe_launch_value,
     is_plain,
     name_object,
     write_plain,
@@ -111,9 +111,11 @@ class LaunchContext:
                 return self._evaluate(value.parts[0], depth)
             case "not" | "and" | "or" | "equals" | "differs":
                 verdict = self.judge(value, depth)
-                return UnknownValue(describe_value(value)) if verdict is None else write_plain(verdict)
+                return UnknownValue(describe_launch_value(value)) if verdict is None else write_plain(verdict)
             case kind:
-                return self._join([f"$({kind}", *(f" {describe_value(part)}" for part in value.parts), ")"], depth)
+                return self._join(
+                    [f"$({kind}", *(f" {describe_launch_value(part)}" for part in value.parts), ")"], depth
+                )
 
     def _resolve_argument(self, value: Substitution, depth: int) -> str | UnknownValue:
         name = self.resolve(value.parts[0], depth)
@@ -149,7 +151,7 @@ class LaunchContext:
             return text
         found = evaluate_expression(text, self._look_up)
         # As Python writes it: `True`, which a comparison with another expression's outcome needs.
-        return str(found) if found is not None else UnknownValue(f"$(eval {describe_value(expression)})")
+        return str(found) if found is not None else UnknownValue(f"$(eval {describe_launch_value(expression)})")
 
     def _look_up(self, name: str) -> str | None:
         """Return the value of an argument that an expression of ROS 1 names; None where it is not known."""
@@ -190,4 +192,4 @@ class LaunchContext:
         if condition.is_negated:
             verdict = None if verdict is None else not verdict
         word = "unless" if condition.is_negated else "if"
-        return f"{word} {describe_value(condition.value)}", verdict
+        return f"{word} {describe_launch_value(condition.value)}", verdict

@@ -38,28 +38,30 @@ def read_launch(files: Sequence[Path], arguments: Mapping[str, str] | None = Non
     for path in given:
         # What is given by name must be readable; what lies in a folder or is included is only noted.
         load_actions(path, LaunchRun(launch_files, load_included))
-    found: dict[Path, tuple[list[LaunchedNode], Counter[str]]] = {}
+    launched: dict[Path, tuple[list[LaunchedNode], Counter[str]]] = {}
     for path in dict.fromkeys(entries):
         run.nodes, run.taken = [], Counter()
         run.run_file(path)
-        found[path] = (run.nodes, run.taken)
+        launched[path] = (run.nodes, run.taken)
     run.arguments.refuse_unknown(run.context.asked, launch_files.show_path(entries[0]))
     for root, count in launch_files.cut_roots.items():
         words = f"only the first {count:,} folders in it were looked through: packages that lie in others are not found"
         run.add_note("folder", words, Span.of_file(root.name or "/"), "give folders that hold less", fate="noted")
     if not given:
-        found = {path: each for path, each in found.items() if path not in run.included} or found
-    return _make_import(run, found)
+        launched = {path: each for path, each in launched.items() if path not in run.included} or launched
+    return _make_import(run, launched)
 
 
-def _make_import(run: LaunchRun, found: Mapping[Path, tuple[list[LaunchedNode], Counter[str]]]) -> ForeignImport:
-    kept = _drop_twins(run, [node for nodes, _ in found.values() for node in nodes])
-    for_all = give_server_parameters(run, [node for nodes in found.values() for node in nodes[0] if id(node) in kept])
+def _make_import(run: LaunchRun, launched: Mapping[Path, tuple[list[LaunchedNode], Counter[str]]]) -> ForeignImport:
+    kept = _drop_twins(run, [node for nodes, _ in launched.values() for node in nodes])
+    for_all = give_server_parameters(
+        run, run.server_parameters, [node for nodes in launched.values() for node in nodes[0] if id(node) in kept]
+    )
     maker = SliceMaker(run)
     slices: dict[str, Mapping[str, Any]] = {}
     comments: dict[str, Mapping[tuple[str | int, ...], str]] = {}
     names: set[str] = set()
-    for path, (nodes, _) in found.items():
+    for path, (nodes, _) in launched.items():
         name = make_unique_id(
             f"{make_id(_find_stem(path), 'launch')}_launch".replace("_launch_launch", "_launch"), names
         )
@@ -71,8 +73,8 @@ def _make_import(run: LaunchRun, found: Mapping[Path, tuple[list[LaunchedNode], 
         if sections:
             slices[f"{name}.yaml"] = sections
             comments[f"{name}.yaml"] = maker.comments
-    taken = sum((counts for _, counts in found.values()), Counter[str]())
-    title = title_from_id(make_id(_find_stem(next(iter(found))), "robot"))
+    taken = sum((counts for _, counts in launched.values()), Counter[str]())
+    title = title_from_id(make_id(_find_stem(next(iter(launched))), "robot"))
     return ForeignImport(slices, dict(sorted((+taken).items())), tuple(run.notes), title, comments=comments)
 
 

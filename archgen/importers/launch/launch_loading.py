@@ -11,7 +11,7 @@ from archgen.importers.launch.launch_actions import LaunchAction
 from archgen.importers.launch.launch_entities import read_xml_entities, read_yaml_entities
 from archgen.importers.launch.launch_files import MAX_LAUNCH_BYTES
 from archgen.importers.launch.launch_run import LaunchRun
-from archgen.importers.launch.python_launch import read_python_launch, read_text
+from archgen.importers.launch.python_launch import read_python_launch, read_python_text
 from archgen.importers.launch.ros_1_entities import Ros1EntityReader, is_ros_1_launch
 from archgen.importers.launch.ros_2_entities import Ros2EntityReader
 
@@ -33,7 +33,7 @@ def load_actions(path: Path, run: LaunchRun) -> list[LaunchAction]:
     if path.name.lower().endswith(".py"):
         return read_python_launch(path, run)
     if path.name.lower().endswith((".yaml", ".yml")):
-        return Ros2EntityReader(folder).read_launch(read_yaml_entities(name, read_text(name, path)))
+        return Ros2EntityReader(folder).read_launch(read_yaml_entities(name, read_python_text(name, path)))
     root = read_xml_entities(name, read_bounded(path, MAX_LAUNCH_BYTES))
     if is_ros_1_launch(root, path.name):
         run.context.is_ros_1 = True

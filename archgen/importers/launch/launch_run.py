@@ -13,7 +13,6 @@ from archgen.importers.launch.launch_files import LaunchFiles
 from archgen.importers.launch.launch_values import OPEN, UnknownValue
 from archgen.importers.launch.launched_nodes import LaunchedNode, join_names
 from archgen.importers.launch.node_making import NodeMaker
-from archgen.importers.launch.parameter_files import ParameterFileReader
 from archgen.importers.launch.scope_run import ScopeRun
 from archgen.importers.launch.server_parameters import ServerParameter, read_server_parameters
 
@@ -34,18 +33,29 @@ class LaunchRun(ScopeRun):
     def __init__(
         self, files: LaunchFiles, load_actions: ActionLoader, arguments: Mapping[str, str] | None = None
     ) -> None:
-        super().__init__(LaunchArguments(dict(arguments or {})))
-        self.files = files
+        super().__init__(files, LaunchArguments(dict(arguments or {})))
         self.nodes: list[LaunchedNode] = []
         self.taken: Counter[str] = Counter()
         """What was taken of the file that is read."""
         self.included: set[Path] = set()
         self.server_parameters: list[ServerParameter] = []
         """Parameters of ROS 1 that stand outside of nodes, by their full names."""
-        self.parameter_reader = ParameterFileReader()
         self._load_actions = load_actions
         self._maker = NodeMaker(self)
         self._includes = 0
+        self._handlers |= {
+            "ignored": self._run_ignored,
+            "description": self._run_description,
+            "server_parameter": self._run_server_parameter,
+            "group": self._run_group,
+            "later": self._run_later,
+            "call": self._run_call,
+            "include": self._run_include,
+            "node": self._run_node,
+            "process": self._run_process,
+            "container": self._run_container,
+            "load": self._run_load,
+        }
 
     def run_file(self, path: Path) -> None:
         """Walk through a file that was given, with nothing set from outside but arguments of the command line."""
@@ -84,7 +94,7 @@ class LaunchRun(ScopeRun):
         self.context.scope.conditions = before
 
     def _run_action(self, action: LaunchAction) -> None:
-        handler: Callable[[LaunchAction], None] | None = getattr(self, f"_run_{action.kind}", None)
+        handler = self._handlers.get(action.kind)
         if handler is None:
             self.add_note(
                 action.word, str(action.get("reason") or "it has no counterpart in the language"), action.span

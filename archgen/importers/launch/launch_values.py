@@ -65,12 +65,13 @@ def name_object(value: object) -> UnknownValue:
 
 def write_plain(value: LaunchValue) -> str:
     """Return a plain value as a launch file writes it."""
+    # A boolean is a number to Python, and would be written in its words.
     if isinstance(value, bool):
         return "true" if value else "false"
     return "" if value is None else str(value)
 
 
-def describe_value(value: LaunchValue, depth: int = 0) -> str:
+def describe_launch_value(value: LaunchValue, depth: int = 0) -> str:
     """Return a value as launch files in XML write it, with nothing filled in: `$(var use_sim_time)`."""
     if depth > 20:  # noqa: PLR2004 - a substitution in a substitution: nobody reads further
         return "..."
@@ -81,16 +82,19 @@ def describe_value(value: LaunchValue, depth: int = 0) -> str:
     if isinstance(value, Mapping):
         return (
             "{"
-            + ", ".join(f"{describe_value(k, depth + 1)}: {describe_value(v, depth + 1)}" for k, v in value.items())
+            + ", ".join(
+                f"{describe_launch_value(k, depth + 1)}: {describe_launch_value(v, depth + 1)}"
+                for k, v in value.items()
+            )
             + "}"
         )
     if isinstance(value, list | tuple):
-        return "".join(describe_value(part, depth + 1) for part in value)
+        return "".join(describe_launch_value(part, depth + 1) for part in value)
     return write_plain(value) if is_plain(value) else f"<{name_object(value).reason}>"
 
 
 def _describe_substitution(value: Substitution, depth: int) -> str:  # noqa: PLR0911 - a kind each
-    parts = [describe_value(part, depth) for part in value.parts]
+    parts = [describe_launch_value(part, depth) for part in value.parts]
     match value.kind:
         case "join":
             return "".join(parts)

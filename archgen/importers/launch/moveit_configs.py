@@ -5,14 +5,11 @@ from __future__ import annotations
 import ast
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 from archgen.importers.launch.launch_values import LaunchValue, Substitution, UnknownValue
+from archgen.importers.launch.python_methods import MethodReader
 from archgen.importers.launch.python_values import CallArguments, RecordValue
 from archgen.importers.launch.xacro_commands import make_xacro_command
-
-if TYPE_CHECKING:
-    from archgen.importers.launch.opened_files import OpenedFileReader
 
 _PIPELINE_ENDING = "_planning.yaml"
 _CONTROLLER_ENDING = "_controllers.yaml"
@@ -67,14 +64,14 @@ def make_builder(arguments: CallArguments) -> MoveItBuilder | None:
 
 
 def call_builder(
-    reader: OpenedFileReader, builder: MoveItBuilder, name: str, arguments: CallArguments, node: ast.Call
+    reader: MethodReader, builder: MoveItBuilder, name: str, arguments: CallArguments, node: ast.Call
 ) -> LaunchValue:
     """Return what a method of a builder gives: mostly itself."""
     files = _MoveItReader(reader, builder, node)
     if name in {"to_moveit_configs", "to_dict"}:
         made = files.finish()
         return made.values["to_dict"] if name == "to_dict" else made
-    if name not in _YAML_STEPS and not hasattr(files, f"read_{name}"):
+    if not files.has_step(name):
         return reader.quote(node)
     files.take_step(name, arguments)
     return builder
@@ -83,8 +80,21 @@ def call_builder(
 class _MoveItReader:
     """Reads the files of one call."""
 
-    def __init__(self, reader: OpenedFileReader, builder: MoveItBuilder, node: ast.Call) -> None:
+    def __init__(self, reader: MethodReader, builder: MoveItBuilder, node: ast.Call) -> None:
         self._reader, self._builder, self._node = reader, builder, node
+        self._steps: dict[str, Callable[[CallArguments], dict[LaunchValue, LaunchValue]]] = {
+            "robot_description": self._read_robot_description,
+            "robot_description_semantic": self._read_robot_description_semantic,
+            "trajectory_execution": self._read_trajectory_execution,
+            "planning_scene_monitor": self._read_planning_scene_monitor,
+            "sensors_3d": self._read_sensors_3d,
+            "moveit_cpp": self._read_moveit_cpp,
+            "planning_pipelines": self._read_planning_pipelines,
+        }
+
+    def has_step(self, name: str) -> bool:
+        """Whether a method of the builder is one that loads something."""
+        return name in _YAML_STEPS or name in self._steps
 
     def take_step(self, name: str, arguments: CallArguments) -> None:
         """Put together what one method of the builder loads."""
@@ -93,8 +103,7 @@ class _MoveItReader:
             values = self._read_yaml(arguments.get(0, "file_path"), default)
             self._builder.parts[name] = {f"{self._builder.prefix}{suffix}": values}
             return
-        step: Callable[[CallArguments], dict[LaunchValue, LaunchValue]] = getattr(self, f"read_{name}")
-        self._builder.parts[name] = step(arguments)
+        self._builder.parts[name] = self._steps[name](arguments)
 
     def finish(self) -> RecordValue:
         """Return the parameters by MoveIt's names for their kinds, and as one mapping by `to_dict`."""
@@ -107,6 +116,7 @@ class _MoveItReader:
         merged: dict[LaunchValue, LaunchValue] = {}
         for name in (*_STEPS, "moveit_cpp"):
             merged |= parts.get(name, {})
+        # They stand below the same key as the limits of joints, and are added there key by key.
         for key, limits in parts.get("pilz_cartesian_limits", {}).items():
             known = merged.get(key)
             if isinstance(known, dict) and isinstance(limits, dict):
@@ -117,7 +127,7 @@ class _MoveItReader:
         values |= {"package_path": self._builder.package, "to_dict": merged}
         return RecordValue(values, frozenset({"to_dict"}))
 
-    def read_robot_description(self, arguments: CallArguments) -> dict[LaunchValue, LaunchValue]:
+    def _read_robot_description(self, arguments: CallArguments) -> dict[LaunchValue, LaunchValue]:
         """Return the command that gives the URDF."""
         path, mappings = arguments.get(0, "file_path"), arguments.get(1, "mappings")
         place = None if path is None else self._place(path)
@@ -125,7 +135,7 @@ class _MoveItReader:
             place, mappings = self._find_urdf(mappings)
         return {self._builder.prefix: self._make_command(place, mappings, "its URDF")}
 
-    def read_robot_description_semantic(self, arguments: CallArguments) -> dict[LaunchValue, LaunchValue]:
+    def _read_robot_description_semantic(self, arguments: CallArguments) -> dict[LaunchValue, LaunchValue]:
         """Return the command that gives the SRDF."""
         path, mappings = arguments.get(0, "file_path"), arguments.get(1, "mappings")
         if path is None:
@@ -135,7 +145,7 @@ class _MoveItReader:
         place = None if path is None else self._place(path)
         return {f"{self._builder.prefix}_semantic": self._make_command(place, mappings, "its SRDF")}
 
-    def read_trajectory_execution(self, arguments: CallArguments) -> dict[LaunchValue, LaunchValue]:
+    def _read_trajectory_execution(self, arguments: CallArguments) -> dict[LaunchValue, LaunchValue]:
         """Return the controllers."""
         manages = arguments.get(1, "moveit_manage_controllers")
         found: dict[LaunchValue, LaunchValue] = {"moveit_manage_controllers": True if manages is None else manages}
@@ -146,12 +156,12 @@ class _MoveItReader:
             path = f"config/{wanted[0]}{_CONTROLLER_ENDING}" if len(names) == 1 or wanted != names else None
         return found | self._read_mapping(path, "moveit_simple_controller_manager")
 
-    def read_planning_scene_monitor(self, arguments: CallArguments) -> dict[LaunchValue, LaunchValue]:
+    def _read_planning_scene_monitor(self, arguments: CallArguments) -> dict[LaunchValue, LaunchValue]:
         """Return what is published of the planning scene."""
         given = {name: arguments.get(number, name) for number, name in enumerate(_MONITOR_NAMES)}
         return {**_MONITOR_DEFAULTS, **{name: value for name, value in given.items() if value is not None}}
 
-    def read_sensors_3d(self, arguments: CallArguments) -> dict[LaunchValue, LaunchValue]:
+    def _read_sensors_3d(self, arguments: CallArguments) -> dict[LaunchValue, LaunchValue]:
         """Return the sensors, where there is a file of them."""
         path = arguments.get(0, "file_path") or "config/sensors_3d.yaml"
         if not self._reader.has_file(self._place(path)):
@@ -160,11 +170,11 @@ class _MoveItReader:
         sensors = values.get("sensors") if isinstance(values, Mapping) else None
         return dict(values) if isinstance(values, Mapping) and isinstance(sensors, list) and any(sensors) else {}
 
-    def read_moveit_cpp(self, arguments: CallArguments) -> dict[LaunchValue, LaunchValue]:
+    def _read_moveit_cpp(self, arguments: CallArguments) -> dict[LaunchValue, LaunchValue]:
         """Return the parameters of MoveItCpp."""
         return self._read_mapping(arguments.get(0, "file_path") or "config/moveit_cpp.yaml", "moveit_cpp")
 
-    def read_planning_pipelines(self, arguments: CallArguments) -> dict[LaunchValue, LaunchValue]:
+    def _read_planning_pipelines(self, arguments: CallArguments) -> dict[LaunchValue, LaunchValue]:
         """Return the planners. Those that MoveIt itself has files for are not known."""
         default, given = arguments.get(0, "default_planning_pipeline"), arguments.get(1, "pipelines")
         own_names = self._list_names(_PIPELINE_ENDING)

@@ -4,20 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from archgen.importers.launch.command_words import split_words
-from archgen.importers.launch.file_changes import FileChanges
 from archgen.importers.launch.launch_actions import LaunchAction
-from archgen.importers.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue, describe_value
+from archgen.importers.launch.launch_parameter_files import FILE_KIND, overlay_parameters
+from archgen.importers.launch.launch_parameter_values import evaluate_parameter, split_parameter
+from archgen.importers.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue, describe_launch_value
 from archgen.importers.launch.launched_nodes import LaunchedNode, clean_name, join_names
-from archgen.importers.launch.parameter_files import FILE_KIND, merge_values
-from archgen.importers.launch.parameter_values import evaluate_parameter, split_parameter
+from archgen.importers.launch.rewritten_files import FileRewrites
 from archgen.importers.launch.ros_arguments import read_nodelet, read_prefix, read_ros_arguments
-
-if TYPE_CHECKING:
-    from archgen.importers.launch.launch_run import LaunchRun
-
+from archgen.importers.launch.scope_run import ScopeRun
 
 CONTAINER_PACKAGE = "rclcpp_components"
 
@@ -25,7 +22,7 @@ CONTAINER_PACKAGE = "rclcpp_components"
 class NodeMaker:
     """Makes nodes for a run, whose context says what is set."""
 
-    def __init__(self, run: LaunchRun) -> None:
+    def __init__(self, run: ScopeRun) -> None:
         self._run = run
 
     def make_node(self, action: LaunchAction, form: str) -> LaunchedNode:
@@ -50,7 +47,7 @@ class NodeMaker:
         """Return the program that an action starts; None where its words are computed."""
         node = self._begin(action, "program")
         words: list[str] = []
-        for value in list_items(action.get("command")):
+        for value in wrap_in_list(action.get("command")):
             if value is None:
                 continue
             text = self._run.context.resolve(value)
@@ -98,7 +95,7 @@ class NodeMaker:
     def _keep_written(self, node: LaunchedNode, key: str, value: LaunchValue) -> None:
         """Remember what stood where a launch argument was filled in."""
         if isinstance(value, Substitution | list | tuple):
-            shown = describe_value(value)
+            shown = describe_launch_value(value)
             if "$(var " in shown and len(shown) <= 500:  # noqa: PLR2004 - a hint, not a file
                 node.written[key] = shown
 
@@ -126,7 +123,7 @@ class NodeMaker:
         pairs: list[Any] = [*reversed(own), *around] if self._run.context.is_ros_1 else [*around, *own]
         for pair in pairs:
             if isinstance(pair, UnknownValue) or not isinstance(pair, list | tuple) or len(pair) != 2:  # noqa: PLR2004
-                unknown = pair if isinstance(pair, UnknownValue) else UnknownValue(describe_value(pair))
+                unknown = pair if isinstance(pair, UnknownValue) else UnknownValue(describe_launch_value(pair))
                 self._run.tell_computed(action.word, "a remap", unknown, action.span)
                 continue
             self._add_remap(node, action, pair)
@@ -159,7 +156,7 @@ class NodeMaker:
             if isinstance(variable, str) and isinstance(setting, str):
                 node.environment[variable] = setting
             else:
-                unknown = setting if isinstance(setting, UnknownValue) else UnknownValue(describe_value(name))
+                unknown = setting if isinstance(setting, UnknownValue) else UnknownValue(describe_launch_value(name))
                 self._run.tell_computed(action.word, "a variable of its environment", unknown, action.span)
         directory = context.resolve(action.get("directory")) if action.get("directory") is not None else ""
         if isinstance(directory, UnknownValue):
@@ -177,7 +174,7 @@ class NodeMaker:
         words: list[str] = []
         for key in ("arguments", "ros_arguments"):
             given: list[str] = []
-            for value in list_items(action.get(key)):
+            for value in wrap_in_list(action.get(key)):
                 text = self._run.context.resolve(value)
                 if isinstance(text, UnknownValue):
                     self._run.tell_computed(action.word, "an argument of the program", text, action.span)
@@ -218,7 +215,7 @@ class NodeMaker:
             # In ROS 1 a `/` in a parameter's name is a level of its tree.
             for part in reversed(name.strip("/").split("/") if self._run.context.is_ros_1 else [name]):
                 found = {part: found}
-            merge_values(node.parameters, found)
+            overlay_parameters(node.parameters, found)
             node.parameter_commands.pop(name, None)
 
     def _add_file_value(self, node: LaunchedNode, action: LaunchAction, entry: LaunchValue) -> None:
@@ -231,13 +228,15 @@ class NodeMaker:
             self._run.tell_computed(action.word, "a parameter file", text, action.span)
             return
         self._keep_written(node, "parameter_files", value)
-        self._add_file(node, text, self._resolve_text(namespace), changes if isinstance(changes, FileChanges) else None)
+        self._add_file(
+            node, text, self._resolve_text(namespace), changes if isinstance(changes, FileRewrites) else None
+        )
 
     def _resolve_text(self, value: LaunchValue) -> str:
         text = self._run.context.resolve("" if value is None else value)
         return text if isinstance(text, str) else ""
 
-    def _add_file(self, node: LaunchedNode, text: str, root_name: str, changes: FileChanges | None) -> None:
+    def _add_file(self, node: LaunchedNode, text: str, root_name: str, changes: FileRewrites | None) -> None:
         """Add a parameter file: its name, and what it says to the node where it can be read."""
         if not text:
             return
@@ -273,10 +272,10 @@ class NodeMaker:
             return
         for part in reversed(inner_name.split("/") if inner_name else []):
             values = {part: values}
-        merge_values(node.parameters, values)
+        overlay_parameters(node.parameters, values)
 
 
-def list_items(value: LaunchValue) -> list[LaunchValue]:
+def wrap_in_list(value: LaunchValue) -> list[LaunchValue]:
     """Return a list of values; of one value alone a list of it."""
     if value is None:
         return []
@@ -284,4 +283,4 @@ def list_items(value: LaunchValue) -> list[LaunchValue]:
 
 
 def _list_pairs(value: LaunchValue) -> list[tuple[LaunchValue, LaunchValue]]:
-    return [(each[0], each[1]) for each in list_items(value) if isinstance(each, list | tuple) and len(each) == 2]  # noqa: PLR2004
+    return [(each[0], each[1]) for each in wrap_in_list(value) if isinstance(each, list | tuple) and len(each) == 2]  # noqa: PLR2004

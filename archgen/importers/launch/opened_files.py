@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from abc import abstractmethod
+from collections.abc import Callable
 
 from archgen.importers.launch.launch_values import OPEN_FILE, LaunchValue, Substitution, UnknownValue
 from archgen.importers.launch.moveit_configs import MoveItBuilder, call_builder, make_builder
@@ -17,17 +17,22 @@ _COMMAND_WORDS = 2
 class OpenedFileReader(MethodReader):
     """Reads calls that open files."""
 
-    @abstractmethod
-    def read_yaml(self, path: LaunchValue, node: ast.AST) -> LaunchValue:
-        """Return what a file says, as a mapping; an UnknownValue where it cannot be read; by the reader of the whole file."""
-
-    @abstractmethod
-    def has_file(self, path: LaunchValue) -> bool:
-        """Whether a file lies in the folders that were given; by the reader of the whole file."""
-
-    @abstractmethod
-    def list_names(self, folder: LaunchValue) -> list[str]:
-        """Return the names of the files in a folder; by the reader of the whole file."""
+    def __init__(self, file: str, lines: list[str]) -> None:
+        super().__init__(file, lines)
+        self._callers: dict[str, Callable[[CallArguments, ast.Call], LaunchValue]] = {
+            "MoveItConfigsBuilder": self._call_moveit_builder,
+            "open": self._call_open,
+            "exists": self._call_exists,
+            "isfile": self._call_exists,
+            "safe_load": self._call_safe_load,
+            "load": self._call_safe_load,
+            "full_load": self._call_safe_load,
+            "process_file": self._call_process_file,
+            "process": self._call_process_file,
+            "parse": self._call_parse,
+            "process_doc": self._call_process_doc,
+        }
+        """Who reads the calls of imported functions and classes, by the last part of their names."""
 
     def call_method(self, method: BoundMethod, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         """Return what a method gives; what it changes is changed."""
@@ -39,7 +44,7 @@ class OpenedFileReader(MethodReader):
             return True if self.has_file(method.owner) else self.quote(node)
         return super().call_method(method, arguments, node)
 
-    def _call_moveitconfigsbuilder(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+    def _call_moveit_builder(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         return make_builder(arguments) or self.quote(node)
 
     def _call_open(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
@@ -50,27 +55,15 @@ class OpenedFileReader(MethodReader):
         # That a file is not at hand says nothing about the robot.
         return True if self.has_file(arguments.get(0, "path")) else self.quote(node)
 
-    def _call_isfile(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
-        return self._call_exists(arguments, node)
-
     def _call_safe_load(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         path = _find_path(arguments.get(0, "stream"))
         return self.quote(node) if path is None else self.read_yaml(path, node)
-
-    def _call_load(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
-        return self._call_safe_load(arguments, node)
-
-    def _call_full_load(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
-        return self._call_safe_load(arguments, node)
 
     def _call_process_file(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         path, mappings = arguments.get(0), arguments.get(None, "mappings")
         if isinstance(path, UnknownValue) or path is None or not (mappings is None or isinstance(mappings, dict)):
             return self.quote(node)
         return make_xacro_command(path, mappings)
-
-    def _call_process(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
-        return self._call_process_file(arguments, node)
 
     def _call_parse(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         path = _find_path(arguments.get(0))

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING
 
 from archgen.importers.launch.launch_actions import LaunchAction, LaunchCondition
 from archgen.importers.launch.launch_context import LaunchContext
 from archgen.importers.launch.launch_values import LaunchValue, Substitution, UnknownValue, copy_value
+from archgen.importers.launch.python_methods import MethodReader
 from archgen.importers.launch.python_values import CallArguments, FunctionValue
-
-if TYPE_CHECKING:
-    from archgen.importers.launch.python_calls import CallReader
 
 LAUNCH_MODULES = frozenset({"launch", "launch_ros"})
 CONDITIONS = frozenset({"IfCondition", "UnlessCondition", "LaunchConfigurationEquals", "LaunchConfigurationNotEquals"})
@@ -77,7 +74,7 @@ def make_condition(name: str, arguments: CallArguments) -> LaunchCondition:
 
 
 def make_action(
-    reader: CallReader, name: str, arguments: CallArguments, node: ast.Call
+    reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call
 ) -> LaunchAction | LaunchValue | None:
     """Return the action that a call makes; None where it makes none that archgen knows."""
     if name in _INCLUDED:
@@ -104,7 +101,7 @@ def make_action(
     return action
 
 
-def _make_node(reader: CallReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
+def _make_node(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
     values: dict[str, LaunchValue] = {}
     for key, names in _NODE_KEYS.items():
         value = arguments.get(None, *names)
@@ -119,7 +116,7 @@ def _make_node(reader: CallReader, name: str, arguments: CallArguments, node: as
     return action
 
 
-def _make_pair(reader: CallReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
+def _make_pair(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
     kind, names = _PAIRS[name]
     keys = _PAIR_KEYS.get(kind, names)
     values = {
@@ -128,7 +125,7 @@ def _make_pair(reader: CallReader, name: str, arguments: CallArguments, node: as
     return LaunchAction(kind, name, reader.place(node), values)
 
 
-def _make_argument(reader: CallReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
+def _make_argument(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
     values = {
         "name": arguments.get(0, "name"),
         "default": copy_value(arguments.get(None, "default_value")),
@@ -137,14 +134,14 @@ def _make_argument(reader: CallReader, name: str, arguments: CallArguments, node
     return LaunchAction("argument", name, reader.place(node), values)
 
 
-def _make_load(reader: CallReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
+def _make_load(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
     target = arguments.get(None, "target_container")
     action = LaunchAction("load", name, reader.place(node), {"target": copy_value(target)})
     reader.add_children(action, arguments.get(None, "composable_node_descriptions"))
     return action
 
 
-def _make_include(reader: CallReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
+def _make_include(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
     given = arguments.get(None, "launch_arguments")
     pairs = list(given.items()) if isinstance(given, Mapping) else given
     if pairs is not None and not isinstance(pairs, list | tuple):
@@ -153,7 +150,7 @@ def _make_include(reader: CallReader, name: str, arguments: CallArguments, node:
     return LaunchAction("include", name, reader.place(node), values)
 
 
-def _make_group(reader: CallReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
+def _make_group(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
     scoped = arguments.get(None, "scoped")
     values = {
         "scoped": True if scoped is None else copy_value(scoped),
@@ -165,20 +162,20 @@ def _make_group(reader: CallReader, name: str, arguments: CallArguments, node: a
     return action
 
 
-def _make_simulated_time(reader: CallReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
+def _make_simulated_time(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
     values = {"name": "use_sim_time", "value": copy_value(arguments.get(0, "value"))}
     return LaunchAction("parameter", name, reader.place(node), values)
 
 
-def _make_namespace(reader: CallReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
+def _make_namespace(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
     return LaunchAction("namespace", name, reader.place(node), {"namespace": copy_value(arguments.get(0, "namespace"))})
 
 
-def _make_parameter_file(reader: CallReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
+def _make_parameter_file(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
     return LaunchAction("parameter_file", name, reader.place(node), {"file": copy_value(arguments.get(0, "filename"))})
 
 
-def _make_process(reader: CallReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
+def _make_process(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
     command = arguments.get(None, "cmd")
     values = {
         "command": copy_value(command if isinstance(command, list | tuple) else [command]),
@@ -193,7 +190,7 @@ def _make_process(reader: CallReader, name: str, arguments: CallArguments, node:
     return LaunchAction("process", name, reader.place(node), values)
 
 
-def _make_timer(reader: CallReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
+def _make_timer(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
     period = arguments.get(None, "period")
     shown = period if isinstance(period, int | float | str) else "some"
     action = LaunchAction("later", name, reader.place(node), {"reason": f"what is in it starts after {shown} s"})
@@ -201,7 +198,7 @@ def _make_timer(reader: CallReader, name: str, arguments: CallArguments, node: a
     return action
 
 
-def _make_event(reader: CallReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
+def _make_event(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
     target, key, reason = _EVENTS[name]
     action = LaunchAction("later", name, reader.place(node), {"reason": reason})
     started = arguments.get(None, key)
@@ -213,13 +210,13 @@ def _make_event(reader: CallReader, name: str, arguments: CallArguments, node: a
     return action
 
 
-def _make_handler(reader: CallReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
+def _make_handler(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
     action = LaunchAction("group", name, reader.place(node), {"scoped": False})
     reader.add_children(action, arguments.get(0, "event_handler"))
     return action
 
 
-def _make_call(reader: CallReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
+def _make_call(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
     function = arguments.get(None, "function")
     given = arguments.get(None, "args")
     named = arguments.get(None, "kwargs")
@@ -244,7 +241,7 @@ def _make_call(reader: CallReader, name: str, arguments: CallArguments, node: as
     return LaunchAction("call", name, reader.place(node), {"call": call})
 
 
-_MAKERS: dict[str, Callable[[CallReader, str, CallArguments, ast.Call], LaunchAction]] = {
+_MAKERS: dict[str, Callable[[MethodReader, str, CallArguments, ast.Call], LaunchAction]] = {
     "DeclareLaunchArgument": _make_argument,
     # MoveIt's own: one that is true or false.
     "DeclareBooleanLaunchArg": _make_argument,

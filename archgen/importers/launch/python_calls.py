@@ -5,15 +5,15 @@ from __future__ import annotations
 import ast
 import posixpath
 from abc import abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
-from archgen.importers.launch.file_changes import FileChanges
 from archgen.importers.launch.launch_actions import LaunchAction, LaunchCondition
+from archgen.importers.launch.launch_parameter_files import FILE_KIND
 from archgen.importers.launch.launch_values import LaunchValue, Substitution, UnknownValue, copy_value
 from archgen.importers.launch.opened_files import OpenedFileReader
-from archgen.importers.launch.parameter_files import FILE_KIND
 from archgen.importers.launch.python_actions import CONDITIONS, LAUNCH_MODULES, make_action, make_condition
 from archgen.importers.launch.python_values import BoundMethod, CallArguments, FunctionValue, ImportedName
+from archgen.importers.launch.rewritten_files import FileRewrites
 
 _SUBSTITUTIONS: dict[str, tuple[str, tuple[str, ...]]] = {
     "LaunchConfiguration": ("var", ("variable_name", "default")),
@@ -74,6 +74,29 @@ class CallReader(OpenedFileReader):
     def __init__(self, file: str, own_name: str, lines: list[str]) -> None:
         super().__init__(file, lines)
         self.own_name = own_name
+        self._callers |= {
+            "LaunchDescription": self._call_launch_description,
+            "PathJoinSubstitution": self._call_path_join,
+            "join": self._call_join,
+            "joinpath": self._call_join,
+            "dirname": self._call_dirname,
+            "ThisLaunchFileDir": self._call_this_folder,
+            "ThisLaunchFile": self._call_this_file,
+            "ParameterValue": self._call_parameter_value,
+            "RewrittenYaml": self._call_rewritten_yaml,
+            "ReplaceString": self._call_replace_string,
+            "getenv": self._call_getenv,
+            "get": self._call_get,
+            "range": self._call_range,
+            "list": self._call_list,
+            "str": self._call_str,
+            "dict": self._call_dict,
+            "enumerate": self._call_enumerate,
+            "zip": self._call_zip,
+            "len": self._call_len,
+            "int": self._call_int,
+            "float": self._call_float,
+        }
 
     def call(self, function: LaunchValue, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         """Return what a call gives."""
@@ -93,11 +116,13 @@ class CallReader(OpenedFileReader):
             return self._make_substitution(name, arguments, node)
         if name in CONDITIONS:
             return make_condition(name, arguments)
-        reader: Callable[[CallArguments, ast.Call], LaunchValue] | None = getattr(self, f"_call_{name.lower()}", None)
-        if reader is not None and _is_meant(function):
-            return reader(arguments, node)
+        # By a table and not by the name of a method: the name comes from the file, and may be that of any method here.
+        caller = self._callers.get(name)
+        if caller is not None and _is_meant(function):
+            return caller(arguments, node)
         if name in _FIRST_ARGUMENT and (arguments.positional or arguments.named):
             return arguments.get(0, _FIRST_ARGUMENT[name], *arguments.named)
+        # Packages of launch files often add their own folder, and import from it in the next line.
         if function.name in {"sys.path.append", "sys.path.insert"} and arguments.positional:
             self.add_module_folder(arguments.positional[-1])
             return None
@@ -126,12 +151,12 @@ class CallReader(OpenedFileReader):
         made = copy_value(Substitution(kind, tuple(parts)))
         return made if not isinstance(made, UnknownValue) else self.quote(node)
 
-    def _call_launchdescription(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+    def _call_launch_description(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         action = LaunchAction("description", "LaunchDescription", self.place(node))
         self.add_children(action, arguments.get(0, "initial_entities"))
         return action
 
-    def _call_pathjoinsubstitution(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+    def _call_path_join(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         parts = arguments.get(0, "substitutions")
         return Substitution("path", tuple(parts)) if isinstance(parts, list | tuple) else self.quote(node)
 
@@ -143,27 +168,24 @@ class CallReader(OpenedFileReader):
             return posixpath.join(*parts)
         return Substitution("path", tuple(parts))
 
-    def _call_joinpath(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
-        return self._call_join(arguments, node)
-
     def _call_dirname(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         path = arguments.get(0)
         if isinstance(path, Substitution) and path.kind == "path" and len(path.parts) > 1:
             return Substitution("path", path.parts[:-1])
         return posixpath.dirname(path) if isinstance(path, str) else self.quote(node)
 
-    def _call_thislaunchfiledir(self, _arguments: CallArguments, _node: ast.Call) -> LaunchValue:
+    def _call_this_folder(self, _arguments: CallArguments, _node: ast.Call) -> LaunchValue:
         return posixpath.dirname(self.own_name)
 
-    def _call_thislaunchfile(self, _arguments: CallArguments, _node: ast.Call) -> LaunchValue:
+    def _call_this_file(self, _arguments: CallArguments, _node: ast.Call) -> LaunchValue:
         return self.own_name
 
-    def _call_parametervalue(self, arguments: CallArguments, _node: ast.Call) -> LaunchValue:
+    def _call_parameter_value(self, arguments: CallArguments, _node: ast.Call) -> LaunchValue:
         kind = arguments.get(1, "value_type")
         word = kind.last if isinstance(kind, ImportedName) else "yaml"
         return Substitution("typed", (arguments.get(0, "value"), {"float": "double"}.get(word, word)))
 
-    def _call_rewrittenyaml(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+    def _call_rewritten_yaml(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         rewrites = arguments.get(1, "param_rewrites")
         changes = copy_value(rewrites) if isinstance(rewrites, Mapping) else {}
         root = arguments.get(2, "root_key")
@@ -171,18 +193,18 @@ class CallReader(OpenedFileReader):
             "RewrittenYaml", "values written over a parameter file are taken where the file can be read", node
         )
         source = arguments.get(0, "source_file")
-        if isinstance(source, Substitution) and source.kind == FILE_KIND and isinstance(source.parts[2], FileChanges):
+        if isinstance(source, Substitution) and source.kind == FILE_KIND and isinstance(source.parts[2], FileRewrites):
             source, _, earlier = source.parts
-            made = FileChanges(changes, earlier.texts, earlier.condition)
+            made = FileRewrites(changes, earlier.texts, earlier.condition)
         else:
-            made = FileChanges(changes)
+            made = FileRewrites(changes)
         return Substitution(FILE_KIND, (source, "" if root is None else root, made))
 
-    def _call_replacestring(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+    def _call_replace_string(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         texts, condition = arguments.get(1, "replacements"), arguments.get(2, "condition")
         if not isinstance(texts, Mapping):
             return self.quote(node)
-        made = FileChanges({}, copy_value(texts), condition if isinstance(condition, LaunchCondition) else None)
+        made = FileRewrites({}, copy_value(texts), condition if isinstance(condition, LaunchCondition) else None)
         return Substitution(FILE_KIND, (arguments.get(0, "source_file"), "", made))
 
     def _call_getenv(self, arguments: CallArguments, _node: ast.Call) -> LaunchValue:

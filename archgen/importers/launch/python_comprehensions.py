@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 
 from archgen.importers.launch.launch_values import LaunchValue
-from archgen.importers.launch.python_expressions import ExpressionReader, list_items
+from archgen.importers.launch.python_expressions import ExpressionReader, list_loop_items
 from archgen.importers.launch.python_operators import MAX_ITEMS
 from archgen.importers.launch.python_values import NameScope
 
@@ -13,15 +13,23 @@ from archgen.importers.launch.python_values import NameScope
 class ComprehensionReader(ExpressionReader):
     """Reads comprehensions, besides all other expressions."""
 
-    def _read_listcomp(self, node: ast.ListComp, scope: NameScope) -> LaunchValue:
+    def __init__(self, file: str, lines: list[str]) -> None:
+        super().__init__(file, lines)
+        self._expression_readers |= {
+            ast.ListComp: self._read_list_comprehension,
+            ast.GeneratorExp: self._read_generator,
+            ast.DictComp: self._read_dict_comprehension,
+        }
+
+    def _read_list_comprehension(self, node: ast.ListComp, scope: NameScope) -> LaunchValue:
         scopes = self._walk_generators(node.generators, NameScope(scope), 0)
         return self.quote(node) if scopes is None else [self.evaluate(node.elt, each) for each in scopes]
 
-    def _read_generatorexp(self, node: ast.GeneratorExp, scope: NameScope) -> LaunchValue:
+    def _read_generator(self, node: ast.GeneratorExp, scope: NameScope) -> LaunchValue:
         scopes = self._walk_generators(node.generators, NameScope(scope), 0)
         return self.quote(node) if scopes is None else [self.evaluate(node.elt, each) for each in scopes]
 
-    def _read_dictcomp(self, node: ast.DictComp, scope: NameScope) -> LaunchValue:
+    def _read_dict_comprehension(self, node: ast.DictComp, scope: NameScope) -> LaunchValue:
         scopes = self._walk_generators(node.generators, NameScope(scope), 0)
         if scopes is None:
             return self.quote(node)
@@ -35,7 +43,7 @@ class ComprehensionReader(ExpressionReader):
         if depth == len(generators):
             return [scope]
         generator = generators[depth]
-        items = list_items(self.evaluate(generator.iter, scope))
+        items = list_loop_items(self.evaluate(generator.iter, scope))
         if items is None:
             return None
         found: list[NameScope] = []

@@ -37,6 +37,26 @@ class ExpressionReader(ABC):
         self._lines = lines
         self._steps = 0
         self._depth = 0
+        self._expression_readers: dict[type[ast.expr], Callable[[Any, NameScope], LaunchValue]] = {
+            ast.Constant: self._read_constant,
+            ast.Name: self._read_name,
+            ast.Attribute: self._read_attribute,
+            ast.List: self._read_list,
+            ast.Tuple: self._read_tuple,
+            ast.Set: self._read_set,
+            ast.Dict: self._read_dict,
+            ast.JoinedStr: self._read_joined_text,
+            ast.BinOp: self._read_operation,
+            ast.UnaryOp: self._read_unary_operation,
+            ast.BoolOp: self._read_truth_operation,
+            ast.Compare: self._read_comparison,
+            ast.IfExp: self._read_choice,
+            ast.Subscript: self._read_subscript,
+            ast.Lambda: self._read_lambda,
+            ast.NamedExpr: self._read_named_expression,
+            ast.Call: self._read_call,
+        }
+        """Who reads which kind of expression; any other kind is quoted."""
 
     @abstractmethod
     def call(self, function: LaunchValue, arguments: CallArguments, node: ast.Call) -> LaunchValue:
@@ -69,9 +89,7 @@ class ExpressionReader(ABC):
 
     def evaluate(self, node: ast.expr, scope: NameScope) -> LaunchValue:
         """Return what an expression stands for."""
-        reader: Callable[[Any, NameScope], LaunchValue] | None = getattr(
-            self, f"_read_{type(node).__name__.lower()}", None
-        )
+        reader = self._expression_readers.get(type(node))
         if reader is None or self._depth >= MAX_DEPTH or not self.count_step():
             return self.quote(node)
         self._depth += 1
@@ -160,7 +178,7 @@ class ExpressionReader(ABC):
                 return self.quote(node)
         return found
 
-    def _read_joinedstr(self, node: ast.JoinedStr, scope: NameScope) -> LaunchValue:
+    def _read_joined_text(self, node: ast.JoinedStr, scope: NameScope) -> LaunchValue:
         parts: list[LaunchValue] = []
         for part in node.values:
             value = (
@@ -173,7 +191,7 @@ class ExpressionReader(ABC):
             parts.append(str(value) if isinstance(value, bool) else value)
         return join_values(parts) if parts else ""
 
-    def _read_binop(self, node: ast.BinOp, scope: NameScope) -> LaunchValue:
+    def _read_operation(self, node: ast.BinOp, scope: NameScope) -> LaunchValue:
         left, right = self.evaluate(node.left, scope), self.evaluate(node.right, scope)
         return self.combine(node.op, left, right, node)
 
@@ -182,7 +200,7 @@ class ExpressionReader(ABC):
         made = combine_values(sign, left, right)
         return self.quote(node) if made is None else made
 
-    def _read_unaryop(self, node: ast.UnaryOp, scope: NameScope) -> LaunchValue:
+    def _read_unary_operation(self, node: ast.UnaryOp, scope: NameScope) -> LaunchValue:
         value = self.evaluate(node.operand, scope)
         if isinstance(node.op, ast.Not):
             verdict = self.judge(value)
@@ -192,7 +210,7 @@ class ExpressionReader(ABC):
             return -value if isinstance(node.op, ast.USub) else value
         return self.quote(node)
 
-    def _read_boolop(self, node: ast.BoolOp, scope: NameScope) -> LaunchValue:
+    def _read_truth_operation(self, node: ast.BoolOp, scope: NameScope) -> LaunchValue:
         is_or = isinstance(node.op, ast.Or)
         value: LaunchValue = None
         for part in node.values:
@@ -204,7 +222,7 @@ class ExpressionReader(ABC):
                 return value
         return value
 
-    def _read_compare(self, node: ast.Compare, scope: NameScope) -> LaunchValue:
+    def _read_comparison(self, node: ast.Compare, scope: NameScope) -> LaunchValue:
         values = [self.force(self.evaluate(each, scope)) for each in (node.left, *node.comparators)]
         for sign, left, right in zip(node.ops, values, values[1:], strict=False):
             verdict = compare_values(sign, left, right)
@@ -214,7 +232,7 @@ class ExpressionReader(ABC):
                 return False
         return True
 
-    def _read_ifexp(self, node: ast.IfExp, scope: NameScope) -> LaunchValue:
+    def _read_choice(self, node: ast.IfExp, scope: NameScope) -> LaunchValue:
         verdict = self.judge(self.evaluate(node.test, scope))
         if verdict is None:
             return self.quote(node)
@@ -250,7 +268,7 @@ class ExpressionReader(ABC):
     def _read_lambda(self, node: ast.Lambda, scope: NameScope) -> LaunchValue:
         return FunctionValue(node, scope, self)
 
-    def _read_namedexpr(self, node: ast.NamedExpr, scope: NameScope) -> LaunchValue:
+    def _read_named_expression(self, node: ast.NamedExpr, scope: NameScope) -> LaunchValue:
         scope.values[node.target.id] = value = self.evaluate(node.value, scope)
         return value
 
@@ -259,7 +277,7 @@ class ExpressionReader(ABC):
         if isinstance(target, ast.Name):
             scope.values[target.id] = value
         elif isinstance(target, ast.Tuple | ast.List):
-            items = list_items(value) if not isinstance(value, Mapping) else None
+            items = list_loop_items(value) if not isinstance(value, Mapping) else None
             fits = items is not None and len(items) == len(target.elts)
             for number, each in enumerate(target.elts):
                 self.assign(each, items[number] if fits and items else self.quote(target), scope)
@@ -291,7 +309,7 @@ class ExpressionReader(ABC):
         return self.call(function, CallArguments(positional, named), node)
 
 
-def list_items(value: LaunchValue) -> list[LaunchValue] | None:
+def list_loop_items(value: LaunchValue) -> list[LaunchValue] | None:
     """Return what a loop over a value takes one after the other; None where that is not known."""
     if isinstance(value, list | tuple | Mapping):
         return list(value)[:MAX_ITEMS] if len(value) <= MAX_ITEMS else None

@@ -24,11 +24,11 @@ _ENTRY = "generate_launch_description"
 
 def read_python_launch(path: Path, run: LaunchRun) -> list[LaunchAction]:
     """Return the actions of a file. Raise ForeignFileError for what is no Python, or no launch file."""
-    file, text = run.files.show_path(path), read_text(run.files.show_path(path), path)
-    return _FileReader(path, text, run, {}).read_file(_parse_file(file, text))
+    file, text = run.files.show_path(path), read_python_text(run.files.show_path(path), path)
+    return _PythonFileReader(path, text, run, {}).read_file(_parse_file(file, text))
 
 
-def read_text(file: str, path: Path) -> str:
+def read_python_text(file: str, path: Path) -> str:
     """Return the text of a file. Raise ForeignFileError."""
     data = read_bounded(path, MAX_LAUNCH_BYTES)
     try:
@@ -47,7 +47,7 @@ def _parse_file(file: str, text: str) -> ast.Module:
         raise ForeignFileError(error.message, span, "archgen reads launch files as Python 3 does") from None
 
 
-class _FileReader(CallReader):
+class _PythonFileReader(CallReader):
     """Reads one file."""
 
     def __init__(self, path: Path, text: str, run: LaunchRun, modules: dict[Path, NameScope]) -> None:
@@ -79,12 +79,12 @@ class _FileReader(CallReader):
         if path not in self._modules:
             self._modules[path] = scope = NameScope(values={"__file__": path.as_posix(), "__name__": name})
             try:
-                text = read_text(self._run.files.show_path(path), path)
+                text = read_python_text(self._run.files.show_path(path), path)
                 tree = _parse_file(self._run.files.show_path(path), text)
             except ForeignFileError as error:
                 self._run.add_note("import", error.message, error.span)
             else:
-                _FileReader(path, text, self._run, self._modules).run_block(tree.body, scope)
+                _PythonFileReader(path, text, self._run, self._modules).run_block(tree.body, scope)
         return ModuleValue(name, self._modules[path])
 
     def read_yaml(self, path: LaunchValue, node: ast.AST) -> LaunchValue:

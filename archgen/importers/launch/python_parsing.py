@@ -25,7 +25,7 @@ def parse_python(text: str) -> ast.Module:
     if len(text) > MAX_CHARACTERS:
         msg = f"it has more than {MAX_CHARACTERS:,} characters, which no launch file has"
         raise PythonRefusedError(msg)
-    tree = _parse(text, "exec")
+    tree = _parse_quietly(text, "exec")
     assert isinstance(tree, ast.Module)  # noqa: S101 - what this mode gives
     return tree
 
@@ -35,13 +35,13 @@ def parse_expression(text: str) -> ast.expr | None:
     if len(text) > 2000 or sum(map(text.count, "([{")) > _MAX_OPEN:  # noqa: PLR2004 - nobody writes such
         return None
     try:
-        tree = _parse(text.strip(), "eval")
+        tree = _parse_quietly(text.strip(), "eval")
     except PythonRefusedError:
         return None
     return tree.body if isinstance(tree, ast.Expression) else None
 
 
-def _parse(text: str, mode: Literal["exec", "eval"]) -> ast.AST:
+def _parse_quietly(text: str, mode: Literal["exec", "eval"]) -> ast.AST:
     try:
         with warnings.catch_warnings():
             # Python warns of `\d` and `is 1`: that is the author's affair.

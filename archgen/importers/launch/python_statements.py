@@ -11,7 +11,7 @@ from archgen.importers.launch.launch_actions import LaunchCondition
 from archgen.importers.launch.launch_values import LaunchValue, UnknownValue
 from archgen.importers.launch.python_branches import BranchRecord, Container, merge_names
 from archgen.importers.launch.python_comprehensions import ComprehensionReader
-from archgen.importers.launch.python_expressions import MAX_DEPTH, list_items
+from archgen.importers.launch.python_expressions import MAX_DEPTH, list_loop_items
 from archgen.importers.launch.python_operators import MAX_ITEMS
 from archgen.importers.launch.python_values import CallArguments, FunctionValue, ImportedName, ModuleValue, NameScope
 
@@ -29,6 +29,25 @@ class StatementReader(ComprehensionReader):
         self.conditions: list[LaunchCondition] = []
         """The conditions around that are not known: what is made there counts only if they hold."""
         self._functions = 0
+        self._statement_runners: dict[type[ast.stmt], Callable[[Any, NameScope], Ending]] = {
+            ast.Assign: self._run_assignment,
+            ast.AnnAssign: self._run_annotated_assignment,
+            ast.AugAssign: self._run_augmented_assignment,
+            ast.Expr: self._run_expression,
+            ast.Import: self._run_import,
+            ast.ImportFrom: self._run_import_from,
+            ast.FunctionDef: self._run_definition,
+            ast.Return: self._run_return,
+            ast.Raise: self._run_raise,
+            ast.Break: self._run_break,
+            ast.Continue: self._run_continue,
+            ast.With: self._run_with,
+            ast.Try: self._run_try,
+            ast.If: self._run_if,
+            ast.For: self._run_for,
+            ast.While: self._run_while,
+        }
+        """Who follows which kind of statement; any other kind is passed over."""
 
     @abstractmethod
     def tell_noted(self, word: str, message: str, node: ast.AST) -> None:
@@ -47,9 +66,7 @@ class StatementReader(ComprehensionReader):
         return ""
 
     def _run_statement(self, statement: ast.stmt, scope: NameScope) -> Ending:
-        runner: Callable[[Any, NameScope], Ending] | None = getattr(
-            self, f"_run_{type(statement).__name__.lower()}", None
-        )
+        runner = self._statement_runners.get(type(statement))
         if runner is None or self._depth >= MAX_DEPTH or not self.count_step():
             return ""
         self._depth += 1
@@ -58,18 +75,18 @@ class StatementReader(ComprehensionReader):
         finally:
             self._depth -= 1
 
-    def _run_assign(self, statement: ast.Assign, scope: NameScope) -> Ending:
+    def _run_assignment(self, statement: ast.Assign, scope: NameScope) -> Ending:
         value = self.evaluate(statement.value, scope)
         for target in statement.targets:
             self.assign(target, value, scope)
         return ""
 
-    def _run_annassign(self, statement: ast.AnnAssign, scope: NameScope) -> Ending:
+    def _run_annotated_assignment(self, statement: ast.AnnAssign, scope: NameScope) -> Ending:
         if statement.value is not None:
             self.assign(statement.target, self.evaluate(statement.value, scope), scope)
         return ""
 
-    def _run_augassign(self, statement: ast.AugAssign, scope: NameScope) -> Ending:
+    def _run_augmented_assignment(self, statement: ast.AugAssign, scope: NameScope) -> Ending:
         if not isinstance(statement.target, ast.Name):
             return ""
         old, new = scope.find(statement.target.id)[1], self.evaluate(statement.value, scope)
@@ -79,7 +96,7 @@ class StatementReader(ComprehensionReader):
             scope.values[statement.target.id] = self.combine(statement.op, old, new, statement)
         return ""
 
-    def _run_expr(self, statement: ast.Expr, scope: NameScope) -> Ending:
+    def _run_expression(self, statement: ast.Expr, scope: NameScope) -> Ending:
         self.evaluate(statement.value, scope)
         return ""
 
@@ -89,7 +106,7 @@ class StatementReader(ComprehensionReader):
             scope.values[alias.asname or name] = self.load_module(name) or ImportedName(name)
         return ""
 
-    def _run_importfrom(self, statement: ast.ImportFrom, scope: NameScope) -> Ending:
+    def _run_import_from(self, statement: ast.ImportFrom, scope: NameScope) -> Ending:
         module = self.load_module(statement.module or "")
         for alias in statement.names:
             is_known, value = module.scope.find(alias.name) if module else (False, None)
@@ -100,7 +117,7 @@ class StatementReader(ComprehensionReader):
                 scope.values |= module.scope.values
         return ""
 
-    def _run_functiondef(self, statement: ast.FunctionDef, scope: NameScope) -> Ending:
+    def _run_definition(self, statement: ast.FunctionDef, scope: NameScope) -> Ending:
         scope.values[statement.name] = FunctionValue(statement, scope, self)
         return ""
 
@@ -178,7 +195,7 @@ class StatementReader(ComprehensionReader):
         return ""
 
     def _run_for(self, statement: ast.For, scope: NameScope) -> Ending:
-        items = list_items(self.evaluate(statement.iter, scope))
+        items = list_loop_items(self.evaluate(statement.iter, scope))
         if items is None:
             repeated = self.quote(statement.iter)
             self.tell_noted("for", f"how often is computed: `{repeated.reason}`; what is in it is read once", statement)

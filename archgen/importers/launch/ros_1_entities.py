@@ -8,9 +8,9 @@ from typing import Any
 
 from archgen.importers.launch.launch_actions import ConditionalValue, LaunchAction, LaunchCondition
 from archgen.importers.launch.launch_entities import LaunchEntity
-from archgen.importers.launch.launch_values import LaunchValue, Substitution, UnknownValue, describe_value
-from archgen.importers.launch.parameter_files import FILE_KIND, read_inline_value, read_inline_values
-from archgen.importers.launch.substitution_texts import read_text
+from archgen.importers.launch.launch_parameter_files import FILE_KIND, read_inline_value, read_inline_values
+from archgen.importers.launch.launch_values import LaunchValue, Substitution, UnknownValue, describe_launch_value
+from archgen.importers.launch.substitution_texts import read_substituted_text
 
 _NODE_KEYS = {
     "package": "pkg",
@@ -22,7 +22,6 @@ _NODE_KEYS = {
     "prefix": "launch-prefix",
     "host": "machine",
 }
-_TAGS = frozenset({"arg", "env", "group", "include", "machine", "node", "param", "remap", "rosparam", "test"})
 _WORKING_FOLDERS = frozenset({"node", "ROS_HOME"})
 
 
@@ -67,6 +66,18 @@ class Ros1EntityReader:
 
     def __init__(self, folder: str) -> None:
         self._folder = folder
+        self._readers: dict[str, Callable[[LaunchEntity], LaunchAction]] = {
+            "arg": self._read_arg,
+            "env": self._read_env,
+            "group": self._read_group,
+            "include": self._read_include,
+            "machine": self._read_machine,
+            "node": self._read_node,
+            "param": self._read_param,
+            "remap": self._read_remap,
+            "rosparam": self._read_rosparam,
+            "test": self._read_test,
+        }
 
     def read_launch(self, root: LaunchEntity) -> list[LaunchAction]:
         """Return the actions of a launch file."""
@@ -74,13 +85,10 @@ class Ros1EntityReader:
 
     def _attribute(self, entity: LaunchEntity, name: str) -> LaunchValue:
         text = entity.attributes.get(name)
-        return None if text is None else read_text(text, self._folder, is_ros_1=True)
+        return None if text is None else read_substituted_text(text, self._folder, is_ros_1=True)
 
     def _read_entity(self, entity: LaunchEntity) -> LaunchAction:
-        reader: Callable[[LaunchEntity], LaunchAction] = self._read_unknown
-        if entity.tag in _TAGS:
-            reader = getattr(self, f"_read_{entity.tag}")
-        action = reader(entity)
+        action = self._readers.get(entity.tag, self._read_unknown)(entity)
         action.conditions += self._read_conditions(entity)
         return action
 
@@ -207,11 +215,11 @@ class Ros1EntityReader:
         if isinstance(values, list):
             return [self._fill_values(value, depth + 1) for value in values]
         if isinstance(values, str) and "$(" in values:
-            return Substitution("typed", (read_text(values, self._folder, is_ros_1=True), "yaml"))
+            return Substitution("typed", (read_substituted_text(values, self._folder, is_ros_1=True), "yaml"))
         return values
 
     def _clean_name(self, name: str) -> LaunchValue:
-        return read_text(name.removeprefix("~"), self._folder, is_ros_1=True)
+        return read_substituted_text(name.removeprefix("~"), self._folder, is_ros_1=True)
 
     def _read_param_value(self, entity: LaunchEntity) -> LaunchValue:
         kind = entity.attributes.get("type", "yaml")
@@ -222,4 +230,4 @@ class Ros1EntityReader:
         for key in ("textfile", "binfile"):
             if key in entity.attributes:
                 return Substitution("command", (["cat ", self._attribute(entity, key)],))
-        return UnknownValue(describe_value(entity.attributes.get("name", "")))
+        return UnknownValue(describe_launch_value(entity.attributes.get("name", "")))

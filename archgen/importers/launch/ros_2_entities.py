@@ -8,7 +8,7 @@ from typing import Any
 from archgen.importers.launch.launch_actions import LaunchAction, LaunchCondition
 from archgen.importers.launch.launch_entities import LaunchEntity
 from archgen.importers.launch.launch_values import LaunchValue, Substitution
-from archgen.importers.launch.substitution_texts import read_text
+from archgen.importers.launch.substitution_texts import read_substituted_text
 
 ADDS_TO_ENVIRONMENT = "it adds to a variable of the environment"
 _UNREAD = {
@@ -18,21 +18,6 @@ _UNREAD = {
     "shutdown": "it ends the launch",
     "append_env": ADDS_TO_ENVIRONMENT,
 }
-_TAGS = frozenset(
-    {
-        *("arg", "composable_node", "executable", "group", "include", "let", "lifecycle_node", "load_composable_node"),
-        *(
-            "log",
-            "node",
-            "node_container",
-            "push_ros_namespace",
-            "set_env",
-            "set_parameter",
-            "set_parameters_from_file",
-        ),
-        *("set_remap", "timer"),
-    }
-)
 _NODE_KEYS = {
     "package": ("pkg",),
     "executable": ("exec",),
@@ -51,6 +36,25 @@ class Ros2EntityReader:
 
     def __init__(self, folder: str) -> None:
         self._folder = folder
+        self._readers: dict[str, Callable[[LaunchEntity], LaunchAction]] = {
+            "arg": self._read_arg,
+            "composable_node": self._read_composable_node,
+            "executable": self._read_executable,
+            "group": self._read_group,
+            "include": self._read_include,
+            "let": self._read_let,
+            "lifecycle_node": self._read_lifecycle_node,
+            "load_composable_node": self._read_load_composable_node,
+            "log": self._read_log,
+            "node": self._read_node,
+            "node_container": self._read_node_container,
+            "push_ros_namespace": self._read_push_ros_namespace,
+            "set_env": self._read_set_env,
+            "set_parameter": self._read_set_parameter,
+            "set_parameters_from_file": self._read_set_parameters_from_file,
+            "set_remap": self._read_set_remap,
+            "timer": self._read_timer,
+        }
 
     def read_launch(self, root: LaunchEntity) -> list[LaunchAction]:
         """Return the actions of a launch file."""
@@ -58,18 +62,14 @@ class Ros2EntityReader:
 
     def _value(self, value: Any) -> LaunchValue:  # noqa: ANN401 - XML gives text, YAML more
         if isinstance(value, str):
-            return read_text(value, self._folder, is_ros_1=False)
+            return read_substituted_text(value, self._folder, is_ros_1=False)
         return [self._value(item) for item in value] if isinstance(value, list) else value
 
     def _attribute(self, entity: LaunchEntity, *names: str) -> LaunchValue:
         return next((self._value(entity.attributes[name]) for name in names if name in entity.attributes), None)
 
     def _read_entity(self, entity: LaunchEntity) -> LaunchAction:
-        tag = entity.tag.replace("-", "_")
-        reader: Callable[[LaunchEntity], LaunchAction] = self._read_unknown
-        if tag in _TAGS:
-            reader = getattr(self, f"_read_{tag}")
-        action = reader(entity)
+        action = self._readers.get(entity.tag.replace("-", "_"), self._read_unknown)(entity)
         for word, is_negated in (("if", False), ("unless", True)):
             if word in entity.attributes:
                 action.conditions.append(LaunchCondition(self._attribute(entity, word), is_negated))
@@ -139,7 +139,7 @@ class Ros2EntityReader:
             for child in inner:
                 read = self._read_param(child, depth + 1)
                 merged |= read if isinstance(read, dict) else {}
-            return {_text(name): merged}
+            return {_write_scalar(name): merged}
         value = self._attribute(entity, "value")
         if isinstance(entity.attributes.get("value"), str):
             separator = entity.attributes.get("value-sep")
@@ -150,7 +150,7 @@ class Ros2EntityReader:
                 ]
             else:
                 value = Substitution("typed", (value, entity.attributes.get("type", "yaml")))
-        return {_text(name): value}
+        return {_write_scalar(name): value}
 
     def _read_executable(self, entity: LaunchEntity) -> LaunchAction:
         values = self._read_node_values(entity)
@@ -206,5 +206,5 @@ class Ros2EntityReader:
         return LaunchAction("later", entity.tag, entity.span, {"reason": reason}, children)
 
 
-def _text(value: LaunchValue) -> str:
+def _write_scalar(value: LaunchValue) -> str:
     return value if isinstance(value, str) else "" if value is None else str(value)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from archgen.importers.launch.command_words import split_words
+from archgen.importers.launch.launch_parameter_values import read_value_text
 from archgen.importers.launch.launch_values import OPEN
 from archgen.importers.launch.launched_nodes import LaunchedNode, join_names
-from archgen.importers.launch.parameter_values import read_value_text
 
 _WITH_VALUE = frozenset(
     {"-r", "--remap", "-p", "--param", "--params-file", "--log-level", "--log-file-name", "-e", "--enclave"}

@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from archgen.diagnostics.source_span import Span
 from archgen.importers.foreign.foreign_import import ImportNote
-from archgen.importers.launch.launch_actions import ConditionalValue, LaunchAction
+from archgen.importers.launch.launch_actions import ActionKind, ConditionalValue, LaunchAction
 from archgen.importers.launch.launch_arguments import DeclaredArgument, LaunchArguments
 from archgen.importers.launch.launch_context import LaunchContext
-from archgen.importers.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue, describe_value
+from archgen.importers.launch.launch_files import LaunchFiles
+from archgen.importers.launch.launch_parameter_files import FILE_KIND, ParameterFileReader
+from archgen.importers.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue, describe_launch_value
 from archgen.importers.launch.launched_nodes import clean_name, join_names
-from archgen.importers.launch.parameter_files import FILE_KIND
 
 
 class ScopeRun:
     """Walks through what sets something. Notes are kept here, each one once for a place."""
 
-    def __init__(self, arguments: LaunchArguments) -> None:
-        self.arguments = arguments
+    def __init__(self, files: LaunchFiles, arguments: LaunchArguments) -> None:
+        self.files, self.arguments = files, arguments
+        self.parameter_reader = ParameterFileReader()
         self.context = LaunchContext()
         self.notes: list[ImportNote] = []
         self.hosts: dict[str, str] = {}
@@ -27,6 +29,17 @@ class ScopeRun:
         self.open_files: list[Path] = []
         """The files that are read just now, each included by the one before."""
         self._seen_notes: set[tuple[str, str, int, str]] = set()
+        self._handlers: dict[ActionKind, Callable[[LaunchAction], None]] = {
+            "argument": self._run_argument,
+            "configure": self._run_configure,
+            "namespace": self._run_namespace,
+            "parameter": self._run_parameter,
+            "parameter_file": self._run_parameter_file,
+            "remap": self._run_remap,
+            "environment": self._run_environment,
+            "host": self._run_host,
+        }
+        """Who walks through which kind of action; any other kind is not read."""
 
     def _run_argument(self, action: LaunchAction) -> None:
         name = self.context.resolve(action.get("name"))
@@ -44,7 +57,7 @@ class ScopeRun:
                 )
             self.context.scope.configurations[name] = value
         if default is None and name not in self.context.scope.configurations:
-            message = f"the argument `{name}` has no default: what it gives stays `{describe_value(Substitution('var', (name,)))}`"
+            message = f"the argument `{name}` has no default: what it gives stays `{describe_launch_value(Substitution('var', (name,)))}`"
             self.add_note(action.word, message, action.span, fate="noted")
 
     def _can_be_set(self) -> bool:

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 from archgen.diagnostics.source_span import Span
 from archgen.importers.launch.launch_actions import LaunchAction
+from archgen.importers.launch.launch_parameter_files import FILE_KIND, overlay_parameters
+from archgen.importers.launch.launch_parameter_values import CommandWords, evaluate_parameter, split_parameter
 from archgen.importers.launch.launch_values import Substitution, UnknownValue
 from archgen.importers.launch.launched_nodes import LaunchedNode
-from archgen.importers.launch.parameter_files import FILE_KIND, merge_values
-from archgen.importers.launch.parameter_values import CommandWords, evaluate_parameter, split_parameter
-
-if TYPE_CHECKING:
-    from archgen.importers.launch.launch_run import LaunchRun
+from archgen.importers.launch.scope_run import ScopeRun
 
 SIMULATED_TIME = "use_sim_time"
 
@@ -27,11 +25,13 @@ class ServerParameter(NamedTuple):
     conditions: tuple[tuple[str, bool | None], ...]
 
 
-def give_server_parameters(run: LaunchRun, nodes: list[LaunchedNode]) -> dict[str, Any]:
+def give_server_parameters(
+    run: ScopeRun, server_parameters: Sequence[ServerParameter], nodes: list[LaunchedNode]
+) -> dict[str, Any]:
     """Give nodes what stands below their names; return what is for all nodes, and note the rest."""
     names = {node.full_name: node for node in nodes if node.full_name}
     for_all: dict[str, Any] = {}
-    for full_name, value, span, conditions in run.server_parameters:
+    for full_name, value, span, conditions in server_parameters:
         parts = full_name.strip("/").split("/")
         owner = next(
             (names[name] for end in range(len(parts), 0, -1) if (name := "/" + "/".join(parts[:end])) in names), None
@@ -62,24 +62,24 @@ def give_server_parameters(run: LaunchRun, nodes: list[LaunchedNode]) -> dict[st
         # What the node itself says counts more.
         own = dict(owner.parameters)
         owner.parameters.clear()
-        merge_values(owner.parameters, given)
-        merge_values(owner.parameters, own)
+        overlay_parameters(owner.parameters, given)
+        overlay_parameters(owner.parameters, own)
     return for_all
 
 
 def _has_parameter(node: LaunchedNode, parts: list[str]) -> bool:
-    found: Any = node.parameters
+    parameters: Any = node.parameters
     for part in parts:
-        found = found.get(part) if isinstance(found, dict) else None
-    return found is not None
+        parameters = parameters.get(part) if isinstance(parameters, dict) else None
+    return parameters is not None
 
 
-def read_server_parameters(run: LaunchRun, action: LaunchAction) -> dict[str, Any]:
+def read_server_parameters(run: ScopeRun, action: LaunchAction) -> dict[str, Any]:
     """Return parameters of ROS 1 that stand outside of nodes, by their names."""
-    found: dict[str, Any] = {}
+    server_values: dict[str, Any] = {}
     for entry in action.values["entries"]:
         if isinstance(entry, Substitution) and entry.kind == FILE_KIND:
-            _read_server_file(run, action, entry, found)
+            _read_server_file(run, action, entry, server_values)
         elif isinstance(entry, Mapping):
             for raw_name, raw_value in entry.items():
                 name = run.context.resolve(raw_name)
@@ -88,16 +88,16 @@ def read_server_parameters(run: LaunchRun, action: LaunchAction) -> dict[str, An
                     continue
                 value, others = split_parameter(evaluate_parameter(raw_value, run.context), name)
                 if value is not None:
-                    found[name] = value
+                    server_values[name] = value
                 for inner_name, other in others:
                     if isinstance(other, UnknownValue):
                         run.tell_computed(action.word, f"the parameter `{inner_name}`", other, action.span)
                     else:
-                        found[inner_name.replace(".", "/")] = other
-    return found
+                        server_values[inner_name.replace(".", "/")] = other
+    return server_values
 
 
-def _read_server_file(run: LaunchRun, action: LaunchAction, entry: Substitution, found: dict[str, Any]) -> None:
+def _read_server_file(run: ScopeRun, action: LaunchAction, entry: Substitution, server_values: dict[str, Any]) -> None:
     text = run.context.resolve(entry.parts[0])
     path = run.files.find_file(text) if isinstance(text, str) else None
     values = None if path is None else run.parameter_reader.read_whole(path)
@@ -107,4 +107,4 @@ def _read_server_file(run: LaunchRun, action: LaunchAction, entry: Substitution,
         return
     for part in reversed(str(entry.parts[1]).split("/") if entry.parts[1] else []):
         values = {part: values}
-    merge_values(found, values)
+    overlay_parameters(server_values, values)

@@ -25,7 +25,7 @@ _ESCAPE = re.compile(r"\\(.)", re.DOTALL)
 _MANY_WORDS = frozenset({"eval", "command"})
 
 
-def read_text(text: str, folder: str, *, is_ros_1: bool, depth: int = 0) -> LaunchValue:
+def read_substituted_text(text: str, folder: str, *, is_ros_1: bool, depth: int = 0) -> LaunchValue:
     """Return a text with its substitutions. `folder` is what `$(dirname)` stands for."""
     if "$(" not in text or depth > _MAX_DEPTH:
         return text if is_ros_1 else _take_escapes(text)
@@ -94,8 +94,11 @@ def _read_substitution(text: str, folder: str, *, is_ros_1: bool, depth: int) ->
     kind = _KINDS.get(word)
     if word in _MANY_WORDS:
         # ROS 2 takes one word in quotes.
-        return Substitution(word, (read_text(_strip_quotes(rest), folder, is_ros_1=is_ros_1, depth=depth),))
-    words = [read_text(_strip_quotes(each), folder, is_ros_1=is_ros_1, depth=depth) for each in _split_words(rest)]
+        return Substitution(word, (read_substituted_text(_strip_quotes(rest), folder, is_ros_1=is_ros_1, depth=depth),))
+    words = [
+        read_substituted_text(_strip_quotes(each), folder, is_ros_1=is_ros_1, depth=depth)
+        for each in _split_words(rest)
+    ]
     if word == "optenv":
         return Substitution("env", (words[0] if words else "", join_values(words[1:]) if words[1:] else ""))
     if word == "find-exec" and len(words) == 1:

@@ -32,7 +32,7 @@ _QOS_TIMES = {"deadline_ns": "deadline", "lifespan_ns": "lifespan", "liveliness_
 _MAX_DEPTH = 2**31
 
 
-def read_document(root: MappingNode, account: ImportAccount) -> NodeType:
+def read_nodl_document(root: MappingNode, account: ImportAccount) -> NodeType:
     """Return what a document says of its node."""
     node = NodeType(account)
     for entry in root:

@@ -11,7 +11,7 @@ from archgen.diagnostics.source_span import Span
 from archgen.importers.foreign.bounded_files import read_bounded
 from archgen.importers.foreign.foreign_import import ForeignFileError, ForeignImport
 from archgen.importers.foreign.xml_tree import parse_xml
-from archgen.importers.nodl.nodl_documents import read_document
+from archgen.importers.nodl.nodl_documents import read_nodl_document
 from archgen.importers.nodl.nodl_types import NodeType
 from archgen.importers.nodl.nodl_xml import read_interface
 from archgen.importers.ros_package.import_account import ImportAccount
@@ -46,7 +46,7 @@ def _read_file(file: Path, account: ImportAccount) -> Iterator[tuple[str, NodeTy
         yield from read_interface(root, str(file), account)
         return
     name = _ENDINGS.sub("", file.name)
-    yield name, read_document(_parse_document(file, data), account)
+    yield name, read_nodl_document(_parse_document(file, data), account)
 
 
 def _parse_document(file: Path, data: bytes) -> MappingNode:

@@ -10,7 +10,7 @@ from typing import Any
 
 from archgen.diagnostics.source_span import Span
 from archgen.importers.foreign.foreign_import import ForeignFileError, ForeignImport, ImportNote
-from archgen.importers.orca.property_files import Property, read_properties
+from archgen.importers.orca.property_files import OrcaProperty, read_properties
 from archgen.model.code_names import make_camel_name
 from archgen.model.element_ids import make_id, make_unique_id
 from archgen.syntax.plain_scalars import resolve_scalar
@@ -37,7 +37,7 @@ def read_orca(files: Sequence[Path]) -> ForeignImport:
     notes: list[ImportNote] = []
     component_types: dict[str, Any] = {}
     for path in paths:
-        reader = _DefinitionReader(read_properties(path), path.name, taken, notes)
+        reader = _OrcaReader(read_properties(path), path.name, taken, notes)
         component_id = make_unique_id(make_id(path.stem, "component"), component_types.keys())
         component_types[component_id] = reader.read_component(component_id)
     slices = {"orca_types.yaml": {"component_types": component_types}}
@@ -49,10 +49,10 @@ def _list_definitions(folder: Path) -> list[Path]:
     return [path for path in sorted(folder.rglob("*.def")) if path.is_file() and not path.is_symlink()]
 
 
-class _DefinitionReader:
+class _OrcaReader:
     """Reads one file."""
 
-    def __init__(self, properties: list[Property], file: str, taken: Counter[str], notes: list[ImportNote]) -> None:
+    def __init__(self, properties: list[OrcaProperty], file: str, taken: Counter[str], notes: list[ImportNote]) -> None:
         self._properties = properties
         self._file = file
         self._taken = taken
@@ -88,27 +88,31 @@ class _DefinitionReader:
         }
         return {key: value for key, value in data.items() if value or key in {"inputs", "outputs"}}
 
-    def _read_ports(self, word: str, values: dict[str, Property]) -> dict[str, Any]:
+    def _read_ports(self, word: str, values: dict[str, OrcaProperty]) -> dict[str, Any]:
         tags = [parts[1] for key in values if (parts := key.split("."))[0] == word and len(parts) == 3]  # noqa: PLR2004 - `Provides.NAME.Type`
         ports: dict[str, Any] = {}
         for tag in dict.fromkeys(tags):
-            found = {key: values[f"{word}.{tag}.{key}"] for key in _PORT_KEYS[word] if f"{word}.{tag}.{key}" in values}
-            self._known |= {f"{word}.{tag}.{key}" for key in found}
+            properties = {
+                key: values[f"{word}.{tag}.{key}"] for key in _PORT_KEYS[word] if f"{word}.{tag}.{key}" in values
+            }
+            self._known |= {f"{word}.{tag}.{key}" for key in properties}
             names = [
-                found[key].value for key in ("DefaultName", "DefaultInterface") if key in found and found[key].value
+                properties[key].value
+                for key in ("DefaultName", "DefaultInterface")
+                if key in properties and properties[key].value
             ]
             port_id = make_unique_id(make_id(names[0] if names else tag, "port"), ports.keys())
             if names and names[0] != port_id:
-                self._add_note("DefaultName", f"`{names[0]}` is called `{port_id}`", found, fate="noted")
-            ports[port_id] = self._write_port(tag, port_id, found)
+                self._add_note("DefaultName", f"`{names[0]}` is called `{port_id}`", properties, fate="noted")
+            ports[port_id] = self._write_port(tag, port_id, properties)
             self._taken[word] += 1
         return ports
 
-    def _write_port(self, tag: str, port_id: str, found: dict[str, Property]) -> Any:  # noqa: ANN401 - the short or the long form
-        type_name = found["Type"].value.rpartition("::")[2].strip() if "Type" in found else ""
+    def _write_port(self, tag: str, port_id: str, properties: dict[str, OrcaProperty]) -> Any:  # noqa: ANN401 - the short or the long form
+        type_name = properties["Type"].value.rpartition("::")[2].strip() if "Type" in properties else ""
         if not type_name:
-            self._add_note("Type", f"`{tag}` has no type", found)
-        proxy = found.get("DefaultProxy")
+            self._add_note("Type", f"`{tag}` has no type", properties)
+        proxy = properties.get("DefaultProxy")
         data = {
             "type": type_name,
             # Not the hint of the backend: that stands for what is outside of the architecture.
@@ -118,7 +122,7 @@ class _DefinitionReader:
         kept = {key: value for key, value in data.items() if value}
         return type_name if set(kept) == {"type"} else kept or None
 
-    def _read_parameters(self, values: dict[str, Property]) -> tuple[dict[str, Any], list[str]]:
+    def _read_parameters(self, values: dict[str, OrcaProperty]) -> tuple[dict[str, Any], list[str]]:
         parameters: dict[str, Any] = {}
         untagged: list[str] = []
         for each in self._properties:
@@ -148,7 +152,7 @@ class _DefinitionReader:
         return parameters, list(dict.fromkeys(untagged))
 
     def _write_parameter(
-        self, default: Property, tag: str, name: str, facts: dict[str, Property], *, is_external: bool
+        self, default: OrcaProperty, tag: str, name: str, facts: dict[str, OrcaProperty], *, is_external: bool
     ) -> Any:  # noqa: ANN401 - a value, or a declaration
         kind = _TYPES.get(facts["Type"].value, "") if "Type" in facts else ""
         if "Type" in facts and not kind:
@@ -171,8 +175,8 @@ class _DefinitionReader:
                     ImportNote(each.key.partition(".")[0], f"`{each.key}` is no key of a definition", each.span)
                 )
 
-    def _add_note(self, kind: str, message: str, found: dict[str, Property], fate: str = "not taken") -> None:
-        span = next((each.span for each in found.values()), Span.of_file(self._file))
+    def _add_note(self, kind: str, message: str, properties: dict[str, OrcaProperty], fate: str = "not taken") -> None:
+        span = next((each.span for each in properties.values()), Span.of_file(self._file))
         self._notes.append(ImportNote(kind, message, span, fate=fate))
 
 

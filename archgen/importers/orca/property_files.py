@@ -14,7 +14,7 @@ _KEPT = frozenset("\\=# ")
 
 
 @dataclass(frozen=True, slots=True)
-class Property:
+class OrcaProperty:
     """A property with its place."""
 
     key: str
@@ -22,7 +22,7 @@ class Property:
     span: Span
 
 
-def read_properties(path: Path) -> list[Property]:
+def read_properties(path: Path) -> list[OrcaProperty]:
     """Return the properties of a file in its order. Raise ForeignFileError for what is no such file."""
     data = read_bounded(path, _MAX_BYTES)
     try:
@@ -35,12 +35,12 @@ def read_properties(path: Path) -> list[Property]:
         raise ForeignFileError(
             words, Span.of_file(path.name), "give a definition file: lines such as `Config.Rate.Default=5`"
         )
-    found: list[Property] = []
+    found: list[OrcaProperty] = []
     for number, line in enumerate(text.replace("\r\n", "\n").split("\n"), 1):
         code = _take_comment(line.rstrip("\r"))
         if code.strip():
             key, value = _split_pair(code)
-            found.append(Property(key, value, Span(path.name, number, 1, number, len(line) + 1)))
+            found.append(OrcaProperty(key, value, Span(path.name, number, 1, number, len(line) + 1)))
     return found
 
 

@@ -26,13 +26,13 @@ def read_reqif_file(path: Path) -> ReqifDocument:
         if is_zip:
             _read_archive(path.name, stream, document)
         else:
-            parse_reqif(path.name, _Limit(path.name).read_chunks(stream), document)
+            parse_reqif(path.name, _ByteLimit(path.name).read_chunks(stream), document)
     return document
 
 
 def _read_archive(name: str, stream: IO[bytes], document: ReqifDocument) -> None:
     """Read each .reqif of a zip file; nothing of it is written to the disk."""
-    limit = _Limit(name)
+    limit = _ByteLimit(name)
     try:
         with zipfile.ZipFile(stream) as archive:
             members = [each for each in archive.infolist() if each.filename.lower().endswith(".reqif")]
@@ -47,7 +47,7 @@ def _read_archive(name: str, stream: IO[bytes], document: ReqifDocument) -> None
         raise ReqifError(words, Span.of_file(name), "export it again") from None
 
 
-class _Limit:
+class _ByteLimit:
     """Counts what is read: what a zip file says of its sizes may be a lie."""
 
     def __init__(self, name: str) -> None:

@@ -42,6 +42,7 @@ class _ReqifParser:
     def __init__(self, file: str, document: ReqifDocument) -> None:
         self._file, self._document = file, document
         self._parser = expat.ParserCreate()
+        # Else expat calls back for each line of a text by itself.
         self._parser.buffer_text = True
         self._parser.buffer_size = 65_536
         self._parser.StartElementHandler = self._start
@@ -91,6 +92,7 @@ class _ReqifParser:
         return local
 
     def _start(self, name: str, attributes: Mapping[str, str]) -> None:
+        # The same few names come again and again: the look-up is written out here, where every element passes.
         local = self._local_names.get(name) or self._local(name)
         if self._xhtml is not None:
             self._xhtml.start(local, attributes)
@@ -160,6 +162,7 @@ class _ReqifParser:
 
     def _end_in_object(self, local: str, current: ReqifObject) -> None:
         if local == "SPEC-OBJECT":
+            # References mean the first one; the others are told.
             if current.id in self._document.objects:
                 self._document.repeated.append(current)
             else:

@@ -117,18 +117,22 @@ class _RequirementTaker:
         values = meanings.values
         name = values.get("id", "")
         if type_name == VERIFICATION_TYPE:
-            self._verifier_by_object[entry.id] = _fold(values.get("name", "") or entry.long_name)
+            self._verifier_by_object[entry.id] = _fold_blanks(values.get("name", "") or entry.long_name)
             self._account("taken", entry, reason="as what verifies a requirement", name=name)
         elif type_name == USE_CASE_TYPE and is_requirement_id(name):
-            title = _fold(values.get("name", ""))
+            title = _fold_blanks(values.get("name", ""))
             self._result.use_cases[name] = {"title": title} if title and title != name else {}
             self._verifier_by_object[entry.id] = name
             self._account("taken", entry, name, name=name)
         elif _is_true(values.get("deleted", "")):
             self._account("left out", entry, reason="it is marked as deleted", name=name)
         elif self._is_heading(values):
-            self._headings[entry.id] = _fold(values.get("heading") or values.get("name") or values.get("text", ""))
-            reason = "a heading" if values.get("heading") else f"no requirement ({_fold(values.get('sort', ''))})"
+            self._headings[entry.id] = _fold_blanks(
+                values.get("heading") or values.get("name") or values.get("text", "")
+            )
+            reason = (
+                "a heading" if values.get("heading") else f"no requirement ({_fold_blanks(values.get('sort', ''))})"
+            )
             self._account(
                 "left out", entry, reason=reason, name=" ".join(filter(None, [name, self._headings[entry.id]]))
             )
@@ -145,7 +149,7 @@ class _RequirementTaker:
 
     def _take_requirement(self, entry: ReqifObject, meanings: ReadMeanings) -> None:
         values = meanings.values
-        text, name = values.get("text", ""), _fold(values.get("name", ""))
+        text, name = values.get("text", ""), _fold_blanks(values.get("name", ""))
         foreign_id, description = values.get("id", ""), values.get("description", "")
         if not (text or name or description):
             reason = "it has no text"
@@ -162,13 +166,13 @@ class _RequirementTaker:
         if made_id in self._result.requirements:
             self._account("not taken", entry, reason=f"another object is `{made_id}` already", name=foreign_id)
             return
-        body = _describe(name, text or description, "" if not text else description)
+        body = _split_title(name, text or description, "" if not text else description)
         sort = values.get("sort", "")
         if "kind" not in values and sort.casefold() not in _PLAIN_SORTS:
             values["kind"] = sort
         body |= {key: word for key in ("kind", "priority") if (word := _make_word(_pick_first(meanings, key)))}
         body |= {"rationale": values["rationale"]} if values.get("rationale") else {}
-        body |= {"source": _fold(values["source"])} if values.get("source") else {}
+        body |= {"source": _fold_blanks(values["source"])} if values.get("source") else {}
         tags = meanings.chosen.get("tags") or values.get("tags", "").split(",")
         if words := list(dict.fromkeys(word for tag in tags if (word := _make_word(tag)))):
             body["tags"] = words
@@ -189,11 +193,11 @@ class _RequirementTaker:
             source, target = self._id_by_object.get(relation.source), self._id_by_object.get(relation.target)
             verifier = self._verifier_by_object.get(relation.target)
             if source and verifier and name == USE_CASE_RELATION:
-                _append(self._result.requirements[source], "use_cases", verifier)
+                _append_value(self._result.requirements[source], "use_cases", verifier)
             elif source and verifier and name == VERIFICATION_RELATION:
-                _append(self._result.requirements[source], "verified_by", verifier)
+                _append_value(self._result.requirements[source], "verified_by", verifier)
             elif source and target and fold_attribute_name(name) in PART_RELATIONS and source != target:
-                _append(self._result.requirements[source], "parent", target)
+                _append_value(self._result.requirements[source], "parent", target)
             else:
                 self._result.unread_relations[name or "without a name"] += 1
 
@@ -214,21 +218,21 @@ class _RequirementTaker:
     def _place_requirement(self, own_id: str, above: str, path: str) -> None:
         body = self._result.requirements[own_id]
         if above and above != own_id:
-            _append(body, "parent", above)
+            _append_value(body, "parent", above)
         if path and "source" not in body and self._document.source_tool != OWN_TOOL:
-            body["source"] = _fold(path)
+            body["source"] = _fold_blanks(path)
 
 
-def _describe(name: str, text: str, more: str) -> dict[str, Any]:
+def _split_title(name: str, text: str, more: str) -> dict[str, Any]:
     """Return title and description of an object from its name and its texts."""
     if not name:
         # A title is plain text.
-        first_line = _MARKS.sub("", _fold(text.partition("\n\n")[0]))
-        if len(first_line) <= _MAX_TITLE and first_line == _fold(text):
+        first_line = _MARKS.sub("", _fold_blanks(text.partition("\n\n")[0]))
+        if len(first_line) <= _MAX_TITLE and first_line == _fold_blanks(text):
             return {"title": first_line, **({"description": more} if more else {})}
         name = _SENTENCE_END.split(first_line, maxsplit=1)[0]
         name = name if len(name) <= _MAX_TITLE else f"{name[: _MAX_TITLE - 3].rstrip()}..."
-    description = "\n\n".join(part for part in (text, more) if part and _fold(part) != name)
+    description = "\n\n".join(part for part in (text, more) if part and _fold_blanks(part) != name)
     return {"title": name, **({"description": description} if description else {})}
 
 
@@ -240,18 +244,18 @@ def _pick_first(meanings: ReadMeanings, key: str) -> str:
 def _list_left_values(meanings: ReadMeanings) -> list[str]:
     """Say which values of enumerations are left out, since only one fits."""
     return [
-        f"its {key} is `{_fold(words[0])}`, not also {', '.join(f'`{_fold(word)}`' for word in words[1:])}"
+        f"its {key} is `{_fold_blanks(words[0])}`, not also {', '.join(f'`{_fold_blanks(word)}`' for word in words[1:])}"
         for key in ("kind", "priority")
         if len(words := meanings.chosen.get(key, [])) > 1
     ]
 
 
-def _append(body: dict[str, Any], key: str, value: str) -> None:
+def _append_value(body: dict[str, Any], key: str, value: str) -> None:
     # Keys keep their order, and a thousand relations of one object take no longer than of a thousand.
     body.setdefault(key, {})[value] = None
 
 
-def _fold(text: str) -> str:
+def _fold_blanks(text: str) -> str:
     return " ".join(text.split())
 
 

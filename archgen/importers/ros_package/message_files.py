@@ -9,7 +9,7 @@ from typing import Any
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.link.shipped_interfaces import load_shipped_interfaces
 from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField
-from archgen.syntax.interface_definitions import parse_definition
+from archgen.syntax.interface_definitions import parse_interface_definition
 from archgen.syntax.plain_scalars import resolve_scalar
 from archgen.syntax.yaml_parser import parse_yaml
 from archgen.syntax.yaml_tree import node_to_data
@@ -24,11 +24,11 @@ def make_type_name(message: str) -> str:
     return " ".join([words[0], *rest]) if words else message
 
 
-def read_message(
-    text: str, message: str, shown: str, *, is_ros_1: bool
+def read_message_definition(
+    text: str, message: str, shown_path: str, *, is_ros_1: bool
 ) -> tuple[dict[str, Any], tuple[Diagnostic, ...]]:
     """Return the type that a definition makes, and what is wrong in it. Lines that ROS refuses are left out."""
-    definition = parse_definition(text, message, shown, ros1=is_ros_1)
+    definition = parse_interface_definition(text, message, shown_path, ros1=is_ros_1)
     interface = definition.interface
     data: dict[str, Any] = {"message": message}
     if message in load_shipped_interfaces(None).names:

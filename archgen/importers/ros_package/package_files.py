@@ -90,8 +90,8 @@ def read_manifest(path: Path) -> PackageManifest:
     return PackageManifest(
         folder=path.resolve().parent,
         name=name.text.strip(),
-        version=_text(root, "version"),
-        description=" ".join(_text(root, "description").split()),
+        version=_read_child_text(root, "version"),
+        description=" ".join(_read_child_text(root, "description").split()),
         licenses=tuple(text for each in root.find_all("license") if (text := each.text.strip())),
         website=next((each.text.strip() for each in root.find_all("url") if _is_website(each)), ""),
         # What is built by either is a package of both: then its messages are written as ROS 2 has them.
@@ -101,7 +101,7 @@ def read_manifest(path: Path) -> PackageManifest:
     )
 
 
-def _text(root: XmlElement, tag: str) -> str:
+def _read_child_text(root: XmlElement, tag: str) -> str:
     found = root.find(tag)
     return "" if found is None else found.text.strip()
 

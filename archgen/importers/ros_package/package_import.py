@@ -12,7 +12,7 @@ from archgen.importers.foreign.bounded_files import read_bounded
 from archgen.importers.foreign.foreign_import import ForeignFileError, ForeignImport
 from archgen.importers.ros_package.declared_parameters import is_declaration_file, read_declared_parameters
 from archgen.importers.ros_package.import_account import ImportAccount
-from archgen.importers.ros_package.message_files import make_type_name, read_message
+from archgen.importers.ros_package.message_files import make_type_name, read_message_definition
 from archgen.importers.ros_package.package_files import (
     PackageFile,
     PackageManifest,
@@ -142,7 +142,7 @@ class _PackageReader:
         message = f"{self._manifest.name}/{kind}/{file.path.stem}"
         if text is None:
             return
-        data, problems = read_message(text, message, file.shown, is_ros_1=self._manifest.is_ros_1)
+        data, problems = read_message_definition(text, message, file.shown, is_ros_1=self._manifest.is_ros_1)
         for problem in problems:
             self._account.add_note(INVALID_INTERFACE, problem.message, problem.span, problem.help or "")
         name = make_type_name(message)

@@ -27,14 +27,16 @@ def read_ros_1_graph(files: Sequence[Path]) -> ForeignImport:
 
 
 def _read_graph(
-    files: Sequence[Path], read: Callable[[Iterable[DumpLine], RunningGraph], None], wanted: str
+    files: Sequence[Path], read: Callable[[Iterable[DumpLine], RunningGraph], None], wanted_format: str
 ) -> ForeignImport:
     graph = RunningGraph()
     read(read_dump_lines(files), graph)
     slices = write_graph(graph)
     if not slices:
         words = "there is no node in it"
-        raise ForeignFileError(words, Span.of_file(files[0].name if files else "."), f"give what these print: {wanted}")
+        raise ForeignFileError(
+            words, Span.of_file(files[0].name if files else "."), f"give what these print: {wanted_format}"
+        )
     taken = {word: count for word, count in sorted(graph.taken.items()) if count}
     title = title_from_id(make_id(files[0].stem, "robot"))
     return ForeignImport(slices, taken, tuple(graph.notes), title, graph.distro)

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from typing import Any
 
 from archgen.importers.running_graph.dump_lines import DumpLine
+from archgen.importers.running_graph.dumped_parameters import read_server_values
 from archgen.importers.running_graph.graph_model import RunningGraph, RunningNode
-from archgen.importers.running_graph.parameter_blocks import read_server_values
 from archgen.model.known_interfaces import KNOWN_DISTROS
 from archgen.model.ros_distro import PAST_DISTROS
 
@@ -24,14 +24,14 @@ _PARAMETER_COMMAND = re.compile(r"rosparam dump\b.*")
 
 def read_ros_1_dump(lines: Iterable[DumpLine], graph: RunningGraph) -> None:
     """Take everything that the lines say."""
-    reader = _DumpReader(graph)
+    reader = _Ros1DumpReader(graph)
     for line in lines:
         reader.read_line(line)
     reader.take_parameters()
     _fold_actions(graph)
 
 
-class _DumpReader:
+class _Ros1DumpReader:
     """What the lines before say about the next one."""
 
     def __init__(self, graph: RunningGraph) -> None:

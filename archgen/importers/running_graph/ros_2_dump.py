@@ -6,9 +6,9 @@ import re
 from collections.abc import Iterable
 
 from archgen.importers.running_graph.dump_lines import FULL_NAME, DumpLine
+from archgen.importers.running_graph.dumped_parameters import take_node_parameters
 from archgen.importers.running_graph.endpoint_blocks import EndpointReader
 from archgen.importers.running_graph.graph_model import RunningGraph, RunningNode
-from archgen.importers.running_graph.parameter_blocks import take_node_parameters
 
 _SECTIONS = {
     "Subscribers:": "subscribes",
@@ -39,7 +39,7 @@ _QUIET = re.compile(
 
 def read_ros_2_dump(lines: Iterable[DumpLine], graph: RunningGraph) -> None:
     """Take everything that the lines say."""
-    reader = _DumpReader(graph)
+    reader = _Ros2DumpReader(graph)
     for line in lines:
         reader.read_line(line)
     reader.end_block()
@@ -47,7 +47,7 @@ def read_ros_2_dump(lines: Iterable[DumpLine], graph: RunningGraph) -> None:
     reader.endpoints.settle(graph)
 
 
-class _DumpReader:
+class _Ros2DumpReader:
     """What the lines before say about the next one."""
 
     def __init__(self, graph: RunningGraph) -> None:

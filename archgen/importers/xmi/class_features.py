@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 
 from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi import uml_values
-from archgen.importers.xmi.import_ledger import ImportLedger, call
+from archgen.importers.xmi.import_ledger import ImportLedger, name_element
 from archgen.importers.xmi.made_names import choose_id, name_parameter
 from archgen.importers.xmi.uml_catalogue import read_description
-from archgen.importers.xmi.uml_index import UmlIndex, get_kind, get_name, is_true, list_children
+from archgen.importers.xmi.uml_index import UmlIndex, get_kind, get_name, is_true, list_child_elements
 
 _PERIOD_NAME = "sample"
 _VISIBILITIES = frozenset({"public", "protected", "private"})
@@ -38,7 +38,7 @@ def read_features(
 ) -> ClassFeatures:
     """Return the features of a class. `port_names` are those of its ports, `parts` what is a component inside of it."""
     features = ClassFeatures()
-    for child in list_children(owner, "Property", "Operation"):
+    for child in list_child_elements(owner, "Property", "Operation"):
         if child in parts:
             continue
         if get_kind(child) == "Operation":
@@ -58,7 +58,7 @@ def _read_property(
         features.data_types[name] = type_name
         ledger.take(element)
     elif not name:
-        ledger.leave(element, f"{call(element)} is not taken: it has no name")
+        ledger.leave(element, f"{name_element(element)} is not taken: it has no name")
     elif name.lower() == _PERIOD_NAME and (text := uml_values.read_default(index, element)) is not None:
         default = element.find("defaultValue")
         # archgen keeps the words of a period as the literal's name.
@@ -83,7 +83,7 @@ def _read_parameter(
     reference = index.find_reference(element, "type")
     enumeration = reference.element if reference and reference.element is not None else None
     choices = (
-        [get_name(each) for each in list_children(enumeration, "EnumerationLiteral") if get_name(each)]
+        [get_name(each) for each in list_child_elements(enumeration, "EnumerationLiteral") if get_name(each)]
         if enumeration is not None and get_kind(enumeration) == "Enumeration"
         else []
     )
@@ -94,7 +94,7 @@ def _read_parameter(
         ledger.leave(element, f"the property `{name[:80]}` is no parameter: {why}")
         return
     if key in features.parameters:
-        ledger.leave(element, f"{call(element)} is not taken: there is another one of this name")
+        ledger.leave(element, f"{name_element(element)} is not taken: there is another one of this name")
         return
     parameter: dict[str, object] = {"choices": choices} if choices else {"type": kind}
     is_list = uml_values.is_many(element)
@@ -138,14 +138,14 @@ def _add_default(
 def _read_operation(index: UmlIndex, ledger: ImportLedger, element: XmlElement, features: ClassFeatures) -> None:
     name = get_name(element)
     if not name:
-        ledger.leave(element, f"{call(element)} is not taken: it has no name")
+        ledger.leave(element, f"{name_element(element)} is not taken: it has no name")
         return
     operation_id = choose_id(element, "operation", features.operations)
     # Code calls an operation by its id where it has no other name.
     operation: dict[str, object] = {} if name == operation_id else {"title": name}
     request: dict[str, object] = {}
     answers: dict[str, object] = {}
-    for parameter in list_children(element, "Parameter"):
+    for parameter in list_child_elements(element, "Parameter"):
         direction = parameter.attributes.get("direction", "in")
         type_name = uml_values.find_type_name(index, parameter)
         type_name = uml_values.find_field_type(type_name) or type_name

@@ -7,11 +7,11 @@ from collections import defaultdict
 from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.class_features import ClassFeatures, read_features
 from archgen.importers.xmi.component_facts import ClassFacts, ClassSorting
-from archgen.importers.xmi.import_ledger import ImportLedger, call
+from archgen.importers.xmi.import_ledger import ImportLedger, name_element
 from archgen.importers.xmi.made_names import choose_id
 from archgen.importers.xmi.port_facts import InterfaceUses, PortFacts
 from archgen.importers.xmi.uml_catalogue import UmlCatalogue
-from archgen.importers.xmi.uml_index import UmlIndex, get_kind, get_name, is_true, list_children
+from archgen.importers.xmi.uml_index import UmlIndex, get_kind, get_name, is_true, list_child_elements
 from archgen.model.element_ids import make_id
 
 _HARDWARE = frozenset({"Node", "ExecutionEnvironment"})
@@ -79,12 +79,12 @@ class ComponentAssembly:
         for owner in list(self._sorting.facts.values()):
             if owner.sort == "data":
                 continue
-            for part in list_children(owner.element, "Property"):
+            for part in list_child_elements(owner.element, "Property"):
                 part_type, arguments = self._sorting.find_part_type(part)
                 if part_type is None or part_type.sort != "component_type":
                     continue
                 if is_true(part_type.element, "isAbstract"):
-                    words = f"{call(part)} is not taken: `{get_name(part_type.element)}` is abstract"
+                    words = f"{name_element(part)} is not taken: `{get_name(part_type.element)}` is abstract"
                     self._ledger.leave(part, words)
                     continue
                 facts = ClassFacts(part, "component", owner=owner, base=part_type, base_arguments=arguments)
@@ -114,7 +114,7 @@ class ComponentAssembly:
                 if inner.base is not None and any(
                     id(each) in active for each in (inner.base, *inner.base.list_bases())
                 ):
-                    words = f"{call(inner.element)} is not taken: the component type would contain itself"
+                    words = f"{name_element(inner.element)} is not taken: the component type would contain itself"
                     self._ledger.leave(inner.element, words)
                     facts.inside.remove(inner)
                     self._sorting.parts.pop(inner.element, None)
@@ -144,7 +144,9 @@ class ComponentAssembly:
                 self.components.append(facts)
             # A port and a component inside share no name: what is told outside is the port's.
             outer = (facts, *facts.list_bases()) if facts.inside else ()
-            taken = {make_id(get_name(port), "port") for each in outer for port in list_children(each.element, "Port")}
+            taken = {
+                make_id(get_name(port), "port") for each in outer for port in list_child_elements(each.element, "Port")
+            }
             for inner in facts.inside:
                 inner.id = choose_id(inner.element, "component", taken, known_ids=self._index.known_ids)
                 taken.add(inner.id)
@@ -164,7 +166,7 @@ class ComponentAssembly:
     def _read_ports(self, facts: ClassFacts) -> None:
         if facts.element in self._sorting.parts:
             return
-        ports = [self._uses.make_port(each) for each in list_children(facts.element, "Port")]
+        ports = [self._uses.make_port(each) for each in list_child_elements(facts.element, "Port")]
         for port in ports:
             self._ledger.take(port.element)
         # What a class provides to others as code is no port of a component type: only components meet here.
@@ -176,7 +178,7 @@ class ComponentAssembly:
         realized: dict[int, set[str]] = defaultdict(set)
         for other in self._sorting.facts.values():
             if other.base is not None:
-                realized[id(other.base)] |= {get_name(each) for each in list_children(other.element, "Port")}
+                realized[id(other.base)] |= {get_name(each) for each in list_child_elements(other.element, "Port")}
         for facts in (*self.types.values(), *self.components):
             if facts.element in self._sorting.parts:
                 self.features[facts.element] = ClassFeatures()

@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 
 from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.general_classes import MAX_GENERALS, find_top, list_beyond
-from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call
+from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, name_element
 from archgen.importers.xmi.port_facts import InterfaceUses, PortFacts
 from archgen.importers.xmi.template_classes import TemplateClasses, TypeArguments
 from archgen.importers.xmi.uml_catalogue import UmlCatalogue
-from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, is_true, list_children
+from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, is_true, list_child_elements
 
 _TYPE_PREFIX = f"{OWN_PREFIX}component_type."
 _LIBRARY_ID = f"{OWN_PREFIX}package.classes"
@@ -82,7 +82,7 @@ class ClassSorting:
         self._sort_classes()
 
     def _has_ports(self, element: XmlElement) -> bool:
-        return get_kind(element) == "Component" or bool(list_children(element, "Port"))
+        return get_kind(element) == "Component" or bool(list_child_elements(element, "Port"))
 
     def _find_generals(self) -> dict[XmlElement, XmlElement]:
         """Return the class that each is made from; the first of several, none that closes a circle or is too far up."""
@@ -94,31 +94,31 @@ class ClassSorting:
             if element in self._templates.bindings:
                 generals[element], self._arguments[element] = self._templates.bindings[element]
                 tops[element] = generals[element]
-            for generalization in list_children(element, "Generalization"):
+            for generalization in list_child_elements(element, "Generalization"):
                 reference = self._index.find_reference(generalization, "general")
                 unbound = self._templates.describe_unbound(reference.element) if reference and reference.element else ""
                 general, arguments = (
                     self._templates.resolve(reference.element) if reference and reference.element else (None, ())
                 )
                 if unbound:
-                    self._ledger.leave(generalization, f"{call(element)} is made from a template: {unbound}")
+                    self._ledger.leave(generalization, f"{name_element(element)} is made from a template: {unbound}")
                 elif general is None or general not in known:
-                    words = f"{call(element)} is made from a class that is not among the classes of these files"
+                    words = f"{name_element(element)} is made from a class that is not among the classes of these files"
                     self._ledger.leave(generalization, words)
                 elif element in generals:
-                    words = (
-                        f"{call(element)} is made from `{get_name(general)}`, too: a component type is made from one"
-                    )
+                    words = f"{name_element(element)} is made from `{get_name(general)}`, too: a component type is made from one"
                     self._ledger.leave(generalization, words)
                 elif find_top(tops, general) is element:
-                    words = f"{call(element)} would be made from itself: the generalizations go round in a circle"
+                    words = (
+                        f"{name_element(element)} would be made from itself: the generalizations go round in a circle"
+                    )
                     self._ledger.leave(generalization, words, "take out one of them")
                 else:
                     generals[element], written[element] = general, generalization
                     self._arguments[element] = arguments
                     tops[element] = general
         for element in list_beyond(generals):
-            words = f"{call(element)} is made from a class that is made from a class, more than {MAX_GENERALS} times"
+            words = f"{name_element(element)} is made from a class that is made from a class, more than {MAX_GENERALS} times"
             self._ledger.leave(written.get(element, element), words, "name a class further up")
             del generals[element]
         for generalization in (written[each] for each in generals if each in written):
@@ -140,22 +140,22 @@ class ClassSorting:
             realizing = [each for each in realizing if each in classes and each not in components]
             components = [each for each in components if get_kind(each) == "Component"]
             if realizing and (unbound := self._templates.describe_unbound(realizing[0])):
-                self._ledger.leave(realization, f"{call(realization)} is not taken: {unbound}")
+                self._ledger.leave(realization, f"{name_element(realization)} is not taken: {unbound}")
                 continue
             for component in components:
                 for each in realizing[:1]:
                     if component in realizers:
-                        words = f"{call(component)} is realized by `{get_name(each)}`, too: a component is made from one type"
+                        words = f"{name_element(component)} is realized by `{get_name(each)}`, too: a component is made from one type"
                         self._ledger.leave(realization, words)
                     else:
                         realizers[component], self._arguments[component] = self._templates.resolve(each)
                         self._ledger.take(realization)
             if len(realizing) > 1 and components:
                 names = ", ".join(get_name(each) for each in realizing[1:3])
-                words = f"{call(components[0])} is realized by {names[:100]}, too: a component is made from one type"
+                words = f"{name_element(components[0])} is realized by {names[:100]}, too: a component is made from one type"
                 self._ledger.leave(realization, words)
             if not components or not realizing:
-                words = f"{call(realization)} is not taken: it does not lead from a class to a component"
+                words = f"{name_element(realization)} is not taken: it does not lead from a class to a component"
                 self._ledger.leave(realization, words)
         return realizers
 
@@ -188,7 +188,7 @@ class ClassSorting:
                     and element not in component_family
                     and not own_id.startswith(OWN_PREFIX)
                 )
-                has_methods = bool(list_children(element, "Operation"))
+                has_methods = bool(list_child_elements(element, "Operation"))
                 sort = "data" if is_data and not has_methods else "component_type"
                 is_free = not (
                     is_true(element, "isAbstract")
@@ -212,7 +212,7 @@ class ClassSorting:
         for facts in self.facts.values():
             bases = facts.list_bases()
             if any(base is facts for base in bases):
-                words = f"{call(facts.element)} would be made from itself"
+                words = f"{name_element(facts.element)} would be made from itself"
                 self._ledger.leave(facts.element, words, "take out one of the generalizations and realizations")
                 facts.base = None
 
@@ -233,7 +233,7 @@ class ClassSorting:
         if element not in self.with_ports:
             return None, ()
         if unbound := self._templates.describe_unbound(reference.element):
-            self._ledger.leave(part, f"{call(part)} is not taken: {unbound}")
+            self._ledger.leave(part, f"{name_element(part)} is not taken: {unbound}")
             return None, ()
         return self.facts.get(element), arguments
 
@@ -246,7 +246,7 @@ class ClassSorting:
         return {
             part
             for connector in self._catalogue.connectors
-            for end in list_children(connector, "ConnectorEnd")
+            for end in list_child_elements(connector, "ConnectorEnd")
             for part in self._index.list_named(end, "partWithPort", "role")
         }
 
@@ -255,7 +255,7 @@ class ClassSorting:
         pairs = [
             (owner, self._templates.resolve(reference.element)[0])
             for owner in self._templates.classes
-            for part in list_children(owner, "Property")
+            for part in list_child_elements(owner, "Property")
             if self.is_place(part)
             and (reference := self._index.find_reference(part, "type"))
             and reference.element is not None
@@ -287,7 +287,7 @@ class ClassSorting:
         uses: Counter[XmlElement] = Counter()
         owners = (*self._catalogue.classes, *self._catalogue.interfaces, *self._catalogue.data_types)
         for owner in owners:
-            for feature in list_children(owner, "Property", "Port", "Operation"):
-                typed = list_children(feature, "Parameter") if get_kind(feature) == "Operation" else [feature]
+            for feature in list_child_elements(owner, "Property", "Port", "Operation"):
+                typed = list_child_elements(feature, "Parameter") if get_kind(feature) == "Operation" else [feature]
                 uses.update(each for element in typed for each in self._index.list_named(element, "type"))
         return uses

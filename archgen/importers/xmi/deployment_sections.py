@@ -7,10 +7,10 @@ from collections import defaultdict
 from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.component_assembly import ComponentAssembly
 from archgen.importers.xmi.component_facts import ClassFacts
-from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call, make_hints
+from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, make_hints, name_element
 from archgen.importers.xmi.made_names import choose_id, say_title
 from archgen.importers.xmi.uml_catalogue import UmlCatalogue, read_description
-from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, list_children
+from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, list_child_elements
 from archgen.model.element_ids import make_unique_id
 
 _MAX_HINTS = 10_000
@@ -40,6 +40,7 @@ class DeploymentSections:
         self._own_nodes: dict[str, dict[str, object]] = {}
         """Nodes that archgen exported, by id."""
         self._own_hosts: dict[XmlElement, str] = {}
+        # Manifestations first: what is deployed is mostly an artifact, and this says which components are in it.
         self._read_manifestations()
         self._read_deployments()
         self._make_own_nodes()
@@ -60,6 +61,7 @@ class DeploymentSections:
         middlewares: dict[str, list[str]] = defaultdict(list)
         environments = [each for each in self._catalogue.hardware if get_kind(each) == "ExecutionEnvironment"]
         hosts_of_all = list(self._hosts.values())
+        # Environments outside of nodes count for each node: a hostile file would make the product of both.
         if len(environments) * len(hosts_of_all) > _MAX_HINTS:
             hosts_of_all = []
         for element in environments:
@@ -67,12 +69,13 @@ class DeploymentSections:
             hosts = [host] if host else hosts_of_all
             if not hosts:
                 self._ledger.leave(
-                    element, f"{call(element)} is not taken: it stands in no node, and there is none, or too many"
+                    element,
+                    f"{name_element(element)} is not taken: it stands in no node, and there is none, or too many",
                 )
                 continue
             for each in hosts:
                 middlewares[each].append(get_name(element))
-            words = f"{call(element)} is a hint of {', '.join(f'`{each}`' for each in hosts[:3])}"
+            words = f"{name_element(element)} is a hint of {', '.join(f'`{each}`' for each in hosts[:3])}"
             self._ledger.note(element, words + (" and others" if len(hosts) > 3 else ""))  # noqa: PLR2004 - as shown
             self._ledger.take(element)
         return middlewares
@@ -85,15 +88,14 @@ class DeploymentSections:
             for artifact in artifacts:
                 if get_kind(artifact) == "Artifact" and not _is_own_node(artifact):
                     for facts in components:
+                        # The first artifact counts: a node names one package.
                         if self._package_of.setdefault(facts, artifact) is not artifact:
-                            words = (
-                                f"{call(artifact)} manifests {call(facts.element)}, too: a component is in one package"
-                            )
+                            words = f"{name_element(artifact)} manifests {name_element(facts.element)}, too: a component is in one package"
                             self._ledger.leave(artifact, words)
             if components:
                 self._ledger.take(element)
             else:
-                self._ledger.leave(element, f"{call(element)} is not taken: what it manifests is no component")
+                self._ledger.leave(element, f"{name_element(element)} is not taken: what it manifests is no component")
 
     def _make_own_nodes(self) -> None:
         """Make the nodes that archgen exported, as they were: one may implement several components."""
@@ -126,7 +128,7 @@ class DeploymentSections:
             deployed = self._index.list_named(element, "deployedArtifact", "supplier")
             if host is None or not deployed:
                 self._ledger.leave(
-                    element, f"{call(element)} is not taken: it does not lead from an artifact to a node"
+                    element, f"{name_element(element)} is not taken: it does not lead from an artifact to a node"
                 )
                 continue
             for each in deployed:
@@ -142,17 +144,20 @@ class DeploymentSections:
         elif get_kind(deployed) == "Artifact" and not manifested:
             self._libraries[host].append(get_name(deployed))
             self._library_artifacts.add(deployed)
-            self._ledger.note(deployed, f"{call(deployed)} is a hint of `{host}`: no component is in it")
+            self._ledger.note(deployed, f"{name_element(deployed)} is a hint of `{host}`: no component is in it")
             self._ledger.take(deployment)
             return
         for facts in manifested:
+            # The first deployment counts: the language has one host for a node, and no way to choose the better one.
             if self._host_of.setdefault(facts, host) != host:
                 words = f"`{facts.id}` runs on `{self._host_of[facts]}` already: one component is on one host"
                 self._ledger.leave(deployment, words)
         if manifested:
             self._ledger.take(deployment)
         else:
-            self._ledger.leave(deployment, f"{call(deployed)} is not taken to `{host}`: it is no artifact or component")
+            self._ledger.leave(
+                deployment, f"{name_element(deployed)} is not taken to `{host}`: it is no artifact or component"
+            )
 
     def make_hosts(self) -> dict[str, object]:
         """Return the section `hosts`."""
@@ -188,7 +193,7 @@ class DeploymentSections:
         for artifact in self._catalogue.artifacts:
             if not _is_own_node(artifact) and artifact not in used:
                 self._ledger.leave(
-                    artifact, f"{call(artifact)} is not taken: it is on no node, and no component is in it"
+                    artifact, f"{name_element(artifact)} is not taken: it is on no node, and no component is in it"
                 )
         return section
 
@@ -196,10 +201,10 @@ class DeploymentSections:
         why = "it stands in a component type" if facts.root.sort != "component" else "it is made of components"
         why = "it is a device" if facts.device else why
         if host := self._host_of.get(facts):
-            words = f"{call(facts.element)} is not deployed on `{host}`: {why}"
+            words = f"{name_element(facts.element)} is not deployed on `{host}`: {why}"
             self._ledger.note(facts.element, words, "" if facts.device else "deploy the components themselves")
         if artifact := self._package_of.get(facts):
-            words = f"{call(artifact)} is not taken as a package of {call(facts.element)}: {why}"
+            words = f"{name_element(artifact)} is not taken as a package of {name_element(facts.element)}: {why}"
             self._ledger.leave(artifact, words)
 
     def make_links(self) -> dict[str, object]:
@@ -213,7 +218,7 @@ class DeploymentSections:
                     if ends
                     else "what flows between components is said by ports and interfaces"
                 )
-                words = f"{call(element)} is not taken: {why}"
+                words = f"{name_element(element)} is not taken: {why}"
                 self._ledger.leave(element, words)
                 continue
             link_id = choose_id(element, "link", section.keys(), get_name(element) or "link", self._index.known_ids)
@@ -223,7 +228,7 @@ class DeploymentSections:
 
     def _find_ends(self, element: XmlElement) -> list[str] | None:
         members = self._index.list_named(element, "memberEnd")
-        properties = list(dict.fromkeys((*members, *list_children(element, "Property"))))
+        properties = list(dict.fromkeys((*members, *list_child_elements(element, "Property"))))
         ends = [target for each in properties for target in self._index.list_named(each, "type")[:1]]
         ends = ends or self._index.list_named(element, "endType")
         references: list[str] = []

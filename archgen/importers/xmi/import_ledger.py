@@ -72,7 +72,7 @@ class ImportLedger:
         return tuple(sorted(self._notes.values(), key=lambda each: (each.span.file, each.span.line, each.span.column)))
 
 
-def call(element: XmlElement) -> str:
+def name_element(element: XmlElement) -> str:
     """Return what messages call an element: its kind and its name or id."""
     name = get_name(element) or get_id(element)
     return f"the {get_kind(element) or element.tag} `{name[:80]}`" if name else f"a {get_kind(element) or element.tag}"

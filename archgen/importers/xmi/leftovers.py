@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 
 from archgen.importers.foreign.xml_tree import XmlElement
-from archgen.importers.xmi.import_ledger import NOT_TAKEN, OWN_PREFIX, ImportLedger, call
+from archgen.importers.xmi.import_ledger import NOT_TAKEN, OWN_PREFIX, ImportLedger, name_element
 from archgen.importers.xmi.uml_catalogue import TOOL_TAGS
 from archgen.importers.xmi.uml_index import get_id, get_kind, get_name, is_written_here
 from archgen.importers.xmi.xmi_files import XmiDocument
@@ -33,7 +33,7 @@ def note_leftovers(ledger: ImportLedger, documents: Sequence[XmiDocument]) -> No
         for model in document.models:
             for owner, kind, parts in _list_leftovers(ledger, model):
                 verb = "is" if len(parts) == 1 else "are"
-                words = f"{_name_parts(kind, parts)} of {call(owner)} {verb} not taken: {_PARTS[kind]}"
+                words = f"{_name_parts(kind, parts)} of {name_element(owner)} {verb} not taken: {_PARTS[kind]}"
                 ledger.leave(parts[0], words, others=parts[1:])
 
 

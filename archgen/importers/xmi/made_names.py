@@ -19,19 +19,19 @@ _NO_IDS: Mapping[str, str] = MappingProxyType({})
 
 
 def choose_id(
-    element: XmlElement, kind: str, taken: Collection[str], name: str = "", known_ids: Mapping[str, str] = _NO_IDS
+    element: XmlElement, kind: str, taken_ids: Collection[str], name: str = "", known_ids: Mapping[str, str] = _NO_IDS
 ) -> str:
     """Return a free id for an element: the known one, or that which archgen exported it from, else one of its name."""
     own_id = get_id(element)
     known_id = known_ids.get(own_id, "")
-    if is_id(known_id) and known_id not in taken:
+    if is_id(known_id) and known_id not in taken_ids:
         return known_id
-    if own_id.startswith(OWN_PREFIX) and is_id(last_word := own_id.rpartition(".")[2]) and last_word not in taken:
+    if own_id.startswith(OWN_PREFIX) and is_id(last_word := own_id.rpartition(".")[2]) and last_word not in taken_ids:
         return last_word
     wanted = make_id(name or get_name(element) or get_kind(element), kind)
     # Thousands of one name: counting on from 2 for each would take time with the square of the model.
-    first_number = len(taken) if number_id(wanted, _MANY_NUMBERS) in taken else 2
-    return make_unique_id(wanted, taken, first_number)
+    first_number = len(taken_ids) if number_id(wanted, _MANY_NUMBERS) in taken_ids else 2
+    return make_unique_id(wanted, taken_ids, first_number)
 
 
 def say_title(name: str, element_id: str) -> dict[str, object]:
@@ -44,6 +44,6 @@ def name_parameter(name: str) -> str:
     return name if _PARAMETER_NAME.match(name) and len(name) <= MAX_TYPE_LENGTH else make_id(name, "parameter")
 
 
-def name_type(name: str) -> str:
+def name_conceptual_type(name: str) -> str:
     """Return the name of a conceptual type: brackets of templates would be generics."""
     return name.replace("<", "(").replace(">", ")")[:MAX_TYPE_LENGTH].strip()

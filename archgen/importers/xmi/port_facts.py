@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi import uml_values
 from archgen.importers.xmi.uml_catalogue import UmlCatalogue
-from archgen.importers.xmi.uml_index import Reference, UmlIndex, get_kind, get_name, is_true, list_children
+from archgen.importers.xmi.uml_index import Reference, UmlIndex, get_kind, get_name, is_true, list_child_elements
 
 InterfaceKey = XmlElement | str
 """An interface: its element, or its name where it is written only where it is used."""
@@ -142,7 +142,7 @@ class InterfaceUses:
             is_output = key in provided and key not in provided_by_ports
             is_input = key in required and key not in required_by_ports
             if is_output or is_input:
-                name = name_interface(key)
+                name = get_interface_name(key)
                 element = key if isinstance(key, XmlElement) else owner
                 facts = PortFacts(element, name, is_port=False, is_input=is_input, is_output=is_output)
                 facts.provided, facts.required = [key] * is_output, [key] * is_input
@@ -159,16 +159,16 @@ class InterfaceUses:
         return min(names) if len(names) == 1 else ""
 
     def _find_returned(self, interface: XmlElement, port_name: str) -> str:
-        operations = list_children(interface, "Operation")
+        operations = list_child_elements(interface, "Operation")
         getters = [each for each in operations if get_name(each).lower().startswith("get")]
         wanted = [each for each in getters if get_name(each)[3:].lstrip("_").lower() == port_name.lower()]
         chosen = wanted[:1] or (getters if len(getters) == 1 else [])
-        for parameter in list_children(chosen[0], "Parameter") if chosen else ():
+        for parameter in list_child_elements(chosen[0], "Parameter") if chosen else ():
             if parameter.attributes.get("direction") == "return":
                 return uml_values.find_type_name(self._index, parameter)
         return ""
 
 
-def name_interface(key: InterfaceKey) -> str:
+def get_interface_name(key: InterfaceKey) -> str:
     """Return the name of an interface."""
     return get_name(key) if isinstance(key, XmlElement) else key.partition(":")[2]

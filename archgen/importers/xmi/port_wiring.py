@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.component_assembly import ComponentAssembly
 from archgen.importers.xmi.component_facts import ClassFacts, ClassSorting
-from archgen.importers.xmi.import_ledger import ImportLedger, call
-from archgen.importers.xmi.port_facts import InterfaceKey, PortFacts, name_interface
+from archgen.importers.xmi.import_ledger import ImportLedger, name_element
+from archgen.importers.xmi.port_facts import InterfaceKey, PortFacts, get_interface_name
 from archgen.importers.xmi.uml_catalogue import UmlCatalogue
-from archgen.importers.xmi.uml_index import UmlIndex, get_name, list_children
+from archgen.importers.xmi.uml_index import UmlIndex, get_name, list_child_elements
 
 _MAX_CONNECTIONS = 100_000
 """So many connections one interface makes: each who uses it reads each who realizes it."""
@@ -39,7 +39,7 @@ class PortWiring:
     ) -> None:
         self._index, self._ledger, self._sorting, self._assembly = index, ledger, sorting, assembly
         self.inner_of: dict[ClassFacts, dict[PortFacts, list[PortEnd]]] = defaultdict(lambda: defaultdict(list))
-        """The ports inside that a port of a composed component gives on, by component and port."""
+        """The ports inside that a port of a composed component passes on, by component and port."""
         self._everyone = [*assembly.types.values(), *assembly.components]
         self._end_of_port = {
             port.element: PortEnd(facts, port) for facts in self._everyone for port in facts.ports if port.is_port
@@ -53,14 +53,14 @@ class PortWiring:
         self._connect_interfaces()
 
     def _read_connector(self, connector: XmlElement) -> tuple[XmlElement, PortEnd, PortEnd] | None:
-        ends = list_children(connector, "ConnectorEnd")
+        ends = list_child_elements(connector, "ConnectorEnd")
         found = [end for each in ends if (end := self._find_end(each))]
         if len(ends) != 2 or len(found) != 2:  # noqa: PLR2004 - a connector joins two
-            words = f"{call(connector)} is not taken: it does not join two ports of components"
+            words = f"{name_element(connector)} is not taken: it does not join two ports of components"
             self._ledger.leave(connector, words)
             return None
         for each, other in (found, found[::-1]):
-            # A port that is given on to the inside still meets others outside.
+            # A port that is passed on to the inside still meets others outside.
             each.port.is_joined |= other.facts.owner is not each.facts
         return connector, found[0], found[1]
 
@@ -99,7 +99,7 @@ class PortWiring:
                 self._delegate(connector, outer, inner)
                 return
         if first.port.is_output and second.port.is_output and not (first.port.is_input or second.port.is_input):
-            words = f"{call(connector)} joins two ports of which nothing says which one reads: {self._tell_ends(first, second)}"
+            words = f"{name_element(connector)} joins two ports of which nothing says which one reads: {self._tell_ends(first, second)}"
             self._ledger.leave(connector, words, "let one of the two use the interface that the other one realizes")
             return
         taken = False
@@ -109,7 +109,7 @@ class PortWiring:
         if taken:
             self._ledger.take(connector)
         else:
-            words = f"{call(connector)} is not taken: {self._tell_ends(first, second)} do not fit"
+            words = f"{name_element(connector)} is not taken: {self._tell_ends(first, second)} do not fit"
             self._ledger.leave(connector, words)
 
     @staticmethod
@@ -124,7 +124,7 @@ class PortWiring:
         if outer.port.is_output and inner.port.is_output:
             self.inner_of[outer.facts][outer.port].append(inner)
         if outer.port.is_input != inner.port.is_input and outer.port.is_output != inner.port.is_output:
-            words = f"{call(connector)} is not taken: its ports do not go the same way, {self._tell_ends(outer, inner)}"
+            words = f"{name_element(connector)} is not taken: its ports do not go the same way, {self._tell_ends(outer, inner)}"
             self._ledger.leave(connector, words)
         else:
             self._ledger.take(connector)
@@ -169,7 +169,7 @@ class PortWiring:
     def _refuse_connections(self, key: InterfaceKey, provider_count: int, readers: list[PortEnd]) -> None:
         element = key if isinstance(key, XmlElement) else readers[0].port.element
         words = (
-            f"nobody is connected by the interface `{name_interface(key)[:80]}`: {provider_count:,} ports realize it and "
+            f"nobody is connected by the interface `{get_interface_name(key)[:80]}`: {provider_count:,} ports realize it and "
             f"{len(readers):,} use it, which makes more than {_MAX_CONNECTIONS:,} connections"
         )
         self._ledger.leave(element, words, "join the ports by connectors")
@@ -187,7 +187,7 @@ class PortWiring:
 
 
 def list_inner_references(wiring: PortWiring, facts: ClassFacts, port: PortFacts) -> list[str]:
-    """Return what a composed component's output gives on, as it names these."""
+    """Return what a composed component's output passes on, as it names these."""
     ends = wiring.inner_of.get(facts, {}).get(port, ())
     return list(dict.fromkeys(f"{end.facts.id}.{end.port.output_id}" for end in ends))
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 
 from archgen.importers.foreign.xml_tree import XmlElement
-from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call
+from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, name_element
 from archgen.importers.xmi.uml_catalogue import UmlCatalogue
-from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_name, list_children
+from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_name, list_child_elements
 from archgen.importers.xmi.uml_values import find_field_type, name_referenced
 
 SIGNATURE_KINDS = ("TemplateSignature", "RedefinableTemplateSignature")
@@ -21,7 +21,7 @@ TypeArguments = tuple[str, ...]
 
 def read_generic_names(index: UmlIndex, signature: XmlElement) -> tuple[str, ...]:
     """Return the names of a template that stand for types; none where some are no names of types, or two the same."""
-    formals = list_children(signature, *_PARAMETER_KINDS)
+    formals = list_child_elements(signature, *_PARAMETER_KINDS)
     references = [index.find_reference(each, "parameteredElement", "ownedParameteredElement") for each in formals]
     names = tuple(each.name if each else "" for each in references)
     is_usable = all(_GENERIC_NAME.match(name) for name in names) and len(set(names)) == len(names)
@@ -37,11 +37,11 @@ class TemplateClasses:
         self._formals: dict[XmlElement, list[XmlElement]] = {}
         self._signatures: dict[XmlElement, XmlElement] = {}
         for element in catalogue.classes:
-            for signature in list_children(element, *SIGNATURE_KINDS):
+            for signature in list_child_elements(element, *SIGNATURE_KINDS):
                 self._read_signature(element, signature)
         self.bindings: dict[XmlElement, tuple[XmlElement, TypeArguments]] = {}
         for element in catalogue.classes:
-            for binding in list_children(element, "TemplateBinding"):
+            for binding in list_child_elements(element, "TemplateBinding"):
                 self._read_binding(element, binding)
         self.classes = [each for each in catalogue.classes if not self._is_name_only(each)]
         """All classes, without those by which archgen writes `filter<Pose>`."""
@@ -52,11 +52,11 @@ class TemplateClasses:
     def _read_signature(self, owner: XmlElement, signature: XmlElement) -> None:
         names = read_generic_names(self._index, signature)
         if not names or owner in self.generic_names:
-            words = f"{call(owner)} is no generic component type: its template's parameters need a name each, as `T`"
+            words = f"{name_element(owner)} is no generic component type: its template's parameters need a name each, as `T`"
             self._ledger.leave(signature, words)
             return
         self.generic_names[owner] = names
-        self._formals[owner] = list_children(signature, *_PARAMETER_KINDS)
+        self._formals[owner] = list_child_elements(signature, *_PARAMETER_KINDS)
         self._signatures[signature] = owner
         self._ledger.take(signature)
 
@@ -64,11 +64,11 @@ class TemplateClasses:
         signature = self._index.find_reference(binding, "signature")
         template = self._signatures.get(signature.element) if signature and signature.element else None
         if template is None or owner in self.bindings or template is owner:
-            words = f"{call(owner)} is not bound to a template: a component type is made from one class of these files"
+            words = f"{name_element(owner)} is not bound to a template: a component type is made from one class of these files"
             self._ledger.leave(binding, words)
             return
         actuals: dict[XmlElement, str] = {}
-        for substitution in list_children(binding, "TemplateParameterSubstitution"):
+        for substitution in list_child_elements(binding, "TemplateParameterSubstitution"):
             formal = self._index.find_reference(substitution, "formal")
             actual = self._index.find_reference(substitution, "actual", "ownedActual")
             if formal and formal.element and actual:
@@ -77,9 +77,7 @@ class TemplateClasses:
         arguments = tuple(actuals.get(each, "") for each in self._formals[template])
         if not all(arguments):
             names = ", ".join(f"`{name}`" for name in self.generic_names[template])
-            words = (
-                f"{call(owner)} is not bound to `{get_name(template)[:80]}`: it does not say what {names} stands for"
-            )
+            words = f"{name_element(owner)} is not bound to `{get_name(template)[:80]}`: it does not say what {names} stands for"
             self._ledger.leave(binding, words)
             return
         self.bindings[owner] = template, arguments

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.comment_texts import make_plain
-from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call
+from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, name_element
 from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name
 from archgen.importers.xmi.xmi_files import XmiDocument
 
@@ -87,7 +87,7 @@ def make_catalogue(documents: Sequence[XmiDocument], index: UmlIndex, ledger: Im
     for document in documents:
         for model in document.models:
             if get_kind(model) == "Profile":
-                ledger.leave(model, f"{call(model)} is not taken: profiles describe UML itself")
+                ledger.leave(model, f"{name_element(model)} is not taken: profiles describe UML itself")
             else:
                 walk.catalogue.all_packages.append(model)
                 walk.visit_contents(model, model)
@@ -176,7 +176,7 @@ class _CatalogueWalk:
 
     def _leave(self, element: XmlElement, kind: str) -> None:
         reason = _WHY.get(kind, "the language has nothing like it")
-        self._ledger.leave(element, f"{call(element)} is not taken: {reason}")
+        self._ledger.leave(element, f"{name_element(element)} is not taken: {reason}")
 
     def note_surroundings(self, document: XmiDocument) -> None:
         """Note what a tool keeps for itself, and the stereotypes that it wrote outside of the model."""

@@ -194,13 +194,13 @@ def is_true(element: XmlElement, attribute: str) -> bool:
     return element.attributes.get(attribute, "").strip().lower() in {"true", "1"}
 
 
-def list_children(element: XmlElement, *kinds: str) -> list[XmlElement]:
+def list_child_elements(element: XmlElement, *kinds: str) -> list[XmlElement]:
     """Return the children of some kinds, in the order of the file."""
     return [child for child in element.children if get_kind(child) in kinds and is_written_here(child)]
 
 
 def is_written_here(child: XmlElement) -> bool:
-    """Whether an element is itself, and no reference to another one."""
+    """Whether an element is defined here, rather than being a reference to another one."""
     return "xmi:idref" not in child.attributes and "href" not in child.attributes
 
 

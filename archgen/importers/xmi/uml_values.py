@@ -7,7 +7,7 @@ from decimal import Decimal, InvalidOperation
 
 from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.import_ledger import OWN_PREFIX
-from archgen.importers.xmi.made_names import name_type
+from archgen.importers.xmi.made_names import name_conceptual_type
 from archgen.importers.xmi.uml_index import Reference, UmlIndex, get_id, get_kind
 
 _PARAMETER_TYPES = {
@@ -49,7 +49,7 @@ def name_referenced(reference: Reference) -> str:
     """Return the name of a type that something refers to, as the language writes it."""
     is_own = reference.element is not None and get_id(reference.element).startswith(OWN_PREFIX)
     # What archgen wrote is a name of the language: its brackets are generics.
-    return reference.name if is_own else name_type(reference.name)
+    return reference.name if is_own else name_conceptual_type(reference.name)
 
 
 def find_parameter_type(type_name: str) -> str | None:
@@ -144,10 +144,10 @@ def read_period(text: str) -> dict[str, object] | None:
         return None
     if not seconds.is_finite() or seconds < 0 or seconds > _LONGEST or seconds * 1_000_000_000 % 1:
         return None
-    return {"period": write_duration(seconds)} if seconds else {}
+    return {"period": write_whole_duration(seconds)} if seconds else {}
 
 
-def write_duration(seconds: Decimal) -> str:
+def write_whole_duration(seconds: Decimal) -> str:
     """Return a duration with the greatest unit in which it is whole, else in ns: `20 ms`."""
     for factor, unit in ((1, "s"), (1_000, "ms"), (1_000_000, "us")):
         if (amount := seconds * factor) == amount.to_integral_value():

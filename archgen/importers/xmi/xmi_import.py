@@ -9,14 +9,14 @@ from archgen.importers.foreign.foreign_import import ForeignImport
 from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.component_assembly import ComponentAssembly
 from archgen.importers.xmi.component_facts import ClassSorting
-from archgen.importers.xmi.component_sections import ComponentSections, assign_port_ids
-from archgen.importers.xmi.data_types import DataTypes
 from archgen.importers.xmi.deployment_sections import DeploymentSections
-from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call
+from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, name_element
 from archgen.importers.xmi.leftovers import note_leftovers
 from archgen.importers.xmi.port_facts import InterfaceUses
 from archgen.importers.xmi.port_wiring import PortWiring
 from archgen.importers.xmi.uml_catalogue import UmlCatalogue, make_catalogue
+from archgen.importers.xmi.uml_component_sections import ComponentSections, assign_port_ids
+from archgen.importers.xmi.uml_data_types import UmlDataTypes
 from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name
 from archgen.importers.xmi.xmi_files import XmiDocument, read_documents
 
@@ -42,7 +42,7 @@ def read_xmi(files: Sequence[Path], known_ids: Mapping[str, str] | None = None) 
 def convert_documents(documents: Sequence[XmiDocument], index: UmlIndex, ledger: ImportLedger) -> ForeignImport:
     """Return what documents of UML become. The ledger says of each element what became of it."""
     for element in index.doubled:
-        words = f"{call(element)} has the id of another element: references mean the first one of the two"
+        words = f"{name_element(element)} has the id of another element: references mean the first one of the two"
         ledger.note(element, words, "export the model again, or give it an id of its own", "xmi:id")
     catalogue = make_catalogue(documents, index, ledger)
     uses = InterfaceUses(index, catalogue)
@@ -55,7 +55,7 @@ def convert_documents(documents: Sequence[XmiDocument], index: UmlIndex, ledger:
     classes = [facts.element for facts in sorting.facts.values() if facts.sort == "data"]
     sections = {
         "component_types": components.make_types(),
-        "types": DataTypes(index, ledger, (*catalogue.data_types, *classes)).make_types(),
+        "types": UmlDataTypes(index, ledger, (*catalogue.data_types, *classes)).make_types(),
         "groups": components.make_groups(),
         "hosts": deployment.make_hosts(),
         "links": deployment.make_links(),
@@ -84,7 +84,7 @@ def _count_relations(
         if element in uses.used_elements:
             ledger.take(element)
         elif get_kind(element) in {"Usage", "Dependency", "Abstraction", "Substitution"}:
-            words = f"{call(element)} is not taken: it does not say what flows"
+            words = f"{name_element(element)} is not taken: it does not say what flows"
             ledger.leave(element, words, "let ports use and realize an interface")
     meant = {key for keys in (*uses.provided.values(), *uses.required.values()) for key in keys}
     meant |= {key for port in assembly.list_ports() for key in (*port.provided, *port.required)}
@@ -92,13 +92,13 @@ def _count_relations(
         if element in meant:
             ledger.take(element)
         else:
-            ledger.leave(element, f"{call(element)} is not taken: nobody realizes or uses it")
+            ledger.leave(element, f"{name_element(element)} is not taken: nobody realizes or uses it")
 
 
 def _note_packages(catalogue: UmlCatalogue, ledger: ImportLedger, groups: frozenset[XmlElement]) -> None:
     for package in catalogue.all_packages:
         if package not in groups and not get_id(package).startswith(OWN_PREFIX):
-            ledger.note(package, f"{call(package)} is no group: no component stands directly in it")
+            ledger.note(package, f"{name_element(package)} is no group: no component stands directly in it")
 
 
 def _find_titled(documents: Sequence[XmiDocument]) -> XmlElement | None:

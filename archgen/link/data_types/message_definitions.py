@@ -36,7 +36,7 @@ class TypeDefinition(NamedTuple):
     """Whether it only follows from the types that the type names: then a definition elsewhere counts."""
 
 
-class _Part(NamedTuple):
+class _DefinitionPart(NamedTuple):
     """The fields and constants of a message, or of a part of a service or action."""
 
     fields: tuple[InterfaceField, ...]
@@ -74,22 +74,22 @@ class DefinitionMaker:
         for part in (conceptual_type.fields or (), *conceptual_type.part_fields.values()):
             self._make_part(part, conceptual_type)
 
-    def _make_message_part(self, conceptual_type: ConceptualType) -> _Part:
+    def _make_message_part(self, conceptual_type: ConceptualType) -> _DefinitionPart:
         written = self._make_part(conceptual_type.fields or (), conceptual_type)
         constants = tuple(
             InterfaceConstant(each.name, each.type, each.value, " ".join((each.comment or "").split()))
             for each in conceptual_type.constants
         )
         if not conceptual_type.values:
-            return _Part(written.fields, constants, written.references)
+            return _DefinitionPart(written.fields, constants, written.references)
         count = len(conceptual_type.values)
         value_type = next((name for name, limit in _LIMITS if count <= limit), "uint32")
         values = (
             InterfaceConstant(name, value_type, str(number)) for number, name in enumerate(conceptual_type.values)
         )
-        return _Part((InterfaceField(VALUE_FIELD, value_type),), (*values, *constants))
+        return _DefinitionPart((InterfaceField(VALUE_FIELD, value_type),), (*values, *constants))
 
-    def _make_inner_part(self, conceptual_type: ConceptualType, key: str) -> _Part:
+    def _make_inner_part(self, conceptual_type: ConceptualType, key: str) -> _DefinitionPart:
         """Return a part of a service or action: its fields as written, or those of the type that is named."""
         inner_name = getattr(conceptual_type, key)
         inner_type = self._types.get(inner_name) if inner_name else None
@@ -100,7 +100,7 @@ class DefinitionMaker:
             field_name = "_".join(inner_name.lower().split())
             help_line = f"write them: `{key}: {{{clip_text(field_name)}: {inner_name}}}`"
             self._report(text, conceptual_type.at, help_line, conceptual_type)
-            return _Part(())
+            return _DefinitionPart(())
         self._taken_count += len(inner_type.fields)
         if self._taken_count > MAX_TAKEN_FIELDS:
             text = f"`{conceptual_type.name}` and others take more than {MAX_TAKEN_FIELDS:,} fields from the types they name"
@@ -108,10 +108,10 @@ class DefinitionMaker:
             self._diagnostics.append(
                 Diagnostic("too-large", text, conceptual_type.at, help=help_line, element=conceptual_type.name)
             )
-            return _Part(())
+            return _DefinitionPart(())
         return self._make_message_part(inner_type)
 
-    def _make_part(self, fields: Sequence[DataField], conceptual_type: ConceptualType) -> _Part:
+    def _make_part(self, fields: Sequence[DataField], conceptual_type: ConceptualType) -> _DefinitionPart:
         made_fields, references = list[InterfaceField](), list[tuple[str, Span]]()
         for field in fields:
             field_type = self._type_reader.read_type(field, conceptual_type)
@@ -123,7 +123,7 @@ class DefinitionMaker:
             made_fields.append(InterfaceField(field.name, field_type.name, field_type.array, default, field.meaning))
             if "/" in field_type.base:
                 references.append((field_type.base, field.type_at))
-        return _Part(tuple(made_fields), (), tuple(references))
+        return _DefinitionPart(tuple(made_fields), (), tuple(references))
 
     def _write_default(self, field: DataField, field_type: FieldType, conceptual_type: ConceptualType) -> str:
         """Return the default of a field as definitions write it; empty for none, and for one that ROS refuses."""

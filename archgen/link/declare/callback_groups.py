@@ -5,7 +5,8 @@ from __future__ import annotations
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.link import mapping_values, sanity_checks
-from archgen.link.reference_resolution import ReferenceResolver, take_path_end
+from archgen.link.path_guesses import take_path_end
+from archgen.link.reference_resolution import ReferenceResolver
 from archgen.link.unknown_references import diagnose_unknown_reference
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
@@ -67,7 +68,7 @@ def _resolve_component(
         )
     elif is_complete and not resolver.is_lost(reference.text):
         length = reference.text.count(".") + 1
-        guess = resolver.guess_name(reference.text, [take_path_end(name, length) for name in implements])
+        guess = resolver.guesser.guess_name(reference.text, [take_path_end(name, length) for name in implements])
         diagnostic = diagnose_unknown_reference(
             reference, f"component of `{node_id}`", guess, NO_SPAN, node_id, known_names=implements
         )

@@ -66,7 +66,7 @@ def _name_replacement(deprecation: Deprecation | None, expansion: ExpandedProjec
 
 
 def _read_port_types(body: MappingNode, side: str) -> dict[str, str | None]:
-    """Return the types of ports by id; those of outputs that are given on are not known here."""
+    """Return the types of ports by id; those of outputs that are passed on are not known here."""
     return {
         name: mapping_values.normalise_type_name(text) if (text := mapping_values.get_text(port, "type")) else None
         for name, _, port in mapping_values.iterate_elements(body, side)

@@ -123,7 +123,7 @@ def _may_be_device(text: str, resolver: ReferenceResolver) -> bool:
     """Whether an end of a link that is no host means a component, or a slip of the pen in the name of one."""
     if "." in text or resolver.names.ids_ending_in("component", text):
         return True
-    if resolver.guess_name(text, resolver.plain_spans["host"]):
+    if resolver.guesser.guess_name(text, resolver.plain_spans["host"]):
         return False
     component_names = {path.rpartition(".")[2] for path in resolver.spans["component"]}
-    return resolver.guess_name(text, component_names) is not None
+    return resolver.guesser.guess_name(text, component_names) is not None

@@ -114,7 +114,7 @@ class _GroupDeclarer:
     owners: dict[str, tuple[str, ...]] = field(default_factory=dict)
     """The owners of groups and composed components, by complete id."""
     outside_readers: Mapping[str, MappingNode] = field(default_factory=dict)
-    """The outputs of composed components that go outside of the system, by the leaf's output that they give on."""
+    """The outputs of composed components that go outside of the system, by the leaf's output that they pass on."""
     memory: LinkMemory | None = None
 
     def declare_group(self, group_id: str, entry: MappingEntry, open_shells: OpenShells | None) -> Group:
@@ -156,7 +156,7 @@ class _GroupDeclarer:
         )
 
     def _follow_output(self, output: Output) -> Output:
-        """Return an output of a composed component with what follows from what it gives on."""
+        """Return an output of a composed component with what follows from what it passes on."""
         sources = self.wiring.sources
         if sources is None:
             return output
@@ -201,7 +201,7 @@ class _GroupDeclarer:
         )
 
     def _add_outside(self, output: Output) -> Output:
-        """Return an output with the reader outside of the system that a composed component gives it on to."""
+        """Return an output with the reader outside of the system that a composed component passes it on to."""
         body = self.outside_readers.get(output.id)
         return (
             replace(output, external=mapping_values.get_text(body, "external"))

@@ -1,4 +1,4 @@
-"""Outputs with what they promise: frames named by parameters, replacements resolved, and what is given on kept."""
+"""Outputs with what they promise: frames named by parameters, replacements resolved, and what is passed on kept."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from archgen.model.component import Output
 from archgen.model.promise import PROMISE_KEYS, Deprecation, Promise
 
 
-class _Said(NamedTuple):
-    """What is said of an output, by itself or by what it gives on."""
+class _OutputWords(NamedTuple):
+    """What is said of an output, by itself or by what it passes on."""
 
     promise: Promise | None = None
     version: str | None = None
     deprecated: Deprecation | None = None
 
 
-_NOTHING = _Said()
+_NOTHING = _OutputWords()
 
 
 class PromisedOutputs:
-    """Completes outputs with what they promise; of composed components with what they keep of what they give on."""
+    """Completes outputs with what they promise; of composed components with what they keep of what they pass on."""
 
     def __init__(
         self,
@@ -42,8 +42,8 @@ class PromisedOutputs:
         self._sources = sources
         self._parameters = parameters
         self._resolver = resolver
-        self._own: dict[str, _Said] = {}
-        self._kept: dict[str, _Said] = {}
+        self._own: dict[str, _OutputWords] = {}
+        self._kept: dict[str, _OutputWords] = {}
 
     def complete_output(self, output: Output) -> Output:
         """Return an output with all that is said of it."""
@@ -52,8 +52,8 @@ class PromisedOutputs:
         said = self._find_said(output.id)
         return replace(output, promise=said.promise, version=said.version, deprecated=said.deprecated)
 
-    def _find_said(self, output_id: str) -> _Said:
-        """Return what is said of an output: its own, else what is said of what it gives on.
+    def _find_said(self, output_id: str) -> _OutputWords:
+        """Return what is said of an output: its own, else what is said of what it passes on.
 
         Without recursion: what only passes on may stand behind one another in thousands.
         """
@@ -70,7 +70,7 @@ class PromisedOutputs:
         return said
 
     def _find_given(self, output_id: str) -> str | None:
-        """Return the one output that an output of a composed component gives on; None for none, and for several."""
+        """Return the one output that an output of a composed component passes on; None for none, and for several."""
         port: PortKey = ("output", output_id)
         seen_ports: set[PortKey] = set()
         while self._sources is not None and port not in seen_ports:
@@ -85,8 +85,8 @@ class PromisedOutputs:
                 return port[1]
         return None
 
-    def _join_given(self, output_id: str) -> _Said:
-        """Return what all outputs say that an output gives on together: what one of them does not say, nobody keeps."""
+    def _join_given(self, output_id: str) -> _OutputWords:
+        """Return what all outputs say that an output passes on together: what one of them does not say, nobody keeps."""
         if self._sources is None or output_id.rpartition(".")[0] not in self._outline.shells:
             return _NOTHING
         behind = self._sources.leaf_outputs_of(output_id)
@@ -94,23 +94,23 @@ class PromisedOutputs:
         if not said:
             return _NOTHING
         first = said[0]
-        return _Said(
+        return _OutputWords(
             _join_promises([each.promise for each in said]),
             first.version if all(each.version == first.version for each in said) else None,
             first.deprecated if all(each.deprecated == first.deprecated for each in said) else None,
         )
 
-    def _lift_replacement(self, said: _Said, output_id: str) -> _Said:
-        """Return what is given on with the replacement as seen from outside: the port that gives the replacement on."""
+    def _lift_replacement(self, output_words: _OutputWords, output_id: str) -> _OutputWords:
+        """Return what is passed on with the replacement as seen from outside: the port that gives the replacement on."""
         shell_id = output_id.rpartition(".")[0]
-        target = said.deprecated.target if said.deprecated else None
-        if target is None or said.deprecated is None or shell_id not in self._outline.shells:
-            return said
+        target = output_words.deprecated.target if output_words.deprecated else None
+        if target is None or output_words.deprecated is None or shell_id not in self._outline.shells:
+            return output_words
         ports = (f"{shell_id}.{name}" for name in self._outline.outputs[shell_id])
         lifted = next((port for port in ports if self._find_given(port) == target), target)
-        return said._replace(deprecated=replace(said.deprecated, target=lifted))
+        return output_words._replace(deprecated=replace(output_words.deprecated, target=lifted))
 
-    def _find_own(self, output_id: str) -> _Said:
+    def _find_own(self, output_id: str) -> _OutputWords:
         """Return what is written at an output, each reference resolved once."""
         if output_id not in self._own:
             component_id, _, name = output_id.rpartition(".")
@@ -121,7 +121,7 @@ class PromisedOutputs:
                 promise = replace(promise, frame=self._parameters.fill_in_name(promise.frame, component_id, place))
             if deprecated and deprecated.use:
                 deprecated = replace(deprecated, target=self._resolve_use(deprecated, component_id))
-            self._own[output_id] = _Said(promise, output.version, deprecated)
+            self._own[output_id] = _OutputWords(promise, output.version, deprecated)
         return self._own[output_id]
 
     def _resolve_use(self, deprecated: Deprecation, component_id: str) -> str | None:
@@ -133,7 +133,7 @@ class PromisedOutputs:
         if text in known:
             return text
         if not self._resolver.is_lost(text) and not self._resolver.is_lost(f"{component_id}.{text}"):
-            guess = self._resolver.guess_name(text, outputs if "." not in text else known)
+            guess = self._resolver.guesser.guess_name(text, outputs if "." not in text else known)
             span = outputs[guess].at if guess in outputs else known.get(guess or "", NO_SPAN)
             self._resolver.diagnostics.append(
                 Diagnostic(
@@ -150,17 +150,17 @@ class PromisedOutputs:
         return None
 
 
-def _lay_over(given: _Said, own: _Said) -> _Said:
-    """Return what is said by itself, and for the rest what is given on; of a promise key by key."""
-    promise = own.promise or given.promise
-    if own.promise and given.promise:
+def _lay_over(given_words: _OutputWords, own: _OutputWords) -> _OutputWords:
+    """Return what is said by itself, and for the rest what is passed on; of a promise key by key."""
+    promise = own.promise or given_words.promise
+    if own.promise and given_words.promise:
         kept: dict[str, Any] = {
-            key: value for key, value in given.promise.list_kept() if getattr(own.promise, key) is None
+            key: value for key, value in given_words.promise.list_kept() if getattr(own.promise, key) is None
         }
         if "unit" in kept and own.promise.range is not None:
             del kept["unit"]  # the unit of another range
-        promise = replace(own.promise, **kept, places={**given.promise.places, **own.promise.places})
-    return _Said(promise, own.version or given.version, own.deprecated or given.deprecated)
+        promise = replace(own.promise, **kept, places={**given_words.promise.places, **own.promise.places})
+    return _OutputWords(promise, own.version or given_words.version, own.deprecated or given_words.deprecated)
 
 
 def _join_promises(promises: Iterable[Promise | None]) -> Promise | None:
@@ -169,13 +169,15 @@ def _join_promises(promises: Iterable[Promise | None]) -> Promise | None:
     if first is None:
         return None
     differing: dict[str, Any] = {
-        key: None for key in PROMISE_KEYS if any(_read(each, key) != _read(first, key) for each in others)
+        key: None
+        for key in PROMISE_KEYS
+        if any(_read_promised(each, key) != _read_promised(first, key) for each in others)
     }
     joined = replace(first, **differing)
     return joined if any(_list_kept(joined)) else None
 
 
-def _read(promise: Promise | None, key: str) -> object:
+def _read_promised(promise: Promise | None, key: str) -> object:
     return getattr(promise, key) if promise else None
 
 

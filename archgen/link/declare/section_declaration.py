@@ -82,7 +82,7 @@ def declare_chains(
 def _make_waypoint(
     target: ElementRef, scalar: ScalarNode, list_leaf_ports: Callable[[str, str], tuple[str, ...]]
 ) -> Waypoint:
-    """Return an element of a chain; an output that gives on several is the composed component that it belongs to."""
+    """Return an element of a chain; an output that passes on several is the composed component that it belongs to."""
     if target.kind == "output":
         leaf_ports = list_leaf_ports("output", target.id)
         if len(leaf_ports) > 1:

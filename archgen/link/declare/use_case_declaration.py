@@ -61,7 +61,7 @@ def _resolve_end(
     if text in actors:
         _warn_hidden(written_end, actors[text], use_case_id, resolver)
         return StepEnd("actor", text, written_end.span)
-    guess = resolver.guess_name(text, actors) if "." not in text and not _is_known(text, resolver) else None
+    guess = resolver.guesser.guess_name(text, actors) if "." not in text and not _is_known(text, resolver) else None
     if guess is not None:
         resolver.diagnostics.append(
             Diagnostic(

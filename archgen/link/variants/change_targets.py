@@ -47,29 +47,29 @@ class ChangeTargets:
             return section
         return MappingEntry(section.key, section.key_span, MappingNode(kept, section.value.span))
 
-    def _is_sound(self, section: str, known: MappingNode, entry: MappingEntry) -> bool:
+    def _is_sound(self, section: str, known_body: MappingNode, entry: MappingEntry) -> bool:
         body = mapping_values.get_body(entry)
-        is_new = entry.key not in known.entries and entry.key not in self._lost_keys
+        is_new = entry.key not in known_body.entries and entry.key not in self._lost_keys
         if is_new and body.entries.keys().isdisjoint(_DECLARING_KEYS[section]):
             needed = " or ".join(f"`{key}`" for key in _DECLARING_KEYS[section][:2])
             kind = "policy" if section == "policies" else section.removesuffix("s")
-            self._report(entry, kind, entry.key, list(known.entries), f"a new one has {needed}")
+            self._report(entry, kind, entry.key, list(known_body.entries), f"a new one has {needed}")
             return False
         return True
 
-    def _is_known_group(self, known: MappingNode, group: MappingEntry) -> bool:
+    def _is_known_group(self, known_body: MappingNode, group: MappingEntry) -> bool:
         body = mapping_values.get_body(group)
-        if group.key in known.entries or group.key in self._lost_keys or not body.entries:
+        if group.key in known_body.entries or group.key in self._lost_keys or not body.entries:
             return True
         if "title" in body.entries or any(
             declares_itself(component.value) for component in mapping_values.get_mapping(body, "components")
         ):
             return True
-        self._report(group, "group", group.key, list(known.entries), "a new one has a title or a component")
+        self._report(group, "group", group.key, list(known_body.entries), "a new one has a title or a component")
         return False
 
-    def _keep_group(self, known: MappingNode, group: MappingEntry) -> MappingEntry:
-        below = known.entries.get(group.key)
+    def _keep_group(self, known_body: MappingNode, group: MappingEntry) -> MappingEntry:
+        below = known_body.entries.get(group.key)
         return self._keep_parts(
             group, mapping_values.get_body(below) if below else mapping_values.EMPTY_MAPPING, group.key
         )

@@ -72,6 +72,7 @@ class VariantLayer:
         selector = mapping_values.get_scalar(body, "without")
         if selector is not None:
             architecture = find_architecture()
+            # Where no section was touched that names elements, the architecture before is that of the tree at hand.
             is_same = all(laid.entries.get(section) is root.entries.get(section) for section in _NAMING_SECTIONS)
             laid = self._take_out(laid, selector, variant.key, changes, architecture, diagnostics, is_described=is_same)
         return LaidVariant(laid, tuple(diagnostics))
@@ -87,6 +88,7 @@ class VariantLayer:
         kept = drop_key(root, scalar.text)
         if not isinstance(kept, MissingKey):
             return kept
+        # What could not be read may have had the key: nothing is said of it.
         if kept.word not in self._lost_keys:
             place = f"in `{'.'.join(kept.keys_before)}`" if kept.keys_before else "at the top of the project"
             near_keys = [key for key in kept.known_keys if kept.keys_before or key not in _KEPT_SECTIONS]
@@ -116,6 +118,7 @@ class VariantLayer:
         """Take out what a selector selects; `is_described` is whether the architecture is that of the root as it is."""
         evaluator = SelectorEvaluator(architecture)
         selected = select_left_out(selector, evaluator, variant_id)
+        # A selector that finds nothing may mean what could not be read.
         if not architecture.partial:
             diagnostics += selected.diagnostics
         anew = frozenset(list_declared_anew(changes))

@@ -15,7 +15,7 @@ from archgen.passes.patterns.view_elements import ViewElement, is_instance, list
 from archgen.passes.patterns.view_index import ComponentIndex
 from archgen.passes.patterns.view_references import ViewReferences
 from archgen.passes.patterns.view_types import ConceptualTypes
-from archgen.passes.patterns.view_values import read_value
+from archgen.passes.patterns.view_values import read_view_value
 from archgen.passes.project_tree import ProjectTree
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, YamlNode
 
@@ -78,13 +78,13 @@ class ArchitectureView:
         """Return what a conceptual type has, None where there is none."""
         return self.types.get_body(name)
 
-    def is_a(self, name: str, wanted: str) -> bool:
+    def is_a(self, name: str, type_name: str) -> bool:
         """Whether a conceptual type is one, or made from a generic one; whether a component, or its type, is made from another."""
-        if name == wanted or read_generic_name(name).base == wanted:
+        if name == type_name or read_generic_name(name).base == type_name:
             return True
         key = name if name in self.elements else self.type_keys.get(read_generic_name(name).base, "")
         names = {each.type_name for each in self.list_layers(key)} if key in self.elements else set()
-        return any(each is not None and wanted in (each, self.type_keys.get(each)) for each in names)
+        return any(each is not None and type_name in (each, self.type_keys.get(each)) for each in names)
 
     # What edits ask.
 
@@ -193,12 +193,12 @@ class ArchitectureView:
         body.path = element.key
         if element.parent is not None:
             body["in"] = element.parent
-        # What a type's ports give on from inside is inside of what is made from it, too.
+        # What a type's ports pass on from inside is inside of what is made from it, too.
         moves = {
             self.type_keys[each.type_name]: element.key for each in self.list_layers(element.key) if each.type_name
         }
         for entry in expanded:
-            body[entry.key] = read_value(entry.value, self.find_reference, moves)
+            body[entry.key] = read_view_value(entry.value, self.find_reference, moves)
         for key in ("is", "same_as"):
             name = body.get(key)
             base = read_generic_name(name).base if isinstance(name, str) else ""

@@ -34,57 +34,59 @@ class NamedElements(Protocol):
         """Return what a conceptual type has, None where there is none."""
         ...
 
-    def is_a(self, name: str, wanted: str) -> bool:
+    def is_a(self, name: str, type_name: str) -> bool:
         """Whether a type, or a component, is one, or made from it."""
         ...
 
 
-def holds(comparison: Condition, bindings: Bindings, view: NamedElements) -> bool:
+def is_condition_true(comparison: Condition, bindings: Bindings, view: NamedElements) -> bool:
     """Whether a comparison is true."""
-    return _compare(comparison, bindings, view) != comparison.is_negated
+    return _compare_sides(comparison, bindings, view) != comparison.is_negated
 
 
-def _compare(comparison: Condition, bindings: Bindings, view: NamedElements) -> bool:
+def _compare_sides(comparison: Condition, bindings: Bindings, view: NamedElements) -> bool:
     left = comparison.left
     if not comparison.operator:
         name, wanted = (
-            (evaluate(each, bindings, view) for each in left.arguments) if isinstance(left, Call) else ("", "")
+            (evaluate_operand(each, bindings, view) for each in left.arguments) if isinstance(left, Call) else ("", "")
         )
         return isinstance(name, str) and isinstance(wanted, str) and view.is_a(name, wanted)
-    value = evaluate(left, bindings, view)
-    other = evaluate(comparison.right, bindings, view) if comparison.right else None
+    value = evaluate_operand(left, bindings, view)
+    other = evaluate_operand(comparison.right, bindings, view) if comparison.right else None
     match comparison.operator:
         case "==":
             return value == other
         case "!=":
             return value != other
         case "in":
-            return _has(other, value)
+            return _has_value(other, value)
         case "has":
-            return _has(value, other)
+            return _has_value(value, other)
         case _:
             return isinstance(value, str) and isinstance(other, str) and value.startswith(other)
 
 
-def _has(holder: ViewValue, value: ViewValue) -> bool:
+def _has_value(holder: ViewValue, value: ViewValue) -> bool:
     """Whether a list has an item, or a mapping a key, or a text a part."""
     if isinstance(holder, list):
         return value in holder
     return isinstance(holder, (dict, str)) and isinstance(value, str) and value in holder
 
 
-def evaluate(operand: Operand, bindings: Bindings, view: NamedElements) -> ViewValue:  # noqa: C901, PLR0911 - one for each function
+def evaluate_operand(operand: Operand, bindings: Bindings, view: NamedElements) -> ViewValue:  # noqa: C901, PLR0911 - one for each function
     """Return what an operand stands for. Raise WrongValueError."""
     if isinstance(operand, TextOperand):
         if isinstance(operand.pattern, Variable):
             return bindings[operand.pattern.name]
         return "" if isinstance(operand.pattern, Anything) else _read_text(operand, bindings)
     if isinstance(operand, ListOperand):
-        return [evaluate(item, bindings, view) for item in operand.items]
-    values = [evaluate(item, bindings, view) for item in operand.arguments]
+        return [evaluate_operand(item, bindings, view) for item in operand.items]
+    values = [evaluate_operand(item, bindings, view) for item in operand.arguments]
     if operand.function == "specialise":
         stands_for = {
-            _ask_text(evaluate(name, bindings, view), operand): _ask_text(evaluate(value, bindings, view), operand)
+            _ask_text(evaluate_operand(name, bindings, view), operand): _ask_text(
+                evaluate_operand(value, bindings, view), operand
+            )
             for name, value in operand.names
         }
         name = values[0]
@@ -94,7 +96,7 @@ def evaluate(operand: Operand, bindings: Bindings, view: NamedElements) -> ViewV
                 "`specialise` takes a type by its name, or all that it has: `$body` in `components: {$name: $body}`"
             )
             raise WrongValueError(message)
-        return specialise(body, stands_for)
+        return bind_generic_type(body, stands_for)
     if operand.function == "without":
         return _leave_out(values[0], [_ask_text(value, operand) for value in values[1:]])
     texts = [_ask_text(value, operand) for value in values]
@@ -148,7 +150,7 @@ def _find_free_name(name: str, view: NamedElements) -> str:
     return free_name
 
 
-def specialise(body: Mapping[str, ViewValue], stands_for: Mapping[str, str]) -> ComponentBody:
+def bind_generic_type(body: Mapping[str, ViewValue], stands_for: Mapping[str, str]) -> ComponentBody:
     """Return a generic type with what its names stand for in their places; a name that nobody binds stays generic."""
     special = ComponentBody(_bind_names(body, stands_for, is_component=True))
     special.path = body.path if isinstance(body, ComponentBody) else ""

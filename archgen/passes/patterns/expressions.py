@@ -72,7 +72,7 @@ class Condition(NamedTuple):
     is_negated: bool = False
 
 
-def parse_condition(text: str) -> Condition:
+def parse_where_condition(text: str) -> Condition:
     """Return what a `where` asks. Raise ExpressionError."""
     reader = _Reader(text)
     is_negated = reader.take_word("not")
@@ -95,7 +95,7 @@ def parse_condition(text: str) -> Condition:
     return Condition(left, operator, right, is_negated)
 
 
-def parse_value(text: str) -> Operand:
+def parse_let_value(text: str) -> Operand:
     """Return what a `let` gives: a function, a list, a quoted text, or else all of the text. Raise ExpressionError."""
     if not _EXPRESSION_START.match(text) and len(text) <= MAX_EXPRESSION_LENGTH:
         return TextOperand(parse_text_pattern(text, text, None))

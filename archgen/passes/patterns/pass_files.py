@@ -40,20 +40,20 @@ def read_pass(name: str, file: str, text: str, known_states: tuple[str, ...] = (
     """Read the text of a pass file. `known_states` are what it may say that it needs and leaves."""
     if len(text) > _MAX_TEXT:
         message = f"a pass file of {len(text):,} letters; at most {_MAX_TEXT:,} are read"
-        return ReadPass(name, file, text, None, (_report(message, Span.of_file(file), "write several passes"),))
+        return ReadPass(name, file, text, None, (_diagnose_pass(message, Span.of_file(file), "write several passes"),))
     document, findings = parse_yaml(file, text)
     diagnostics = [Diagnostic(WRONG_PASS, f.message, f.span, labels=f.labels, help=f.help) for f in findings]
     if document is None or diagnostics:
         return ReadPass(name, file, text, None, tuple(diagnostics))
     if sum(1 for _ in list_spans(document.root)) > _MAX_VALUES:
         message = f"a pass file of more than {_MAX_VALUES:,} keys and values"
-        return ReadPass(name, file, text, None, (_report(message, Span.of_file(file), "write several passes"),))
-    read = _FileReader(name, file, known_states).read(document.root)
+        return ReadPass(name, file, text, None, (_diagnose_pass(message, Span.of_file(file), "write several passes"),))
+    read = _PassFileReader(name, file, known_states).read(document.root)
     has_rules = isinstance(document.root.get("rules"), SequenceNode)
     return ReadPass(name, file, text, *read, has_rules=has_rules)
 
 
-class _FileReader:
+class _PassFileReader:
     """Reads one pass file."""
 
     def __init__(self, name: str, file: str, known_states: tuple[str, ...]) -> None:
@@ -67,16 +67,18 @@ class _FileReader:
         found = self._rules.diagnostics
         texts = {key: self._read_text(root.get(key), key) for key in ("title", "description")}
         if not texts["title"] and "title" not in root.entries:
-            found.append(_report("a pass has a title", Span.of_file(self._file), "write `title: What it does.`"))
+            found.append(_diagnose_pass("a pass has a title", Span.of_file(self._file), "write `title: What it does.`"))
         lists = {key: self._read_states(root.get(key)) for key in ("needs", "leaves", "ends")}
         rules_entry = root.entries.get("rules")
         rules: list[RewriteRule] = []
         if rules_entry is None or not isinstance(rules_entry.value, SequenceNode) or not rules_entry.value.items:
             place = rules_entry.key_span if rules_entry else Span.of_file(self._file)
-            found.append(_report("a pass has a list of rules", place, "write `rules:` and below it `- find: {...}`"))
+            found.append(
+                _diagnose_pass("a pass has a list of rules", place, "write `rules:` and below it `- find: {...}`")
+            )
         elif len(rules_entry.value.items) > MAX_RULES:
             message = f"{len(rules_entry.value.items):,} rules; a pass has at most {MAX_RULES}"
-            found.append(_report(message, rules_entry.key_span, "write several passes"))
+            found.append(_diagnose_pass(message, rules_entry.key_span, "write several passes"))
         else:
             read_rules = [self._rules.read_rule(item) for item in rules_entry.value.items]
             rules = [rule for rule in read_rules if rule is not None]
@@ -88,7 +90,7 @@ class _FileReader:
         if node is None:
             return ""
         if not isinstance(node, ScalarNode) or node.value is None or not node.text.strip():
-            self._rules.diagnostics.append(_report(f"`{key}` is a text", node.span, None))
+            self._rules.diagnostics.append(_diagnose_pass(f"`{key}` is a text", node.span, None))
             return ""
         return node.text
 
@@ -103,7 +105,9 @@ class _FileReader:
             help_line = (
                 did_you_mean(word, self._states) or f"there are {', '.join(f'`{each}`' for each in self._states)}"
             )
-            self._rules.diagnostics.append(_report(f"`{word}` is nothing that passes leave true", item.span, help_line))
+            self._rules.diagnostics.append(
+                _diagnose_pass(f"`{word}` is nothing that passes leave true", item.span, help_line)
+            )
         return tuple(words)
 
 
@@ -119,12 +123,14 @@ def list_project_passes(files: ProjectFiles, known_states: tuple[str, ...] = ())
     for file in list_pass_files(files):
         name = file.removeprefix(f"{PASS_FOLDER}/").removesuffix(".yaml")
         if files.is_behind_link(file):
-            finding = _report("a pass is reached by a link; it stands in the project itself", Span.of_file(file), None)
+            finding = _diagnose_pass(
+                "a pass is reached by a link; it stands in the project itself", Span.of_file(file), None
+            )
             yield ReadPass(name, file, "", None, (finding,))
             continue
         file_text = read_text_file(files, file)
         if file_text.problem:
-            problem = _report(file_text.problem.message, file_text.problem.span, file_text.problem.help)
+            problem = _diagnose_pass(file_text.problem.message, file_text.problem.span, file_text.problem.help)
             yield ReadPass(name, file, file_text.text, None, (problem,))
         else:
             yield read_pass(name, file, file_text.text, known_states)
@@ -139,5 +145,5 @@ def list_pass_files(files: ProjectFiles) -> list[str]:
     return []
 
 
-def _report(message: str, span: Span, help_line: str | None) -> Diagnostic:
+def _diagnose_pass(message: str, span: Span, help_line: str | None) -> Diagnostic:
     return Diagnostic(WRONG_PASS, message, span, help=help_line)

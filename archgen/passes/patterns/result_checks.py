@@ -13,8 +13,8 @@ from archgen.syntax.yaml_tree import MappingNode, YamlDocument, copy_node
 
 def check_result(pattern_pass: PatternPass, before: MappingNode, after: MappingNode) -> Iterator[Diagnostic]:
     """Yield what a pass made of a project that no file may hold. Neither tree is changed."""
-    findings = _validate(after, pattern_pass.file)
-    known = {(each.message, each.span) for each in _validate(before, pattern_pass.file)} if findings else set()
+    findings = _validate_copy(after, pattern_pass.file)
+    known = {(each.message, each.span) for each in _validate_copy(before, pattern_pass.file)} if findings else set()
     for finding in findings:
         if (finding.message, finding.span) not in known:
             yield Diagnostic(
@@ -26,7 +26,7 @@ def check_result(pattern_pass: PatternPass, before: MappingNode, after: MappingN
             )
 
 
-def _validate(root: MappingNode, file: str) -> tuple[Diagnostic, ...]:
+def _validate_copy(root: MappingNode, file: str) -> tuple[Diagnostic, ...]:
     # Validating takes out what is wrong.
     copied_root = copy_node(root, root.span)
     return validate_document(YamlDocument(file, copied_root)) if isinstance(copied_root, MappingNode) else ()

@@ -32,7 +32,7 @@ def check_rule(rule: RewriteRule) -> Iterator[Diagnostic]:
             _list_let_variables(let), bound, let.span, "`let` comes behind `find`, from the top down"
         )
         if let.name in bound:
-            yield _report(
+            yield _diagnose_rule(
                 f"`${let.name}` is bound already: `let` gives it a second meaning", let.span, "choose another name"
             )
         bound[let.name] = None
@@ -54,11 +54,11 @@ def check_rule(rule: RewriteRule) -> Iterator[Diagnostic]:
 def _check_edit(entry: PatternEntry, bound: Iterable[str], hidden: set[str]) -> Iterator[Diagnostic]:
     for part, span in _list_parts(entry):
         if _holds_anything(part):
-            yield _report("`$_` stands for anything, and cannot be written", span, "give it a name in `find`")
+            yield _diagnose_rule("`$_` stands for anything, and cannot be written", span, "give it a name in `find`")
         for name in _list_own_variables(part):
             if name in hidden:
                 message = f"`${name}` is bound in `unless` only: where the rule writes, there is none"
-                yield _report(message, span, "bind it in `find`")
+                yield _diagnose_rule(message, span, "bind it in `find`")
             elif name not in bound:
                 yield _report_unbound(name, bound, span, "bind it in `find`, or with `let`")
 
@@ -92,7 +92,7 @@ def _list_own_variables(part: Pattern) -> Iterator[str]:
 def _check_names(names: Iterable[str], bound: Iterable[str], span: Span, help_line: str) -> Iterator[Diagnostic]:
     for name in dict.fromkeys(names):
         if name == "_":
-            yield _report("`$_` stands for anything, and has no value", span, "give it a name in `find`")
+            yield _diagnose_rule("`$_` stands for anything, and has no value", span, "give it a name in `find`")
         elif name not in bound:
             yield _report_unbound(name, bound, span, help_line)
 
@@ -160,8 +160,8 @@ def _list_comparison_variables(left: Operand, right: Operand | None) -> Iterator
 
 def _report_unbound(name: str, bound: Iterable[str], span: Span, help_line: str) -> Diagnostic:
     guess = did_you_mean(f"${name}", [f"${each}" for each in bound])
-    return _report(f"nothing binds `${name}`", span, guess or help_line)
+    return _diagnose_rule(f"nothing binds `${name}`", span, guess or help_line)
 
 
-def _report(message: str, span: Span, help_line: str | None = None) -> Diagnostic:
+def _diagnose_rule(message: str, span: Span, help_line: str | None = None) -> Diagnostic:
     return Diagnostic(WRONG_PASS, message, span, help=help_line)

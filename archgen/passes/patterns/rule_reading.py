@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean
-from archgen.passes.patterns.expressions import ExpressionError, parse_condition, parse_value
+from archgen.passes.patterns.expressions import ExpressionError, parse_let_value, parse_where_condition
 from archgen.passes.patterns.matching import ViewPattern
 from archgen.passes.patterns.pass_shapes import (
     EDIT_KINDS,
@@ -145,7 +145,7 @@ class RuleReader:
                 self._report("`where` is a comparison, or a list of them", item.span, "as in `where: $type != Pose`")
                 continue
             try:
-                yield WrittenCondition(parse_condition(item.text), item.span)
+                yield WrittenCondition(parse_where_condition(item.text), item.span)
             except ExpressionError as error:
                 self._report(str(error), item.span, error.help_line)
 
@@ -164,7 +164,7 @@ class RuleReader:
                 yield LetBinding(key.name, self.read_pattern(entry.value), is_expression=False, span=entry.key_span)
                 continue
             try:
-                yield LetBinding(key.name, parse_value(entry.value.text), is_expression=True, span=entry.key_span)
+                yield LetBinding(key.name, parse_let_value(entry.value.text), is_expression=True, span=entry.key_span)
             except ExpressionError as error:
                 self._report(str(error), entry.value.span, error.help_line)
 

@@ -9,7 +9,7 @@ from archgen.diagnostics.element_origins import TreePath
 from archgen.diagnostics.source_span import Span
 from archgen.passes.patterns.architecture_view import ArchitectureView
 from archgen.passes.patterns.edit_values import EditError, fill_pattern
-from archgen.passes.patterns.expression_values import WrongValueError, evaluate, holds
+from archgen.passes.patterns.expression_values import WrongValueError, evaluate_operand, is_condition_true
 from archgen.passes.patterns.expressions import Call, ListOperand, TextOperand
 from archgen.passes.patterns.matching import match_view
 from archgen.passes.patterns.pass_shapes import WRONG_PASS, LetBinding, PatternPass, RewriteRule
@@ -86,11 +86,11 @@ class _RuleRunner:
         """Apply a rule wherever it finds something now; say whether it found anything."""
         has_applied = False
         try:
-            for found in match_view(rule.find, self._view, {}, self._budget, rule.distinct):
+            for match_bindings in match_view(rule.find, self._view, {}, self._budget, rule.distinct):
                 # What was written meanwhile may have taken away what was found.
-                if has_applied and not self._is_found(rule, found):
+                if has_applied and not self._is_found(rule, match_bindings):
                     continue
-                bindings = self._bind_names(rule, found)
+                bindings = self._bind_names(rule, match_bindings)
                 if self._is_wanted(rule, bindings):
                     self._apply(rule, bindings)
                     has_applied = True
@@ -105,8 +105,8 @@ class _RuleRunner:
     def _is_found(self, rule: RewriteRule, bindings: Bindings) -> bool:
         return any(True for _ in match_view(rule.find, self._view, bindings, self._budget, rule.distinct))
 
-    def _bind_names(self, rule: RewriteRule, found: Bindings) -> Bindings:
-        bindings: dict[str, ViewValue] = dict(found)
+    def _bind_names(self, rule: RewriteRule, match_bindings: Bindings) -> Bindings:
+        bindings: dict[str, ViewValue] = dict(match_bindings)
         for let in rule.let:
             try:
                 bindings[let.name] = self._evaluate_let(let, bindings)
@@ -116,18 +116,18 @@ class _RuleRunner:
 
     def _evaluate_let(self, let: LetBinding, bindings: Bindings) -> ViewValue:
         if let.is_expression and isinstance(let.value, (TextOperand, ListOperand, Call)):
-            return evaluate(let.value, bindings, self._view)
+            return evaluate_operand(let.value, bindings, self._view)
         return fill_pattern(let.value, bindings)  # type: ignore[arg-type]
 
     def _is_wanted(self, rule: RewriteRule, bindings: Bindings) -> bool:
         try:
-            if not all(holds(written.comparison, bindings, self._view) for written in rule.where):
+            if not all(is_condition_true(written.comparison, bindings, self._view) for written in rule.where):
                 return False
             for negative in rule.unless:
                 for inner in match_view(
                     negative.pattern, self._view, bindings, self._budget, rule.distinct | negative.distinct
                 ):
-                    if all(holds(written.comparison, inner, self._view) for written in negative.where):
+                    if all(is_condition_true(written.comparison, inner, self._view) for written in negative.where):
                         return False
         except WrongValueError as error:
             raise self._stop(rule, bindings, str(error), None) from None

@@ -128,7 +128,7 @@ class TreeEditor:
 
     def _write(self, kind: EditKind, key: str, path: DataPath, value: ViewValue) -> None:
         """Write a value at a path of a component: mappings key by key, where there is one already."""
-        present = _get(self._view.get_component(key), path)
+        present = _get_value(self._view.get_component(key), path)
         if isinstance(value, dict) and isinstance(present, dict):
             for name, each in value.items():
                 self._write(kind, key, (*path, name), each)
@@ -185,7 +185,7 @@ def _copy_inner(body: ViewValue, holder: str) -> ComponentBody:
     return copy
 
 
-def _get(value: ViewValue, path: DataPath) -> ViewValue:
+def _get_value(value: ViewValue, path: DataPath) -> ViewValue:
     for key in path:
         if not isinstance(value, dict) or key not in value:
             return None

@@ -114,15 +114,19 @@ def _match_each_key(
 
 
 def _match_items(
-    items: tuple[Pattern, ...], values: list[ViewValue], taken: frozenset[int], bindings: Bindings, budget: MatchBudget
+    items: tuple[Pattern, ...],
+    values: list[ViewValue],
+    taken_places: frozenset[int],
+    bindings: Bindings,
+    budget: MatchBudget,
 ) -> Iterator[Bindings]:
     if not items:
         yield bindings
         return
     for index, value in enumerate(values):
-        if index not in taken:
+        if index not in taken_places:
             for bound in match_value(items[0], value, bindings, budget):
-                yield from _match_items(items[1:], values, taken | {index}, bound, budget)
+                yield from _match_items(items[1:], values, taken_places | {index}, bound, budget)
 
 
 def _match_term(pattern: MappingPattern, text: str, bindings: Bindings, budget: MatchBudget) -> Iterator[Bindings]:

@@ -32,7 +32,7 @@ class ViewReferences:
         self._open_names = None
 
     def resolve(self, text: str, writer: str, *, is_output: bool, at: ScalarNode | None = None) -> PortReference | None:
-        """Return what a reference means at an input of a component, or at an output that it gives on; None if unclear."""
+        """Return what a reference means at an input of a component, or at an output that it passes on; None if unclear."""
         shell = writer if is_output else self._elements[writer].parent
         if text.startswith(_SELF):
             name = text.removeprefix(_SELF)

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from archgen.compose.library_types import list_libraries
 from archgen.diagnostics.element_origins import TreePath
 from archgen.passes.patterns.pattern_shapes import ViewValue
-from archgen.passes.patterns.view_values import read_value
+from archgen.passes.patterns.view_values import read_view_value
 from archgen.passes.project_tree import ProjectTree
 from archgen.schema import fold_type_name
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, YamlNode
@@ -46,7 +46,7 @@ class ConceptualTypes:
                 name = fold_type_name(entry.key)
                 # The project's own come first, and hide those of its libraries.
                 if name not in self._bodies:
-                    value = read_value(entry.value, lambda _: None, {})
+                    value = read_view_value(entry.value, lambda _: None, {})
                     self._bodies[name] = value if isinstance(value, dict) else {}
                     self._paths[name] = (*path, entry.key)
         return self._bodies

@@ -11,15 +11,15 @@ FindReference = Callable[[YamlNode], PortReference | None]
 """Returns what a reference in the tree means, None for what is no reference."""
 
 
-def read_value(node: YamlNode, find_reference: FindReference, moves: Mapping[str, str]) -> ViewValue:
+def read_view_value(node: YamlNode, find_reference: FindReference, moves: Mapping[str, str]) -> ViewValue:
     """Return a part of the tree as rules see it; references to what stands in a type are moved to what is made from it.
 
     `moves` is the path of the component by that of the type.
     """
     if isinstance(node, MappingNode):
-        return {entry.key: read_value(entry.value, find_reference, moves) for entry in node}
+        return {entry.key: read_view_value(entry.value, find_reference, moves) for entry in node}
     if isinstance(node, SequenceNode):
-        return [read_value(item, find_reference, moves) for item in node.items]
+        return [read_view_value(item, find_reference, moves) for item in node.items]
     reference = find_reference(node)
     if reference is None:
         return read_scalar(node)

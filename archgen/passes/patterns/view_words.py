@@ -30,10 +30,10 @@ def check_view_keys(view: MappingNode, *, is_edit: bool) -> Iterator[Diagnostic]
 def _check_component_key(entry: MappingEntry, *, is_edit: bool) -> Iterator[Diagnostic]:
     if entry.key == "components":
         help_line = "what stands inside has a path of its own: `$inner: {in: $outer}`"
-        yield _report("components do not stand inside of one another here", entry.key_span, help_line)
+        yield _diagnose_word("components do not stand inside of one another here", entry.key_span, help_line)
     elif is_edit and entry.key in {"in", "id"}:
         help_line = "a new component stands where its path says: `$outer.name`"
-        yield _report(f"`{entry.key}` follows from the path, and is not written", entry.key_span, help_line)
+        yield _diagnose_word(f"`{entry.key}` follows from the path, and is not written", entry.key_span, help_line)
     else:
         yield from _check_key(
             entry, _list_keys("component", "component_type", "group", extra=VIRTUAL_KEYS), "a component"
@@ -47,7 +47,7 @@ def _check_component_key(entry: MappingEntry, *, is_edit: bool) -> Iterator[Diag
 def _check_key(entry: MappingEntry, known_keys: tuple[str, ...], subject: str) -> Iterator[Diagnostic]:
     if "$" not in entry.key and entry.key not in known_keys:
         help_line = did_you_mean(entry.key, known_keys)
-        yield _report(f"`{entry.key}` is no key of {subject}", entry.key_span, help_line)
+        yield _diagnose_word(f"`{entry.key}` is no key of {subject}", entry.key_span, help_line)
 
 
 @functools.cache
@@ -61,5 +61,5 @@ def _list_entries(node: YamlNode | None) -> Iterator[MappingEntry]:
     return iter(node) if isinstance(node, MappingNode) else iter(())
 
 
-def _report(message: str, span: Span, help_line: str | None) -> Diagnostic:
+def _diagnose_word(message: str, span: Span, help_line: str | None) -> Diagnostic:
     return Diagnostic(WRONG_PASS, message, span, help=help_line)

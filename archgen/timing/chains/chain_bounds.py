@@ -9,7 +9,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
-from typing import NamedTuple
 
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture, Chain, Waypoint
@@ -17,10 +16,11 @@ from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, ChainVerdi
 from archgen.timing.chains import chain_regions
 from archgen.timing.chains.chain_verdicts import judge_deadline, may_be_late
 from archgen.timing.chains.cost_network import CostNetwork, PathAim
+from archgen.timing.chains.extreme_paths import find_aimed_paths, find_extreme_path, find_extreme_value, sum_path
 from archgen.timing.chains.measured_basis import describe_measured_basis
-from archgen.timing.chains.path_search import CostedPath, PathSet, find_paths
+from archgen.timing.chains.path_search import CostedPath, PathSet
 from archgen.timing.figures import figure_wording
-from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, TimingValue
+from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue
 from archgen.timing.figures.value_arithmetic import (
     is_boundless,
     is_known_bound,
@@ -28,7 +28,6 @@ from archgen.timing.figures.value_arithmetic import (
     smallest_value,
     sum_bounds,
 )
-from archgen.timing.system.timing_system import Arc
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,14 +48,6 @@ class LateChain:
     best: TimingValue
     verdict: ChainVerdict
     terms: tuple[ChainTerm, ...]
-
-
-class ExtremePath(NamedTuple):
-    """The extreme path of a route: in which view of the network, and what it bounds all paths by."""
-
-    view: CostNetwork
-    path: CostedPath
-    value: TimingValue
 
 
 def bound_chain(
@@ -108,7 +99,7 @@ def find_unmet_chains(analysis: Analysis, architecture: Architecture, margin: Fr
             deadline = TimingValue((1 - margin) * asked_chain.deadline.value)
             if is_known_bound(bound) and not may_be_late(bound, deadline):
                 continue
-            best = _extreme_value(network, regions, "best")
+            best = find_extreme_value(network, regions, "best")
             # The margin is for what is uncertain: nothing is missed as long as it is only used up.
             can_be_missed = judge_deadline(bound, best, TimingValue(asked_chain.deadline.value)) == "missed"
             if can_be_missed or may_be_late(bound, deadline):
@@ -126,7 +117,7 @@ def find_paths_between(
     """
     end_points = chain_regions.resolve_points(network.steps.analysis.system, architecture, (source, target))
     regions = chain_regions.lay_out_between(network, end_points)
-    return _paths_for_aim(network, regions, aim) if regions else None
+    return find_aimed_paths(network, regions, aim) if regions else None
 
 
 def list_bounded_paths(network: CostNetwork, path_set: PathSet, limit: int) -> Iterator[BoundedPath]:
@@ -135,7 +126,7 @@ def list_bounded_paths(network: CostNetwork, path_set: PathSet, limit: int) -> I
         arcs = [network.arcs[arc_index] for arc_index in path.arcs]
         names = (network.names[path.start], *(arc.target for arc in arcs))
         aim: PathAim = "bound" if path_set.longest else "best"
-        yield BoundedPath(names, build_terms(network, path), _path_sum(network, path, aim))
+        yield BoundedPath(names, build_terms(network, path), sum_path(network, path, aim))
 
 
 def build_terms(network: CostNetwork, path: CostedPath) -> tuple[ChainTerm, ...]:
@@ -180,7 +171,7 @@ def _build_result(
         return ChainResult(asked_chain.id, waypoint_ids, (), no_bound, no_bound, no_bound, no_bound, deadline, "open")
     view, path, path_bound = extreme_path
     bound = _note_measured(network, path, _note_event_start(network, path, path_bound))
-    best = _extreme_value(network, regions, "best")
+    best = find_extreme_value(network, regions, "best")
     event_ages = _ages_from_events(network, regions, chain_points[0].activities)
     return ChainResult(
         id=asked_chain.id,
@@ -188,8 +179,8 @@ def _build_result(
         terms=build_terms(view, path),
         bound=bound,
         best=best,
-        reduced_reaction=_extreme_value(network, regions, "reduced reaction"),
-        reduced_age=_limit_reduced_age(_extreme_value(network, regions, "reduced age"), bound, event_ages),
+        reduced_reaction=find_extreme_value(network, regions, "reduced reaction"),
+        reduced_age=_limit_reduced_age(find_extreme_value(network, regions, "reduced age"), bound, event_ages),
         deadline=deadline,
         verdict=judge_deadline(bound, best, deadline),
     )
@@ -207,7 +198,7 @@ def _unconnected_value(
     """Return the value of a chain without a path, which names the first two elements that no path joins."""
     for (source, target), pair in zip(pairwise(asked_chain.through), pairwise(chain_points), strict=True):
         regions = chain_regions.lay_out_between(network, pair)
-        path_set = _paths_for_aim(network, regions, "bound") if regions else None
+        path_set = find_aimed_paths(network, regions, "bound") if regions else None
         if path_set is None or next(path_set.best_paths(), None) is None:
             gap = f"no way leads from `{source.id}` to `{target.id}`"
             return TimingValue(None, complete=False, assumptions=(gap,))
@@ -275,78 +266,3 @@ def _ages_from_events(
         extreme_path = find_extreme_path(network, (start, *regions[1:]), "bound") if is_event else None
         if extreme_path is not None:
             yield sum_bounds((extreme_path.value, network.steps.arrivals.activation_gap(name)))
-
-
-def _paths_for_aim(network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], aim: PathAim) -> PathSet:
-    """Return the paths of a route, with the extreme one for an aim first."""
-    graph, start_costs = network.cost_graph(aim)
-    return find_paths(graph, start_costs, regions, longest=aim != "best")
-
-
-def _extreme_value(network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], aim: PathAim) -> TimingValue:
-    """Return the extreme figure of a route for an aim."""
-    extreme_path = find_extreme_path(network, regions, aim)
-    return extreme_path.value if extreme_path else UNKNOWN_VALUE
-
-
-def find_extreme_path(
-    network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], aim: PathAim
-) -> ExtremePath | None:
-    """Return the extreme path of a route for an aim, in the view of the network in which it bounds best."""
-    if not regions:
-        return None
-    extreme_paths: list[ExtremePath] = []
-    for view in network.list_views() if aim != "best" else (network,):
-        path_set = _paths_for_aim(view, regions, aim)
-        path = next(path_set.best_paths(), None)
-        if path is None:
-            return None
-        extreme_paths.append(ExtremePath(view, path, _bound_path_set(view, path_set, path, aim)))
-    return min(extreme_paths, key=_bound_order)
-
-
-def _bound_order(extreme_path: ExtremePath) -> tuple[bool, bool, Fraction, bool]:
-    """Sort key: known bounds before sums with gaps, these before what has no bound; the smallest first.
-
-    Of equal ones that by runs: where a step elsewhere loses its bound, the terms of all others stay what they were.
-    """
-    view, _, bound = extreme_path
-    return is_boundless(bound), not is_known_bound(bound), bound.value or Fraction(0), not view.by_runs
-
-
-def _path_sum(network: CostNetwork, path: CostedPath, aim: PathAim) -> TimingValue:
-    """Return the sum of a path's costs for an aim."""
-    cost_values = list(network.start_costs(network.names[path.start], aim))
-    for arc_index in path.arcs:
-        cost_values += network.step_costs(network.arcs[arc_index], aim)
-    return sum_bounds(cost_values, "at least" if aim == "best" else "at most")
-
-
-def _bound_path_set(network: CostNetwork, path_set: PathSet, path: CostedPath, aim: PathAim) -> TimingValue:
-    """Return the extreme path's sum; it bounds all paths only where the costs of the others are known too."""
-    value = _path_sum(network, path, aim)
-    if path_set.cut_arcs:
-        value = replace(
-            value,
-            assumptions=(
-                *value.assumptions,
-                _cut_arcs_text([network.arcs[arc_index] for arc_index in path_set.cut_arcs]),
-            ),
-        )
-    if aim == "best" or path_set.path_count == 1 or is_boundless(value):
-        return value
-    # Costs of unknown figures count as 0 in the network, so that a path with a gap may seem shorter than it is: if any
-    # arc on any path lacks a figure, the bound is open.
-    other_costs = sum_bounds(
-        [part for arc_index in path_set.arcs_on_paths() for part in network.step_costs(network.arcs[arc_index], aim)]
-    )
-    if other_costs.complete:
-        return value
-    missing = tuple(dict.fromkeys((*value.missing, *other_costs.missing)))
-    return replace(value, complete=False, missing=missing, side="at least")
-
-
-def _cut_arcs_text(arcs: Sequence[Arc]) -> str:
-    pairs = [f"{arc.source} > {arc.target}" for arc in arcs[:3]]
-    more_text = f" and {len(arcs) - 3} more" if len(arcs) > 3 else ""  # noqa: PLR2004 - as many as are named
-    return f"the loops are large: ways that go back along {', '.join(pairs)}{more_text} are left out"

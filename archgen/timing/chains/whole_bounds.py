@@ -11,8 +11,8 @@ from archgen.model.component import Component
 from archgen.model.quantity import Quantity
 from archgen.timing.analysis import Analysis
 from archgen.timing.chains import chain_regions
-from archgen.timing.chains.chain_bounds import find_extreme_path
 from archgen.timing.chains.cost_network import CostNetwork
+from archgen.timing.chains.extreme_paths import find_extreme_path
 from archgen.timing.figures.timing_values import TimingValue
 
 LIMIT_KEYS = ("deadline", "response")

@@ -89,7 +89,7 @@ def name_unknown_reason(value: TimingValue) -> str:
     return "" if value.value is not None else "unknown"
 
 
-def describe_value(value: TimingValue, unit: str) -> str:
+def describe_timing_value(value: TimingValue, unit: str) -> str:
     """Write a figure with its side where it is a bound, or why there is none. The unit is "Hz" or "ns"."""
     if value.value is None:
         word = next(iter(value.assumptions), "unknown") if value.complete else "unknown"

@@ -12,7 +12,7 @@ from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.run_ways import Priority
 from archgen.timing.load.shared_cores import SharedCores, ThreadJob, WayKey
 from archgen.timing.load.way_works import WayWork, build_way_works
-from archgen.timing.system.core_placement import ThreadUnit
+from archgen.timing.system.core_sets import ThreadUnit
 
 
 @dataclass(frozen=True, slots=True)

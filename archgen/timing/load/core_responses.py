@@ -97,11 +97,13 @@ class CoreSolver:
         for name in self.core.inner_triggers.order:
             activity = self.core.system.activities[name]
             response = self._find_response(name)
+            # In the order of triggers: each way needs the delay of the way without its last step, which is found before.
             whole_delay = self._delay_of_only_way(name, self.core.ways_to[name])
             if whole_delay is not None and response.value is not None:
                 response = response._replace(
                     value=min(response.value, whole_delay - self.core.ways_to[name][0].best_before)
                 )
+            # What is declared counts instead, also where less was found.
             if activity.response is not None:
                 response = WorstResponse(activity.response, "declared")
             if self._is_idle(name):  # its work is not in the busy periods, nor has it any events
@@ -117,6 +119,7 @@ class CoreSolver:
                 delays[(*map(str, way.entry), *way.steps)] = delay
                 ways.append(way._replace(delay=delay))
             if ways and all(way.delay is not None for way in ways) and response.tier != "declared":
+                # The delay of a way begins at its event, the response at the activation, `best_before` later or more.
                 longest = max((way.delay or 0) - way.best_before for way in ways)
                 if response.value is not None and longest < response.value:
                     response = response._replace(value=longest)
@@ -169,6 +172,7 @@ class CoreSolver:
                 None, unite_causes((*(UnknownCause((name,)) for name in unknown_costs), *demand.causes)), demand
             )
         previous = next(reversed(self.bounds.values()), None)
+        # A level holds all the work of the level before: where that search ended in nothing, this one would, too.
         if previous is not None and previous.cause == DIVERGED_CAUSE:
             return LevelBound(None, DIVERGED_CAUSE, demand)
         try:
@@ -196,6 +200,7 @@ class CoreSolver:
         if start_work:
             extended_period = self._extend_busy_period(name, bound, start_work)
             return WorstResponse(extended_period, tier, DIVERGED_CAUSE if extended_period is None else UnknownCause())
+        # Only a thread of one activity, whose activations run in their order, can be followed activation by activation.
         if level is None or len(thread.unit) > 1 or not thread.in_order or not activity.wcet:
             return WorstResponse(busy_period, tier)
         return WorstResponse(self._response_by_activation(name, bound), tier)

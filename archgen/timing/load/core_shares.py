@@ -10,7 +10,7 @@ from archgen.timing.load.busy_cores import find_blocked_time
 from archgen.timing.load.cascade_demand import CascadeDemand
 from archgen.timing.load.core_paths import CorePath
 from archgen.timing.load.shared_cores import SharedCores
-from archgen.timing.system.core_placement import ThreadUnit
+from archgen.timing.system.core_sets import ThreadUnit
 
 _SHARE_BITS = 64
 

@@ -25,6 +25,7 @@ from archgen.timing.load.busy_windows import (
 from archgen.timing.load.core_responses import CoreSolver, LevelBound
 from archgen.timing.load.event_streams import EventStreams, streams_of_calls
 from archgen.timing.load.inner_core import urgency_of
+from archgen.timing.load.last_step_workings import add_last_step
 from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.plain_core_workings import OWN_JOBS
 from archgen.timing.load.propagation_state import PropagationState
@@ -36,7 +37,6 @@ from archgen.timing.load.work_terms import (
     FigureWorking,
     WorkTerm,
     add_counts,
-    choose_working,
     group_terms,
     multiply_count,
     shorten_working,
@@ -105,21 +105,14 @@ class InnerCoreWorkings:
             yield self._whole_period(name, level, way.steps)
 
     def _add_last_step(self, name: str, way: EntryWay) -> Iterator[FigureWorking]:
-        """Yield the time to the step before, and the response of the last one."""
         before = way.steps[-2]
-        response = self.state.responses[name].value
-        way_before = next(
-            (each for each in self.state.ways_to[before] if each.entry == way.entry and each.steps == way.steps[:-1]),
-            None,
+        yield from add_last_step(
+            way,
+            self.state.ways_to[before],
+            self.state.responses[name].value,
+            lambda way_before: self.list_delays(before, way_before),
+            lambda _: self._list_step_responses(name),
         )
-        if way_before is None or way_before.delay is None or response is None:
-            return
-        if way_before.delay + response != way.delay:
-            return
-        first = choose_working(self.list_delays(before, way_before), way_before.delay)
-        last = choose_working(self._list_step_responses(name), response)
-        if first and last:
-            yield FigureWorking(first.value + last.value, 0, (), steps=way.steps, addends=(first, last))
 
     def _activation_streams(self, ways: Sequence[EntryWay], bound: LevelBound) -> EventStreams:
         """Return the events that lead to an activity; empty where these are not all known at the level."""

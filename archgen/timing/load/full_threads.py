@@ -15,7 +15,8 @@ from dataclasses import replace
 
 from archgen.timing.load.cascade_demand import CascadeDemand
 from archgen.timing.load.shared_cores import SharedCores, prepare_shared_cores
-from archgen.timing.system.core_placement import ProcessingResource, ThreadUnit
+from archgen.timing.system.core_placement import ProcessingResource
+from archgen.timing.system.core_sets import ThreadUnit
 
 
 def find_full_ids(cores: SharedCores, full_units: Iterable[ThreadUnit]) -> frozenset[str]:

@@ -27,7 +27,8 @@ from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.resource_waits import find_turn_times
 from archgen.timing.load.response_times import AnalysisEffort, find_responses
 from archgen.timing.load.thread_work import EventModels
-from archgen.timing.system.core_placement import ProcessingResource, ThreadUnit
+from archgen.timing.system.core_placement import ProcessingResource
+from archgen.timing.system.core_sets import ThreadUnit
 from archgen.timing.system.timing_system import TimingSystem
 from archgen.timing.system.trigger_graph import TriggerGraph
 

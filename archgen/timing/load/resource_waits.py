@@ -169,16 +169,16 @@ def find_rivals(state: PropagationState, own_ids: Sequence[str], resource_id: st
     system = state.system
     waiting = [activity for name in own_ids if resource_id in (activity := system.activities[name]).uses]
     by_priority = _find_order(system, resource_id) == "fixed_priority"
-    lowest = min(map(_urgency, waiting), default=-1)
+    lowest = min(map(_rank_priority, waiting), default=-1)
     competitors: list[Competitor] = []
     blocking = 0
     for user in find_users(system, resource_id):
         other, model = system.activities[user], state.event_models[user]
         is_own = user in own_ids and not (len(own_ids) == 1 and _may_overlap(other))
-        if model == () or is_own or all(_excludes(system, each, other) for each in waiting):
+        if model == () or is_own or all(_never_overlap(system, each, other) for each in waiting):
             continue
         worst = other.uses[resource_id].worst
-        if by_priority and _urgency(other) < lowest:
+        if by_priority and _rank_priority(other) < lowest:
             blocking = max(blocking, worst)
             continue
         response = state.work_ends.get(user, state.responses.get(user))
@@ -190,7 +190,7 @@ def find_rivals(state: PropagationState, own_ids: Sequence[str], resource_id: st
     return Rivals(tuple(competitors), blocking)
 
 
-def _urgency(activity: Activity) -> int:
+def _rank_priority(activity: Activity) -> int:
     return -1 if activity.priority is None else activity.priority
 
 
@@ -199,7 +199,7 @@ def _may_overlap(activity: Activity) -> bool:
     return bool(activity.executor) and activity.callback_group is None
 
 
-def _excludes(system: TimingSystem, first: Activity, second: Activity) -> bool:
+def _never_overlap(system: TimingSystem, first: Activity, second: Activity) -> bool:
     """Whether two activities never run at the same time: one thread, or one callback group."""
     key = thread_key(first)
     if key != thread_key(second):

@@ -33,7 +33,8 @@ from archgen.timing.load.single_cores import SingleCores, find_single_cores
 from archgen.timing.load.waiting_threads import model_roaming_work
 from archgen.timing.load.whole_hosts import HostLimit, find_whole_hosts, list_host_limits
 from archgen.timing.load.work_terms import CountFormulas, FigureWorking, choose_working
-from archgen.timing.system.core_placement import ProcessingResource, find_resources, split_resources
+from archgen.timing.system.core_placement import ProcessingResource, find_resources
+from archgen.timing.system.resource_division import split_resources
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,6 +12,7 @@ from archgen.timing.load.busy_cores import find_blocked_time
 from archgen.timing.load.busy_windows import DivergedError, SearchBudget
 from archgen.timing.load.core_paths import CorePath
 from archgen.timing.load.event_streams import earliest_arrivals, max_arrivals
+from archgen.timing.load.last_step_workings import add_last_step
 from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.load_system import list_storing_ids
 from archgen.timing.load.path_work import split_lanes
@@ -26,7 +27,6 @@ from archgen.timing.load.work_terms import (
     FigureWorking,
     ThreadShare,
     WorkTerm,
-    choose_working,
     group_terms,
     shorten_working,
 )
@@ -97,19 +97,14 @@ class SharedCoreWorkings:
             yield from BacklogWorkings(self.solver.limits.backlog, self.formulas).list_delays(way)
 
     def _add_last_step(self, name: str, way: EntryWay) -> Iterator[FigureWorking]:
-        before, response = way.steps[-2], self.solver.step_responses.get(name)
-        way_before = next(
-            (each for each in self.state.ways_to[before] if each.entry == way.entry and each.steps == way.steps[:-1]),
-            None,
+        before = way.steps[-2]
+        yield from add_last_step(
+            way,
+            self.state.ways_to[before],
+            self.solver.step_responses.get(name),
+            lambda way_before: self.list_delays(before, way_before),
+            lambda response: self._follow_path((name,), response),
         )
-        if way_before is None or way_before.delay is None or response is None:
-            return
-        if way_before.delay + response != way.delay:
-            return
-        first = choose_working(self.list_delays(before, way_before), way_before.delay)
-        last = choose_working(self._follow_path((name,), response), response)
-        if first and last:
-            yield FigureWorking(first.value + last.value, 0, (), steps=way.steps, addends=(first, last))
 
     def _follow_path(self, steps: tuple[str, ...], value: int) -> Iterator[FigureWorking]:
         """Yield the window of a path that gives a figure: of each activation of its last step, where these are looked at."""

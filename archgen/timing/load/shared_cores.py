@@ -12,7 +12,8 @@ from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers
 from archgen.timing.load.level_cascades import EventOrigin, LevelCascades, build_level_cascades, number_arcs
 from archgen.timing.load.run_ways import EntryWay, find_entry_ways
 from archgen.timing.load.thread_work import ThreadWork
-from archgen.timing.system.core_placement import ProcessingResource, ThreadUnit
+from archgen.timing.system.core_placement import ProcessingResource
+from archgen.timing.system.core_sets import ThreadUnit
 from archgen.timing.system.thread_pools import find_crowded_pools, find_thread_count, is_reentrant
 from archgen.timing.system.timing_system import TimingSystem
 

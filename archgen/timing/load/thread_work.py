@@ -14,7 +14,7 @@ from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, sum_ratios, unite_causes
 from archgen.timing.load.busy_windows import ActivityWork
 from archgen.timing.load.event_streams import EventStreams
-from archgen.timing.system.core_placement import ThreadUnit
+from archgen.timing.system.core_sets import ThreadUnit
 from archgen.timing.system.thread_pools import ThreadPool, find_crowded_pools, name_lane, works_in_order
 from archgen.timing.system.timing_system import TimingSystem
 

@@ -199,12 +199,12 @@ def _bound_with(
         interference.demand.term_count + sum([2 * len(each.competitors) for each in waits.rivals]),
     )
     try:
-        return _search(waits.works, demand, budget, in_order=in_order)
+        return _find_longest_response(waits.works, demand, budget, in_order=in_order)
     except DivergedError:
         return DIVERGED_CAUSE
 
 
-def _search(
+def _find_longest_response(
     works: Sequence[ActivityWork], interference: DemandFunction, budget: SearchBudget, *, in_order: bool
 ) -> int:
     """Return the longest response: by activation where one comes after the other, else the whole busy time."""

@@ -9,25 +9,27 @@ it has, only what is pinned has a core that is known, and a single thread, which
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 
 from archgen.frozen import dataclass, replace
 from archgen.model.graph_search import find_strong_components
+from archgen.timing.system.core_sets import (
+    CoreSet,
+    ThreadUnit,
+    find_core_sets,
+    find_cores,
+    find_free_cores,
+    group_lanes,
+)
 from archgen.timing.system.thread_pools import (
     ThreadPool,
     find_crowded_pools,
     find_pool,
-    find_thread_count,
     is_reentrant,
     name_lane,
 )
 from archgen.timing.system.timing_system import Activity, TimingSystem
 from archgen.timing.system.unplaced_pools import find_unplaced_pools, group_unplaced
-
-ThreadUnit = tuple[str, ...]
-"""Activities that one thread runs, or that a callback group keeps apart: one after the other."""
-CoreSet = tuple[int, ...]
-"""Numbers of the cores on which something may run."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,89 +90,11 @@ def find_resources(system: TimingSystem) -> tuple[ProcessingResource, ...]:
     return (*on_hosts, *_resources_of_pools(system))
 
 
-def split_resources(system: TimingSystem, resource_list: Iterable[ProcessingResource]) -> Iterator[ProcessingResource]:
-    """Yield the parts of resources whose responses are found at once."""
-    for resource in resource_list:
-        for part in divide_resource(system, resource):
-            yield from part_waiting_units(system, part)
-
-
-def divide_resource(system: TimingSystem, resource: ProcessingResource) -> Iterable[ProcessingResource]:
-    """Yield one core for each thread where there are cores enough for all of them, else the resource as it is.
-
-    A process of which members wait for threads has as many cores as threads.
-    """
-    if resource.cores == 1 or resource.joined or resource.foreign_units:
-        return (resource,)
-    members = [system.activities[name] for name in resource.members]
-    crowded_pools = find_crowded_pools(system, members)
-    if any(is_reentrant(system, activity) and activity.id not in crowded_pools for activity in members):
-        return (resource,)  # as many threads as are asked for
-    units_by_pool: dict[ThreadPool, list[ThreadUnit]] = defaultdict(list)
-    for unit in resource.units:
-        if unit[0] in crowded_pools:
-            units_by_pool[crowded_pools[unit[0]]].append(unit)
-    lone_units = [unit for unit in resource.units if unit[0] not in crowded_pools]
-    if len(lone_units) + sum(pool.threads or 0 for pool in units_by_pool) > resource.cores:
-        return (resource,)
-    return (
-        *(replace(resource, cores=1, units=(unit,), undisturbed=True) for unit in lone_units),
-        *(replace(resource, cores=pool.threads or 1, units=tuple(units)) for pool, units in units_by_pool.items()),
-    )
-
-
-def part_waiting_units(system: TimingSystem, resource: ProcessingResource) -> Iterable[ProcessingResource]:
-    """Yield a part for each thread that waits for resources, and one for all others; the resource where none waits."""
-    is_waiting = any(
-        system.activities[name].uses for unit in (*resource.units, *resource.foreign_units) for name in unit
-    )
-    waiting_units = tuple(_find_waiting_units(system, resource)) if is_waiting else ()
-    if not waiting_units or resource.missing:
-        yield resource
-        return
-    waiting_ids = {name for unit in waiting_units for name in unit}
-    other_units = tuple(unit for unit in resource.units if unit[0] not in waiting_ids)
-    if other_units:
-        yield replace(
-            resource,
-            units=other_units,
-            foreign_units=(*resource.foreign_units, *waiting_units),
-            roaming_units=(*resource.roaming_units, *waiting_units),
-            neighbour_units=waiting_units,
-        )
-    for unit in waiting_units:
-        neighbours = (*other_units, *(other_unit for other_unit in waiting_units if other_unit != unit))
-        yield replace(
-            resource,
-            units=(unit,),
-            foreign_units=(*resource.foreign_units, *neighbours),
-            neighbour_units=neighbours,
-            waits=True,
-        )
-
-
-def _find_waiting_units(system: TimingSystem, resource: ProcessingResource) -> Iterable[ThreadUnit]:
-    """Yield the units that wait for resources; those of a process with too few threads wait for one another."""
-    all_members = [system.activities[name] for unit in (*resource.units, *resource.foreign_units) for name in unit]
-    crowded_pools = find_crowded_pools(system, all_members)
-    waiting_pools = {
-        crowded_pools[activity.id] for activity in all_members if activity.uses and activity.id in crowded_pools
-    }
-    crowds: dict[ThreadPool, list[str]] = {}
-    for unit in resource.units:
-        pool = crowded_pools.get(unit[0])
-        if pool is not None and pool in waiting_pools:
-            crowds.setdefault(pool, []).extend(unit)
-        elif any(system.activities[name].uses for name in unit):
-            yield unit
-    yield from (tuple(names) for names in crowds.values())
-
-
 def _resources_of_pools(system: TimingSystem) -> Iterable[ProcessingResource]:
     """Yield a resource for each process without a host in which one may wait for another, with dedicated cores."""
     unplaced_pools = find_unplaced_pools(system)
     for pool, members in group_unplaced(system).items():
-        units = _group_lanes(system, members)
+        units = group_lanes(system, members)
         if pool not in unplaced_pools and len(units) == len(members):
             continue
         cores = (pool.threads if pool in unplaced_pools else None) or len(units)
@@ -179,17 +103,9 @@ def _resources_of_pools(system: TimingSystem) -> Iterable[ProcessingResource]:
         yield ProcessingResource(name, None, cores, units, assumptions=(assumption,))
 
 
-def _group_lanes(system: TimingSystem, members: Iterable[Activity]) -> tuple[ThreadUnit, ...]:
-    """Return the activities of each thread, or callback group."""
-    names_by_lane: dict[str, list[str]] = defaultdict(list)
-    for activity in members:
-        names_by_lane[name_lane(system, activity)].append(activity.id)
-    return tuple(map(tuple, names_by_lane.values()))
-
-
 def _resources_of_host(system: TimingSystem, host: str, members: Iterable[Activity]) -> Iterable[ProcessingResource]:
     """Return the resources of a host: one for its only core, else one for each set of cores, and one for the rest."""
-    cores, lanes = system.cores.get(host), _group_lanes(system, members)
+    cores, lanes = system.cores.get(host), group_lanes(system, members)
     # One thread uses one core, however many there are.
     if cores == 1 or (cores is None and _count_working(system, lanes) <= 1):
         return (ProcessingResource(host, host, 1, lanes, core_set=(0,)),)
@@ -285,26 +201,18 @@ def _pinned_and_shared(
     if unpinned_units:
         # A set may be all the cores that are left: then a group that was divided is one again.
         names = [name for unit in (*units_by_set.pop(free_cores, ()), *unpinned_units) for name in unit]
-        units_by_set[free_cores] = list(_group_lanes(system, [system.activities[name] for name in names]))
+        units_by_set[free_cores] = list(group_lanes(system, [system.activities[name] for name in names]))
     for resource in _pinned_resources(system, host, units_by_set):
         is_rest = bool(unpinned_units) and resource.core_set == free_cores
         kept_notes = ("cores to which something is pinned are kept for it",) if len(free_cores) < cores else ()
         yield replace(resource, id=host, assumptions=kept_notes) if is_rest else resource
 
 
-def find_free_cores(core_count: int, pinned_sets: Iterable[CoreSet]) -> CoreSet:
-    """Return the cores on which what is not pinned may run: those that are kept for nothing, else all."""
-    # With a pin on every core nothing is left for what is not pinned. It may land on any core, so it interferes on each
-    # one, and everything pinned interferes with it.
-    kept_cores = {core_set[0] for core_set in pinned_sets if len(core_set) == 1}
-    return tuple(core for core in range(core_count) if core not in kept_cores) or tuple(range(core_count))
-
-
 def _torn_thread_notes(system: TimingSystem, units: Iterable[ThreadUnit]) -> Iterable[str]:
     """Yield an assumption for each thread whose members are pinned to several cores."""
     for unit in units:
         activities = [system.activities[name] for name in unit]
-        if len({core_set for activity in activities if (core_set := _find_cores(system, activity))}) > 1:
+        if len({core_set for activity in activities if (core_set := find_cores(system, activity))}) > 1:
             pool = find_pool(system, activities[0])
             yield f"{pool.key if pool else activities[0].id} has one thread: it runs where the first pinned member is"
 
@@ -354,27 +262,3 @@ def _cores_sharing_threads(
         for position in positions:
             neighbours[position] += [other_position for other_position in positions if other_position != position]
     return neighbours
-
-
-def find_core_sets(system: TimingSystem, members: Iterable[Activity]) -> dict[ThreadUnit, CoreSet]:
-    """Return the units of some activities, each with the cores to which it is pinned, none where it is not.
-
-    A thread is pinned where its first pinned member is; a callback group is divided where its members are pinned apart. A
-    pin to a core that does not exist counts as none.
-    """
-    core_sets: dict[ThreadUnit, CoreSet] = {}
-    for unit in _group_lanes(system, members):
-        names_by_set: dict[CoreSet, list[str]] = defaultdict(list)
-        for name in unit:
-            names_by_set[_find_cores(system, system.activities[name])].append(name)
-        if len(names_by_set) == 1 or find_thread_count(system, unit[0]) == 1:
-            core_sets[unit] = next((core_set for core_set in names_by_set if core_set), ())
-        else:
-            core_sets |= {tuple(names): core_set for core_set, names in names_by_set.items()}
-    return core_sets
-
-
-def _find_cores(system: TimingSystem, activity: Activity) -> CoreSet:
-    """Return the cores to which an activity is pinned, as far as its host has them."""
-    cores = system.cores.get(activity.host or "")
-    return tuple(core for core in activity.cores if cores is None or core < cores)

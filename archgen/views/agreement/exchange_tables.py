@@ -52,11 +52,11 @@ def _given_row(lookup: Lookup, terms: InterfaceTerms) -> tuple[Inlines, ...]:
     return (
         inline_text.join_lines([(interface_link(terms),), *_end_lines(lookup, terms)]),
         _carrier_cell(terms),
-        (_shorten(pace.promised) or _NOT_PROMISED) if pace else (),
-        _shorten(pace.expected) if pace else (),
-        (_shorten(qos.promised) or _NOT_PROMISED) if qos else (),
-        _shorten(size.promised or size.expected) if size else (),
-        _shorten(traffic.expected) if traffic else (),
+        (_shorten_figure(pace.promised) or _NOT_PROMISED) if pace else (),
+        _shorten_figure(pace.expected) if pace else (),
+        (_shorten_figure(qos.promised) or _NOT_PROMISED) if qos else (),
+        _shorten_figure(size.promised or size.expected) if size else (),
+        _shorten_figure(traffic.expected) if traffic else (),
         inline_text.join_inlines(((chip,) for chip in _list_chips(terms)), " "),
     )
 
@@ -67,7 +67,7 @@ def _find_row(terms: InterfaceTerms, starts: tuple[str, ...]) -> PromiseRow | No
     return next((row for row in rows if row.promised or row.expected), rows[0] if rows else None)
 
 
-def _shorten(runs: Inlines) -> Inlines:
+def _shorten_figure(runs: Inlines) -> Inlines:
     """Return a figure alone, without what it follows from and the gap behind it: these stand on the interface's page."""
     if not runs:
         return ()
@@ -124,14 +124,14 @@ def _list_point_rows(lookup: Lookup, exchange: PartnerExchange) -> Iterator[tupl
         for sentence, terms in sentences.items():
             # One chain may pass over several interfaces: it is late once.
             point = inline_text.join_lines([inline_text.message_to_inlines(sentence), (interface_link(terms),)])
-            yield _chip(word, status), point, both  # type: ignore[arg-type]
+            yield _make_chip(word, status), point, both  # type: ignore[arg-type]
     for name, interfaces in _group_open_terms(exchange.interfaces).items():
         links = inline_text.join_inlines((interface_link(terms),) for terms in interfaces)
         point = inline_text.join_lines([inline_text.message_to_inlines(describe_open_term(name)), links])
-        yield _chip(_TERM_WORDS.get(name, name.lower()), "open"), point, _count_writers(lookup, interfaces)
+        yield _make_chip(_TERM_WORDS.get(name, name.lower()), "open"), point, _count_writers(lookup, interfaces)
 
 
-def _chip(word: str, status: Status) -> Inlines:
+def _make_chip(word: str, status: Status) -> Inlines:
     return (Text(word, status=status),)
 
 

@@ -117,10 +117,10 @@ class _GivenPace:
         if pace.rate.value is not None and not pace.inferred:
             # "At each activation" is a promise of its own: an output that becomes conditional promises less.
             strength: PromiseStrength = {"rate": pace.rate.value, "each activation": int(not output_timing.conditional)}
-            return PromiseRow(name, _figure(words, pace.rate.value), self._rate_by_inputs(pace), strength)
+            return PromiseRow(name, _make_figure(words, pace.rate.value), self._rate_by_inputs(pace), strength)
         if pace.behaviour in {"once", "on_demand"}:
             is_written = self.timing.behaviour is not None
-            runs = _figure(words, pace.rate.value)
+            runs = _make_figure(words, pace.rate.value)
             return PromiseRow(name, runs) if is_written else PromiseRow(name, expected=runs)
         return PromiseRow(name, expected=self._expected_rate(pace, words))
 
@@ -130,7 +130,7 @@ class _GivenPace:
         origins = timing_tables.link_origins(self.timed, self.timed.rate_origins.get(self.activity, ()))
         source = f"{SOURCE_PHRASE}the rate of " if origins else ", computed"
         # Names of programs as plain text: in a contract they are words like others.
-        return (*_figure(f"{words}{source}", pace.rate.value), *(replace(run, code=False) for run in origins))
+        return (*_make_figure(f"{words}{source}", pace.rate.value), *(replace(run, code=False) for run in origins))
 
     def _rate_by_inputs(self, pace: EventPace) -> Inlines:
         """Return what the inputs give, where that is another rate than the written one."""
@@ -138,7 +138,7 @@ class _GivenPace:
         if by_inputs is None or by_inputs.rate.value in {None, pace.rate.value}:
             return ()
         words = f"{_spell_signs(value_format.display_rate(by_inputs.rate))}{SOURCE_PHRASE}its inputs"
-        return _figure(words, by_inputs.rate.value)
+        return _make_figure(words, by_inputs.rate.value)
 
     def _gap_row(self, pace: EventPace, output_timing: OutputTiming) -> PromiseRow:
         # What is not conditional is sent at each activation: `max_gap` has no effect there.
@@ -163,7 +163,7 @@ class _GivenPace:
         # "Answers within at least 20 ms" would read as a limit.
         figure = value_format.display_duration(response.worst)
         words = f"{figure.removeprefix('>= ')} or more" if figure.startswith(">= ") else figure
-        return PromiseRow(name, expected=_figure(f"{words}{SOURCE_PHRASE}{source}", response.worst.value))
+        return PromiseRow(name, expected=_make_figure(f"{words}{SOURCE_PHRASE}{source}", response.worst.value))
 
 
 def _spell_rate(pace: EventPace) -> str:
@@ -191,8 +191,8 @@ def _size_row(name: str, size: MessageSize) -> PromiseRow:
     amount = value_format.display_bytes(TimingValue(Fraction(size.bytes)))
     words = amount if size.exact else f"at most {amount}"
     if size.written:
-        return PromiseRow(name, _figure(words, size.bytes), strength={"size": -size.bytes})
-    return PromiseRow(name, expected=_figure(f"{words}{SOURCE_PHRASE}the definition of the message", size.bytes))
+        return PromiseRow(name, _make_figure(words, size.bytes), strength={"size": -size.bytes})
+    return PromiseRow(name, expected=_make_figure(f"{words}{SOURCE_PHRASE}the definition of the message", size.bytes))
 
 
 def _traffic_runs(timed: TimingLookup, interface: PartnerInterface) -> Inlines:
@@ -203,10 +203,10 @@ def _traffic_runs(timed: TimingLookup, interface: PartnerInterface) -> Inlines:
         if load and load.published.value is not None
     ]
     total = sum(load.published.value or 0 for _, load in loads if load)
-    return _figure(f"{', '.join(traffic_phrases)}{SOURCE_PHRASE}rate and size", total) if traffic_phrases else ()
+    return _make_figure(f"{', '.join(traffic_phrases)}{SOURCE_PHRASE}rate and size", total) if traffic_phrases else ()
 
 
-def _figure(words: str, number: Fraction | int | None) -> Inlines:
+def _make_figure(words: str, number: Fraction | int | None) -> Inlines:
     """Return a figure in words, sorted by its number in the base unit."""
     return (Text(words, sort_number=None if number is None else str(number)),)
 

@@ -9,10 +9,10 @@ from typing import TypeVar
 from archgen.analyses.kept_promises import find_broken_promises
 from archgen.frozen import dataclass, replace
 from archgen.model.component import Output
-from archgen.model.counted_outputs import find_counted_output
 from archgen.model.partner_interfaces import PartnerInterface
 from archgen.model.promise import Promise, describe_deprecation, format_range
 from archgen.model.quantity import Quantity
+from archgen.model.relied_outputs import find_relied_output
 from archgen.timing.chains.read_ages import find_sent_ages
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import is_boundless
@@ -48,9 +48,7 @@ def list_counted_ports(lookup: Lookup, interface: PartnerInterface) -> tuple[Cou
     ports: dict[tuple[object, ...], CountedPort] = {}
     for reader in interface.inputs:
         connection = next((each for each in reader.connections if interface.output.id in each.outputs), None)
-        port = (
-            find_counted_output(lookup.architecture, connection, interface.output) if connection else interface.output
-        )
+        port = find_relied_output(lookup.architecture, connection, interface.output) if connection else interface.output
         words = tuple((port.promise or Promise()).list_kept()), port.version, _deprecation_text(port)
         known = ports.get(words, CountedPort(port, ()))
         ports[words] = CountedPort(known.port, (*known.readers, reader.id))
@@ -126,13 +124,13 @@ def _write_values(
     """Write values, one a line; where not all readers see the same, each with its readers."""
     lines = []
     for value, readers in values:
-        names = f" for {', '.join(_short(reader) for reader in readers)}" if is_several and readers else ""
+        names = f" for {', '.join(_shorten_id(reader) for reader in readers)}" if is_several and readers else ""
         number = str(value.value) if isinstance(value, Quantity) else None
         lines.append((Text(f"{write(value)}{names}", sort_number=number),))
     return inline_text.join_lines(lines)
 
 
-def _short(port_id: str) -> str:
+def _shorten_id(port_id: str) -> str:
     return ".".join(port_id.split(".")[-2:])
 
 
@@ -205,13 +203,13 @@ def find_broken_words(lookup: Lookup, interface: PartnerInterface, ports: Sequen
     if lookup.timing is not None and interface.output is not None and any(each.port.promise for each in ports):
         for broken in find_broken_promises(lookup.architecture, lookup.timing.analysis):
             if broken.leaf == interface.output.id and broken.port in port_ids:
-                yield f"`{_short(broken.port)}` promises {broken.promised}: {broken.words}."
+                yield f"`{_shorten_id(broken.port)}` promises {broken.promised}: {broken.words}."
     freshness = {port.id: port.freshness for port in interface.inputs if port.freshness}
     for each in ports:
         for reader in each.readers:
             needed, promised = freshness.get(reader), each.promise.max_age
             if needed and promised and promised.value > needed.value:
-                yield f"`{_short(reader)}` needs what is no older than {needed}, and {promised} is promised."
+                yield f"`{_shorten_id(reader)}` needs what is no older than {needed}, and {promised} is promised."
 
 
 def identify_words(ports: Sequence[CountedPort]) -> list[list[str]]:

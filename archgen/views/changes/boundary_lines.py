@@ -27,7 +27,7 @@ _PHRASES = {"answers within": "the time of an answer"}
 _MAX_NAMES, _MAX_ENDS = 4, 4
 """How many kinds of figures, and how many pairs of partners, one line names; the rest is counted."""
 _NEW_OUTPUT_NAMES = frozenset({"rate", "answers within"})
-"""What is told of the interface of a new output, which is a change of its own."""
+"""What is told about the interface of a new output, which is a change of its own."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,5 +207,5 @@ def _join_takers(changes: Iterable[BoundaryChange]) -> Iterable[BoundaryChange]:
     return joined.values()
 
 
-def _note_before(partners: str) -> str:
-    return f" (before: {partners})" if partners else ""
+def _note_before(partner_phrase: str) -> str:
+    return f" (before: {partner_phrase})" if partner_phrase else ""

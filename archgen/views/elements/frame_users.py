@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Mapping
 
 from archgen.model.architecture import Architecture
-from archgen.model.coordinate_frames import Frame, list_children, walk_ancestors
+from archgen.model.coordinate_frames import Frame, index_child_frames, walk_ancestors
 from archgen.views.lookup import Lookup
 
 NOBODY = "nobody yet"
@@ -15,7 +15,7 @@ FrameUsers = tuple[tuple[str, tuple[str, ...]], ...]
 
 def list_frame_users(architecture: Architecture, frame: Frame) -> FrameUsers:
     """Return lists below their headings: frames placed in a frame, ports whose data is given or expected in it."""
-    children = tuple(child.id for child in list_children(architecture.frames).get(frame.id, ()))
+    children = tuple(child.id for child in index_child_frames(architecture.frames).get(frame.id, ()))
     return (("holds", children), ("used by", tuple(index_frame_ports(architecture).get(frame.id, ()))))
 
 

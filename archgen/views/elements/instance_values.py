@@ -13,7 +13,7 @@ from archgen.model.component import Component
 from archgen.model.parameter import format_parameter
 from archgen.model.quantity import Quantity
 from archgen.views.shapes import Block, Facts, Inlines
-from archgen.views.type_names import find_type
+from archgen.views.type_names import find_component_type
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +66,7 @@ def add_own_value(blocks: Sequence[Block], fact: tuple[str, Inlines] | None) -> 
 
 def _list_values(architecture: Architecture, component: Component) -> Iterator[OwnValue]:
     """Yield the values of a component that may be a type's. A type's own texts are no place of an instance's."""
-    component_type = find_type(architecture, component)
+    component_type = find_component_type(architecture, component)
     for name in ("functionality", "description"):
         text = getattr(component, name)
         if text and component_type and text != getattr(component_type, name):

@@ -6,10 +6,11 @@ from collections.abc import Callable, Iterator
 
 from archgen.model.architecture import Architecture
 from archgen.model.component import ComponentType, Connection, Output
-from archgen.model.counted_outputs import find_counted_output, find_replacement
+from archgen.model.deprecation_lookup import find_replacement
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Topic
 from archgen.model.promise import Promise, describe_deprecation, format_range
+from archgen.model.relied_outputs import find_relied_output
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Inlines, Text
@@ -119,7 +120,7 @@ def mark_source(lookup: Lookup, connection: Connection) -> Inlines:
     architecture = lookup.architecture
     for output_id in connection.outputs:
         leaf = architecture.outputs.get(output_id)
-        port = find_counted_output(architecture, connection, leaf) if leaf else None
+        port = find_relied_output(architecture, connection, leaf) if leaf else None
         if port is not None and port.deprecated is not None:
             return _BADGE
     return ()

@@ -11,8 +11,8 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Input, Output
-from archgen.model.counted_outputs import list_deprecated_kinds
 from archgen.model.declared_timing import Timing
+from archgen.model.deprecation_lookup import list_deprecated_kinds
 from archgen.model.node import Node
 from archgen.model.parameter_values import find_effective_parameters
 from archgen.model.port_media import list_medium_words
@@ -64,7 +64,7 @@ def list_component_keys(lookup: Lookup) -> Mapping[str, tuple[Key, ...]]:
 
 
 def list_composed_keys(architecture: Architecture, shell: Component) -> tuple[Key, ...]:
-    """Return what is said of a composed component itself. No selector finds it by that: what flows, flows between leaves."""
+    """Return the keys that a composed component has of its own. Selectors do not look at them: they select leaves."""
     return tuple(
         dict.fromkeys(
             (

@@ -20,7 +20,7 @@ from archgen.views.generation.aadl_words import (
     make_item,
     make_property,
     make_text_properties,
-    write_duration,
+    write_aadl_duration,
     write_range,
 )
 
@@ -123,7 +123,7 @@ class Behaviour:
         elif timing.rate and timing.rate.value:
             period = Fraction(10**9) / timing.rate.value
             if can_be_written(period):
-                found.append(make_property("Period", write_duration(period)))
+                found.append(make_property("Period", write_aadl_duration(period)))
             found += make_text_properties(rate=str(timing.rate))
         found += make_duration_property("Deadline", timing.deadline)
         found += make_duration_property("Dispatch_Jitter", timing.jitter)

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 
 from archgen.timing.system.timing_system import Arc
 from archgen.views.generation.aadl_flow_steps import NO_TIME, TimeRange
-from archgen.views.generation.aadl_parts import Route, SystemTree
 from archgen.views.generation.aadl_ports import PortPart
-from archgen.views.generation.aadl_processes import Process
+from archgen.views.generation.aadl_processes import NodeProcess
+from archgen.views.generation.aadl_system_tree import Route, SystemTree
 from archgen.views.generation.aadl_types import UNTYPED, TypeBook
 from archgen.views.generation.aadl_words import make_property, write_range
 
@@ -33,7 +33,7 @@ class RouteFinder:
         self._calls: dict[RouteEnds, Route | None] = {}
         self._latencies = latencies
 
-    def find_route(self, arc: Arc, source: Process, target: Process) -> Route | None:
+    def find_route(self, arc: Arc, source: NodeProcess, target: NodeProcess) -> Route | None:
         """Return the way of what passes between two processes; None where nothing here joins them."""
         ends = (source.node.id, arc.output, target.node.id, arc.input)
         if arc.role == "data":
@@ -42,11 +42,11 @@ class RouteFinder:
             self._calls[ends] = self._join_call(arc, source, target, self._latencies.get(ends))
         return self._calls[ends]
 
-    def find_latency(self, arc: Arc, source: Process, target: Process) -> TimeRange:
+    def find_latency(self, arc: Arc, source: NodeProcess, target: NodeProcess) -> TimeRange:
         """Return how long the way between two processes takes."""
         return self._latencies.get((source.node.id, arc.output, target.node.id, arc.input), NO_TIME)
 
-    def find_port(self, arc: Arc, process: Process, *, is_output: bool) -> PortPart | None:
+    def find_port(self, arc: Arc, process: NodeProcess, *, is_output: bool) -> PortPart | None:
         """Return the port by which what passes leaves a process or arrives there."""
         if arc.role != "data":
             return self._find_call_part(arc, process, is_output=is_output)
@@ -54,7 +54,7 @@ class RouteFinder:
             return process.find_part(arc.output, is_output=True)
         return process.find_part(arc.input, is_output=False, source_id=arc.output)
 
-    def _join_call(self, arc: Arc, source: Process, target: Process, latency: TimeRange | None) -> Route | None:
+    def _join_call(self, arc: Arc, source: NodeProcess, target: NodeProcess, latency: TimeRange | None) -> Route | None:
         output, reader = (
             self._find_call_part(arc, source, is_output=True),
             self._find_call_part(arc, target, is_output=False),
@@ -64,7 +64,7 @@ class RouteFinder:
         properties = [make_property("Latency", write_range(*latency))] if latency else []
         return self._tree.join((source, output), (target, reader), properties)
 
-    def _find_call_part(self, arc: Arc, process: Process, *, is_output: bool) -> PortPart | None:
+    def _find_call_part(self, arc: Arc, process: NodeProcess, *, is_output: bool) -> PortPart | None:
         port_id, other_id = (arc.output, arc.input) if is_output else (arc.input, arc.output)
         is_request = arc.role == "request"
         # Who answers has an output for the call; who calls has an input, which may read several.

@@ -10,8 +10,8 @@ from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import ComponentType
 from archgen.model.node import Node
-from archgen.views.generation.aadl_devices import Device
-from archgen.views.generation.aadl_processes import Process
+from archgen.views.generation.aadl_devices import NodeDevice
+from archgen.views.generation.aadl_processes import NodeProcess
 from archgen.views.generation.aadl_words import (
     AadlProperty,
     NameSpace,
@@ -20,7 +20,7 @@ from archgen.views.generation.aadl_words import (
     make_named_properties,
     make_property,
     make_text_properties,
-    write_text,
+    write_aadl_string,
 )
 from archgen.views.generation.generation_context import write_place
 
@@ -38,10 +38,10 @@ class SharedType:
 
     declared: ComponentType
     name: str
-    instances: tuple[Process, ...]
+    instances: tuple[NodeProcess, ...]
 
 
-def find_type(architecture: Architecture, node: Node) -> ComponentType | None:
+def find_type_of_node(architecture: Architecture, node: Node) -> ComponentType | None:
     """Return the component type of the only component that a node implements; none for generic types and those of libraries."""
     component = architecture.find_component(node.implements[0]) if len(node.implements) == 1 else None
     if component is None or not component.component_type or node.wholes:
@@ -52,12 +52,12 @@ def find_type(architecture: Architecture, node: Node) -> ComponentType | None:
 
 
 def list_shared_types(
-    architecture: Architecture, processes: Iterable[Process], names: Mapping[tuple[str, str], str]
+    architecture: Architecture, processes: Iterable[NodeProcess], names: Mapping[tuple[str, str], str]
 ) -> list[SharedType]:
     """Return the types with their instances; `names` are what their classifiers are called, by category and id."""
-    instances: dict[tuple[str, str], list[Process]] = {}
+    instances: dict[tuple[str, str], list[NodeProcess]] = {}
     for process in processes:
-        if declared := find_type(architecture, process.node):
+        if declared := find_type_of_node(architecture, process.node):
             instances.setdefault((process.category, declared.id), []).append(process)
     return [
         SharedType(architecture.component_types[key[1]], names[key], tuple(_select_alike(found)))
@@ -65,11 +65,11 @@ def list_shared_types(
     ]
 
 
-def _select_alike(processes: Sequence[Process]) -> list[Process]:
+def _select_alike(processes: Sequence[NodeProcess]) -> list[NodeProcess]:
     """Return those that one classifier can stand for: as many as possible."""
     shapes = [_describe_shape(process) for process in processes]
     [(shape, _)] = Counter(shapes).most_common(1)
-    alike: list[Process] = []
+    alike: list[NodeProcess] = []
     texts: dict[tuple[str, str], str] = {}
     for process, own_shape in zip(processes, shapes, strict=True):
         own_texts = {("feature", each["name"]): each["text"] for each in process.feature_items}
@@ -80,7 +80,7 @@ def _select_alike(processes: Sequence[Process]) -> list[Process]:
     return alike
 
 
-def _describe_shape(process: Process) -> str:
+def _describe_shape(process: NodeProcess) -> str:
     """Return a text that is equal for processes of which one classifier can be made."""
     features = [(each["name"], each["text"]) for each in process.feature_items if not _is_extra(each)]
     inside = [(each["name"], each["text"]) for each in (*process.connections, *process.subcomponents)]
@@ -122,13 +122,13 @@ class TypeWriter:
         for name, text in (("Functionality", declared.functionality), ("Description", declared.description)):
             found.pop(("words", "", f"archgen::{name}"), None)
             if text:
-                found["words", "", f"archgen::{name}"] = write_text(text)
+                found["words", "", f"archgen::{name}"] = write_aadl_string(text)
         return found
 
     def place_instances(self) -> None:
         """Make the subcomponents of the type, with what each says otherwise."""
         for process, said in zip(self._shared.instances, self._said, strict=True):
-            ending = "" if isinstance(process, Device) else ".impl"
+            ending = "" if isinstance(process, NodeDevice) else ".impl"
             process.item["text"] = f"{process.category} {self._package_name}::{self._shared.name}{ending}"
             process.item["properties"] += [
                 make_property(name, value, path)
@@ -139,14 +139,14 @@ class TypeWriter:
     def make_classifiers(self) -> list[dict[str, Any]]:
         """Return the type, and for processes the implementation and the thread."""
         declared = self._shared.declared
-        words = [make_property("archgen::Component_Type", write_text(declared.id))]
+        words = [make_property("archgen::Component_Type", write_aadl_string(declared.id))]
         words += make_named_properties(declared.id, declared.id, declared.title)
         words += make_text_properties(owner=declared.owner)
         words += self._list_common("words")
         own_type = make_classifier(self._first.category, self._shared.name, place=write_place(declared.at))
         own_type.update(features=self._merge_items("features"), flows=self._merge_items("flows"), properties=words)
         inside = self._list_common("inside")
-        if isinstance(self._first, Device):
+        if isinstance(self._first, NodeDevice):
             own_type["properties"] = [*words, *inside]
             return [own_type]
         threads, names = self._copy_threads()
@@ -192,7 +192,7 @@ class TypeWriter:
         ]
 
 
-def _list_said(process: Process) -> Iterator[tuple[_Key, str]]:
+def _list_said(process: NodeProcess) -> Iterator[tuple[_Key, str]]:
     """Yield all properties of a process with their values."""
     for each in process.list_words():
         yield ("words", "", each["name"]), each["value"]

@@ -11,7 +11,7 @@ from archgen.model.node import Node
 from archgen.model.port_media import is_physical
 from archgen.views.generation.aadl_behaviours import Behaviour
 from archgen.views.generation.aadl_hints import list_own_sources
-from archgen.views.generation.aadl_processes import Process
+from archgen.views.generation.aadl_processes import NodeProcess
 from archgen.views.generation.aadl_words import (
     AadlProperty,
     NameSpace,
@@ -35,7 +35,7 @@ def is_device(architecture: Architecture, node: Node, linked_devices: Collection
     return _DEVICE_TAG in component.tags or component.id in linked_devices or is_all_physical
 
 
-class Device(Process):
+class NodeDevice(NodeProcess):
     """A component that is a device: as a process to all that is joined to it, but without threads and without ROS."""
 
     category = "device"

@@ -6,7 +6,8 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
 from archgen.frozen import dataclass
-from archgen.views.generation.aadl_parts import Route, SystemPart
+from archgen.views.generation.aadl_system_part import SystemPart
+from archgen.views.generation.aadl_system_tree import Route
 from archgen.views.generation.aadl_words import can_be_written, make_item, make_property, write_range
 
 TimeRange = tuple[Fraction, Fraction]
@@ -36,11 +37,11 @@ def list_route_steps(route: Route, latency: TimeRange) -> Iterator[FlowStep]:
 
 
 def fold_steps(
-    steps: Sequence[FlowStep], known: dict[tuple[SystemPart, str, str], str]
+    steps: Sequence[FlowStep], flow_names: dict[tuple[SystemPart, str, str], str]
 ) -> tuple[SystemPart, list[str]]:
     """Return the innermost system that holds all of a way, and the way as seen there; flows of inner systems are written.
 
-    `known` are flows that are written already.
+    `flow_names` has the flows that are written already.
     """
     # Systems that all of it stands in are no step of it.
     while steps[1].enters is not None and _find_exit(steps, 1) == len(steps) - 2:
@@ -49,7 +50,7 @@ def fold_steps(
     if system is None:
         msg = "a way begins where it enters the launch"
         raise ValueError(msg)
-    return system, _Folding(steps, known).fold(1)[0]
+    return system, _Folding(steps, flow_names).fold(1)[0]
 
 
 def _find_exit(steps: Sequence[FlowStep], start: int) -> int:
@@ -65,9 +66,9 @@ def _find_exit(steps: Sequence[FlowStep], start: int) -> int:
 class _Folding:
     """One way, taken together from the inside to the outside."""
 
-    def __init__(self, steps: Sequence[FlowStep], known: dict[tuple[SystemPart, str, str], str]) -> None:
+    def __init__(self, steps: Sequence[FlowStep], flow_names: dict[tuple[SystemPart, str, str], str]) -> None:
         self._steps = steps
-        self._known = known
+        self._flow_names = flow_names
 
     def fold(self, start: int) -> tuple[list[str], TimeRange | None, int]:
         """Return the steps inside of one system, how long they take, and where it is left."""
@@ -95,10 +96,10 @@ class _Folding:
         properties = [make_property("Latency", write_range(*latency))] if latency and can_be_written(latency[1]) else []
         inside = f"flow {kind} {' -> '.join(filter(None, (entry, *inner, leave)))}"
         key = (system, inside, str(properties))
-        if key not in self._known:
+        if key not in self._flow_names:
             outer_ends = [each for each in ends if each]
             wanted = "_to_".join(outer_ends) + ("_flow" if len(outer_ends) == 1 else "")
-            name = self._known[key] = system.names.take_name(wanted)
+            name = self._flow_names[key] = system.names.take_name(wanted)
             system.flow_specs.append(make_item(name, f"flow {kind} {' -> '.join(outer_ends)}", properties))
             system.flows.append(make_item(name, inside))
-        return self._known[key]
+        return self._flow_names[key]

@@ -12,8 +12,8 @@ from archgen.timing.analysis import Analysis, ChainResult, ChainTerm
 from archgen.timing.system.timing_system import Arc
 from archgen.views.generation.aadl_calls import RouteFinder
 from archgen.views.generation.aadl_flow_steps import NO_TIME, FlowStep, TimeRange, fold_steps, list_route_steps
-from archgen.views.generation.aadl_parts import SystemPart
-from archgen.views.generation.aadl_processes import Process
+from archgen.views.generation.aadl_processes import NodeProcess
+from archgen.views.generation.aadl_system_part import SystemPart
 from archgen.views.generation.aadl_words import AadlProperty, can_be_written, make_item, make_property, write_range
 
 
@@ -31,7 +31,7 @@ class FlowWriter:
     """Writes the flows of processes and systems as chains ask for them; chains that ask for the same share one."""
 
     def __init__(
-        self, architecture: Architecture, analysis: Analysis, processes: Mapping[str, Process], routes: RouteFinder
+        self, architecture: Architecture, analysis: Analysis, processes: Mapping[str, NodeProcess], routes: RouteFinder
     ) -> None:
         """Begin with no flow."""
         self._architecture = architecture
@@ -64,7 +64,7 @@ class FlowWriter:
     def _node_of(self, term: ChainTerm) -> str:
         return self._analysis.system.activities[term.activity].node
 
-    def _find_ends(self, segment: _Segment) -> tuple[Process, Process]:
+    def _find_ends(self, segment: _Segment) -> tuple[NodeProcess, NodeProcess]:
         """Return the process that a chain comes from, and the one that it comes to."""
         return self._processes[segment.entry_node], self._processes[self._node_of(segment.terms[0])]
 
@@ -110,7 +110,7 @@ class FlowWriter:
             steps.append(FlowStep(f"{process.name_in_system}.{name}", latency))
         return [*steps, *(FlowStep("", NO_TIME, leaves=True) for _ in last.home.path)]
 
-    def _write_flow(self, process: Process, segment: _Segment) -> tuple[str, TimeRange | None]:
+    def _write_flow(self, process: NodeProcess, segment: _Segment) -> tuple[str, TimeRange | None]:
         """Return the name of a flow through a process, and how long it takes: waiting to be read, and its threads' answers."""
         entry, leave, ends = segment.entry, segment.leave, list[str]()
         if entry:
@@ -124,7 +124,7 @@ class FlowWriter:
         wanted = "_to_".join(ends) + ("_flow" if len(ends) == 1 else "")
         return process.add_flow(wanted, text, properties), latency
 
-    def _name_end(self, process: Process, arc: Arc, *, is_output: bool) -> str:
+    def _name_end(self, process: NodeProcess, arc: Arc, *, is_output: bool) -> str:
         """Return the feature by which a chain comes to a process or leaves it."""
         part = self._routes.find_port(arc, process, is_output=is_output)
         return process.features[part.key] if part else ""

@@ -8,7 +8,7 @@ from typing import Any
 from archgen.model.component import Component
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Node
-from archgen.views.generation.aadl_words import AadlProperty, make_property, write_text, write_texts
+from archgen.views.generation.aadl_words import AadlProperty, make_property, write_aadl_string, write_texts
 
 
 def read_aadl_hints(*elements: Node | Component | ConceptualType) -> dict[str, Any]:
@@ -69,7 +69,7 @@ def list_function_properties(hints: Mapping[str, Any], component_name: str) -> l
         found.append(make_property("Source_Text", write_texts(sources), "function"))
     entry = _find_text(function, "source_name")
     if entry:
-        found.append(make_property("Source_Name", write_text(entry), "function"))
+        found.append(make_property("Source_Name", write_aadl_string(entry), "function"))
     return found
 
 

@@ -17,7 +17,7 @@ from archgen.views.generation.aadl_words import (
     make_named_properties,
     make_property,
     make_text_properties,
-    write_duration,
+    write_aadl_duration,
     write_range,
 )
 from archgen.views.generation.generation_context import write_place
@@ -99,7 +99,7 @@ class Platform:
             lowest = link.best.value if link.best else Fraction(0)
             properties.append(make_property("Latency", write_range(lowest, link.worst.value)))
         if link.bandwidth and link.bandwidth.value and not is_virtual:
-            per_byte = write_duration(Fraction(8 * 10**9) / link.bandwidth.value, round_up=True)
+            per_byte = write_aadl_duration(Fraction(8 * 10**9) / link.bandwidth.value, round_up=True)
             value = f"[Fixed => 0 ns .. 0 ns; PerByte => {per_byte} .. {per_byte};]"
             properties.append(make_property("Transmission_Time", value))
         properties += make_text_properties(

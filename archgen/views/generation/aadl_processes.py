@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
@@ -19,6 +19,7 @@ from archgen.views.generation.aadl_hints import (
     read_aadl_hints,
 )
 from archgen.views.generation.aadl_ports import PortPart, find_outer_port
+from archgen.views.generation.aadl_system_part import SystemPart
 from archgen.views.generation.aadl_types import TypeBook
 from archgen.views.generation.aadl_words import (
     AadlProperty,
@@ -30,12 +31,9 @@ from archgen.views.generation.aadl_words import (
     make_named_properties,
     make_property,
     make_text_properties,
-    write_text,
+    write_aadl_string,
 )
 from archgen.views.generation.generation_context import write_place
-
-if TYPE_CHECKING:
-    from archgen.views.generation.aadl_parts import SystemPart
 
 _TF_TOPICS = frozenset({"/tf", "/tf_static"})
 _LONGEST_QUEUE = 512
@@ -59,7 +57,7 @@ def _find_whole(architecture: Architecture, node: Node) -> Component | None:
     return None
 
 
-class Process:
+class NodeProcess:
     """A node in AADL: its type and implementation, which grow as connections and flows are found."""
 
     category = "process"
@@ -150,7 +148,7 @@ class Process:
         endpoint = next(iter(self.find_endpoints(part)), None)
         if endpoint and endpoint.medium == "ros":
             own_name = endpoint.own_name or endpoint.name
-            properties.append(make_property("topic_properties::Default_Name", write_text(own_name)))
+            properties.append(make_property("topic_properties::Default_Name", write_aadl_string(own_name)))
         properties += make_text_properties(
             medium=port.medium if port.medium != "ros" else None,
             external_end=port.external,
@@ -179,7 +177,7 @@ class Process:
         classifier = types.name_type(endpoint.type or endpoint.message, endpoint.flow)
         name = self.names.take_name(endpoint.name.strip("/").replace("/", "_") or "internal")
         properties = [
-            make_property("topic_properties::Default_Name", write_text(endpoint.own_name or endpoint.name)),
+            make_property("topic_properties::Default_Name", write_aadl_string(endpoint.own_name or endpoint.name)),
             make_property("archgen::Is_Internal", "true"),
         ]
         return make_item(name, f"{_INTERNAL_KINDS[endpoint.use]} {classifier}", properties)

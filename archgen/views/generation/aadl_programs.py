@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from archgen.model.node import Endpoint
-from archgen.views.generation.aadl_component_types import TypeWriter, find_type, list_shared_types
-from archgen.views.generation.aadl_devices import Device, is_device
-from archgen.views.generation.aadl_processes import Process
+from archgen.views.generation.aadl_component_types import TypeWriter, find_type_of_node, list_shared_types
+from archgen.views.generation.aadl_devices import NodeDevice, is_device
+from archgen.views.generation.aadl_processes import NodeProcess
 from archgen.views.generation.aadl_types import TypeBook
 from archgen.views.generation.aadl_words import FlowBook, NameSpace
 from archgen.views.generation.generation_context import GenerationContext
@@ -19,18 +19,18 @@ class ProgramBook:
 
     def __init__(self, context: GenerationContext, types: TypeBook) -> None:
         """Make a process or a device of each wanted node."""
-        self.processes: dict[str, Process] = {}
+        self.processes: dict[str, NodeProcess] = {}
         self._architecture = architecture = context.architecture
-        self._package_names = {Process.category: NameSpace(), Device.category: NameSpace()}
+        self._package_names = {NodeProcess.category: NameSpace(), NodeDevice.category: NameSpace()}
         self._type_names: dict[tuple[str, str], str] = {}
         self._type_classifiers: dict[str, list[dict[str, Any]]] = {category: [] for category in self._package_names}
         self._typed_nodes: set[str] = set()
         linked_devices = {device for link in architecture.links.values() for device in link.devices}
-        kinds: dict[str, type[Process]] = {}
+        kinds: dict[str, type[NodeProcess]] = {}
         # Component types have their names before the nodes, which may be called like them.
         for node in context.wanted_nodes.values():
-            kind = kinds[node.id] = Device if is_device(architecture, node, linked_devices) else Process
-            declared = find_type(architecture, node)
+            kind = kinds[node.id] = NodeDevice if is_device(architecture, node, linked_devices) else NodeProcess
+            declared = find_type_of_node(architecture, node)
             if declared and (kind.category, declared.id) not in self._type_names:
                 name = self._package_names[kind.category].take_name(declared.id)
                 self._type_names[kind.category, declared.id] = name
@@ -42,7 +42,7 @@ class ProgramBook:
             kind, own_endpoints = kinds[node.id], endpoints.get(node.id, ())
             names = self._package_names[kind.category]
             process = self.processes[node.id] = kind(architecture, types, node, own_endpoints, names)
-            if declared := find_type(architecture, node):
+            if declared := find_type_of_node(architecture, node):
                 process.flow_book = flow_books.setdefault((kind.category, declared.id), process.flow_book)
 
     def write_types(self, packages: Mapping[str, str]) -> None:

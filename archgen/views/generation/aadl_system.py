@@ -11,13 +11,14 @@ from archgen.model.node import Endpoint
 from archgen.model.path_resolver import title_from_id
 from archgen.timing.analysis import Analysis
 from archgen.views.generation.aadl_calls import RouteEnds, RouteFinder
-from archgen.views.generation.aadl_devices import Device
+from archgen.views.generation.aadl_devices import NodeDevice
 from archgen.views.generation.aadl_flows import FlowWriter
 from archgen.views.generation.aadl_hints import list_own_sources, read_aadl_hints
-from archgen.views.generation.aadl_parts import Route, SystemPart, SystemTree, list_system_properties
 from archgen.views.generation.aadl_platform import Platform
 from archgen.views.generation.aadl_ports import PortPart
-from archgen.views.generation.aadl_processes import Process
+from archgen.views.generation.aadl_processes import NodeProcess
+from archgen.views.generation.aadl_system_part import SystemPart, list_system_properties
+from archgen.views.generation.aadl_system_tree import Route, SystemTree
 from archgen.views.generation.aadl_types import TypeBook
 from archgen.views.generation.aadl_words import (
     AadlProperty,
@@ -26,8 +27,8 @@ from archgen.views.generation.aadl_words import (
     make_named_properties,
     make_property,
     make_text_properties,
+    write_aadl_string,
     write_range,
-    write_text,
     write_texts,
 )
 from archgen.views.generation.generation_context import GenerationContext
@@ -40,7 +41,7 @@ class SystemWriter:
     """The launch of everything: processes, computers, links, what flows between them, and where it runs."""
 
     def __init__(
-        self, context: GenerationContext, processes: dict[str, Process], types: TypeBook, names: dict[str, str]
+        self, context: GenerationContext, processes: dict[str, NodeProcess], types: TypeBook, names: dict[str, str]
     ) -> None:
         """Begin with the processes; `names` are those of the packages."""
         self._architecture = context.architecture
@@ -52,7 +53,7 @@ class SystemWriter:
         self._routes: dict[RouteEnds, Route] = {}
         self.classifiers: list[dict[str, Any]] = []
         self.comments: list[str] = []
-        self._processes_of: dict[str, list[Process]] = {}
+        self._processes_of: dict[str, list[NodeProcess]] = {}
         """By the complete ids of the components that they implement."""
         for process in processes.values():
             self._place_process(process, names["devices" if process.category == "device" else "nodes"])
@@ -63,15 +64,15 @@ class SystemWriter:
             for host in self._architecture.hosts.values()
             if context.is_whole or host.id in {process.node.host for process in processes.values()}
         }
-        devices = {each.component.id: each for each in processes.values() if isinstance(each, Device)}
+        devices = {each.component.id: each for each in processes.values() if isinstance(each, NodeDevice)}
         self.platform = Platform(self._architecture, hosts, self._root.names, names["hosts"], frozenset(devices))
         for device_id, links in self.platform.links_by_device.items():
             for link_id in links if device_id in devices else ():
                 self._join_device(devices[device_id], link_id)
-        self._analysis = _analyse(self._architecture)
+        self._analysis = _analyse_timing(self._architecture)
         self._latencies = _find_link_latencies(self._analysis)
 
-    def _place_process(self, process: Process, package: str) -> None:
+    def _place_process(self, process: NodeProcess, package: str) -> None:
         """Put a process into the system of its component, by the name of that."""
         process.home, component_id = self._tree.find_home(process)
         own_id = component_id.rpartition(".")[2] or process.node.id
@@ -84,7 +85,7 @@ class SystemWriter:
         process.item = make_item(process.name_in_system, text, properties)
         process.home.subcomponents.append(process.item)
 
-    def _join_device(self, device: Device, link_id: str) -> None:
+    def _join_device(self, device: NodeDevice, link_id: str) -> None:
         """Lead the access to a bus from the outermost system to a device."""
         bus = self.platform.name_bus(link_id)
         feature = device.add_bus_access(link_id, bus)
@@ -137,13 +138,15 @@ class SystemWriter:
                     route = self._routes[ends] = self._tree.join((source, output), (reader, part), properties)
                     self._bind_connection(route, source, reader, is_call=output.flow != "topic")
 
-    def _find_parts(self, port_id: str, *, is_output: bool, source_id: str = "") -> Iterable[tuple[Process, PortPart]]:
+    def _find_parts(
+        self, port_id: str, *, is_output: bool, source_id: str = ""
+    ) -> Iterable[tuple[NodeProcess, PortPart]]:
         for process in self._processes_of.get(port_id.rpartition(".")[0], ()):
             part = process.find_part(port_id, is_output=is_output, source_id=source_id)
             if part is not None:
                 yield process, part
 
-    def _bind_connection(self, route: Route, source: Process, reader: Process, *, is_call: bool) -> None:
+    def _bind_connection(self, route: Route, source: NodeProcess, reader: NodeProcess, *, is_call: bool) -> None:
         """Bind a connection to the link between two computers where there is exactly one, else to ROS's own."""
         ends = {self._find_place(source), self._find_place(reader)}
         links = [
@@ -162,9 +165,9 @@ class SystemWriter:
             self._bound.setdefault(bus, {})[name] = None
 
     @staticmethod
-    def _find_place(process: Process) -> str | None:
+    def _find_place(process: NodeProcess) -> str | None:
         """Return what of a link's ends a process is on: its host, or for a device itself."""
-        return process.component.id if isinstance(process, Device) else process.node.host
+        return process.component.id if isinstance(process, NodeDevice) else process.node.host
 
     def _find_virtual_bus(self, kind: str) -> str:
         if ("bus", kind) not in self.platform.names:
@@ -237,7 +240,7 @@ def _list_flow_words(chains: dict[str, Chain], joined_components: frozenset[str]
     ]
 
 
-def _analyse(architecture: Architecture) -> Analysis | None:
+def _analyse_timing(architecture: Architecture) -> Analysis | None:
     if not architecture.chains and not any(node.timing for node in architecture.nodes.values()):
         return None
     # Imported here: the engine takes time to load.
@@ -264,5 +267,5 @@ def _list_topic_properties(endpoint: Endpoint | None) -> list[AadlProperty]:
     return (
         []
         if endpoint is None or endpoint.medium != "ros"
-        else [make_property("topic_properties::Name", write_text(endpoint.name))]
+        else [make_property("topic_properties::Name", write_aadl_string(endpoint.name))]
     )

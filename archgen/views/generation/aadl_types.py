@@ -17,7 +17,7 @@ from archgen.views.generation.aadl_words import (
     make_named_properties,
     make_property,
     make_text_properties,
-    write_text,
+    write_aadl_string,
     write_texts,
 )
 from archgen.views.generation.generation_context import write_place
@@ -203,7 +203,7 @@ def _record_shape(
         parts = {"Goal": "in parameter", "Result": "out parameter", "Feedback": "out event data port"}
     part_names = {part: names.take_name(f"{name}_{part}") for part in parts}
     features = [make_item(part.lower(), f"{kind} {part_names[part]}") for part, kind in parts.items()]
-    mark = [make_property("archgen::Part_Of", write_text(name))]
+    mark = [make_property("archgen::Part_Of", write_aadl_string(name))]
     return [
         *(make_classifier("data", each, properties=mark) for each in part_names.values()),
         make_classifier("subprogram", name, features=features, properties=properties, place=place),

@@ -9,8 +9,8 @@ from typing import Any
 from archgen.model.architecture import Architecture
 from archgen.model.component import Output
 from archgen.model.port_media import flow_of_port
-from archgen.views.generation.aadl_devices import Device
-from archgen.views.generation.aadl_processes import Process
+from archgen.views.generation.aadl_devices import NodeDevice
+from archgen.views.generation.aadl_processes import NodeProcess
 from archgen.views.generation.aadl_programs import ProgramBook
 from archgen.views.generation.aadl_system import LAUNCH, SystemWriter
 from archgen.views.generation.aadl_types import TypeBook
@@ -44,7 +44,7 @@ def make_view(context: GenerationContext) -> GeneratedView:
                 types.name_type(declared.name, _find_flow(architecture, declared.name))
     system = SystemWriter(context, programs.processes, types, names)
     system.write()
-    program_packages = {Process.category: names["nodes"], Device.category: names["devices"]}
+    program_packages = {NodeProcess.category: names["nodes"], NodeDevice.category: names["devices"]}
     programs.write_types(program_packages)
     packages = [
         *(_make_package(name, classifiers) for name, classifiers in types.list_packages()),

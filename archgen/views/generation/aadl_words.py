@@ -68,7 +68,7 @@ class FlowBook:
         self.space = NameSpace()
 
 
-def write_text(text: str) -> str:
+def write_aadl_string(text: str) -> str:
     """Return a text as a string of AADL; quotes, backslashes and all that is not ASCII as `%` and two digits for each byte."""
     return f'"{_ESCAPED.sub(_escape_character, text)}"'
 
@@ -79,10 +79,10 @@ def _escape_character(match: re.Match[str]) -> str:
 
 def write_texts(texts: Iterable[str]) -> str:
     """Return texts as a list of strings."""
-    return f"({', '.join(map(write_text, texts))})"
+    return f"({', '.join(map(write_aadl_string, texts))})"
 
 
-def write_duration(duration: Fraction, *, round_up: bool = False) -> str:
+def write_aadl_duration(duration: Fraction, *, round_up: bool = False) -> str:
     """Return a duration (ns) in the largest unit in which it is whole; what is no whole ps is rounded."""
     if not duration:
         return "0 ns"
@@ -94,7 +94,7 @@ def write_duration(duration: Fraction, *, round_up: bool = False) -> str:
 
 def write_range(lowest: Fraction, highest: Fraction) -> str:
     """Return a range of durations (ns), rounded outwards."""
-    return f"{write_duration(lowest)} .. {write_duration(highest, round_up=True)}"
+    return f"{write_aadl_duration(lowest)} .. {write_aadl_duration(highest, round_up=True)}"
 
 
 def can_be_written(duration: Fraction) -> bool:
@@ -111,13 +111,13 @@ def make_duration_property(name: str, quantity: Quantity | None) -> list[AadlPro
     """Return the property for a duration; nothing where it is not known, or longer than AADL's longest."""
     if quantity is None or not can_be_written(quantity.value):
         return []
-    return [make_property(name, write_duration(quantity.value, round_up=True))]
+    return [make_property(name, write_aadl_duration(quantity.value, round_up=True))]
 
 
 def make_text_properties(**texts: str | None) -> list[AadlProperty]:
     """Return archgen's own properties for those texts that there are: `title` is `archgen::Title`."""
     return [
-        make_property(f"archgen::{'_'.join(map(str.capitalize, key.split('_')))}", write_text(text))
+        make_property(f"archgen::{'_'.join(map(str.capitalize, key.split('_')))}", write_aadl_string(text))
         for key, text in texts.items()
         if text
     ]

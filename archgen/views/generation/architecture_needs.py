@@ -49,7 +49,7 @@ def find_unmet_needs(context: GenerationContext, needs: tuple[str, ...]) -> Iter
 
 def _find_composed(context: GenerationContext) -> Iterator[Diagnostic]:
     for shell in context.architecture.shells.values():
-        yield _tell(
+        yield _diagnose_need(
             f"`{shell.id}` holds components, and what is generated here knows no components inside of others",
             shell.id,
             context.architecture,
@@ -102,7 +102,7 @@ def _find_repeated_names(context: GenerationContext) -> Iterator[Diagnostic]:
         first_id = first_ids.setdefault(component.name, component.id)
         if first_id != component.id:
             first = architecture.find_component(first_id)
-            yield _tell(
+            yield _diagnose_need(
                 f"`{first_id}` and `{component.id}` are both called `{component.name}`, and what is generated here knows "
                 "components by their last names",
                 component.id,
@@ -112,7 +112,7 @@ def _find_repeated_names(context: GenerationContext) -> Iterator[Diagnostic]:
             )
 
 
-def _tell(
+def _diagnose_need(
     message: str, component_id: str, architecture: Architecture, *, help_line: str, labels: tuple[Label, ...] = ()
 ) -> Diagnostic:
     component = architecture.find_component(component_id)

@@ -109,15 +109,15 @@ def _find_program(program_names: ProgramNames, node: Node, step: StartStep, ros:
     """Return what runs a node of ROS: its own program or that of its generated package, or the container that loads it."""
     program = program_names.find_program(node)
     package, executable, plugin = program.package, program.executable, program.plugin
-    found: dict[str, Any] = {"package": package, "executable": executable, "plugin": plugin, "arguments": []}
+    record: dict[str, Any] = {"package": package, "executable": executable, "plugin": plugin, "arguments": []}
     if ros == 1:
-        return _find_ros_1_program(node, step, found)
+        return _find_ros_1_program(node, step, record)
     if node.container is not None:
-        return {**found, "form": "loaded" if package and plugin else "nobody"}
+        return {**record, "form": "loaded" if package and plugin else "nobody"}
     if package and executable:
-        return {**found, "form": "node"}
+        return {**record, "form": "node"}
     # A plugin without a program of its own: ROS loads it into a process of its own.
-    return {**found, "form": "program", "words": list(step.command)} if step.command else {**found, "form": "nobody"}
+    return {**record, "form": "program", "words": list(step.command)} if step.command else {**record, "form": "nobody"}
 
 
 def _fill_manager(node: Node, launch: RosLaunch, managed: Sequence[StartStep]) -> dict[str, object]:
@@ -128,13 +128,13 @@ def _fill_manager(node: Node, launch: RosLaunch, managed: Sequence[StartStep]) -
     return {"autostart": True, "node_names": names} if names and node.package == _MANAGER_PACKAGE else {}
 
 
-def _find_ros_1_program(node: Node, step: StartStep, found: dict[str, Any]) -> dict[str, Any]:
-    plugin = found["plugin"]
+def _find_ros_1_program(node: Node, step: StartStep, record: dict[str, Any]) -> dict[str, Any]:
+    plugin = record["plugin"]
     if "nodelet" in node.kinds and plugin:
         container = step.ros.container if step.ros else None
         words = ["load", plugin, container] if container else ["standalone", plugin]
-        return {**found, "form": "node", "package": "nodelet", "executable": "nodelet", "arguments": words}
-    return {**found, "form": "node" if found["package"] and found["executable"] else "nobody"}
+        return {**record, "form": "node", "package": "nodelet", "executable": "nodelet", "arguments": words}
+    return {**record, "form": "node" if record["package"] and record["executable"] else "nobody"}
 
 
 def _list_remarks(step: StartStep, form: str) -> list[str]:

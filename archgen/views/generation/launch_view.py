@@ -19,7 +19,7 @@ from archgen.views.generation.generation_context import (
 )
 from archgen.views.generation.launch_entries import record_container_entry, record_node_entry
 from archgen.views.generation.package_facts import record_package_facts
-from archgen.views.generation.wanted_steps import find_wanted_steps
+from archgen.views.generation.wanted_start_steps import find_wanted_steps
 
 _UNPLACED = "no-host"
 """What the computer of steps without a host is called: no id has a hyphen."""

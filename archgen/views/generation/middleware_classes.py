@@ -17,9 +17,9 @@ from archgen.views.generation.middleware_names import (
     drop_clashes,
     name_component_class,
     name_component_files,
-    name_interface,
     name_member,
-    shorten_name,
+    name_port_member,
+    shorten_wire_name,
 )
 from archgen.views.generation.middleware_operations import record_operations, record_served
 from archgen.views.generation.middleware_types import MiddlewareTypes
@@ -106,7 +106,7 @@ def record_outputs(architecture: Architecture, types: MiddlewareTypes, own: Comp
     served = {name: port for name, port in own.outputs.items() if name not in sent}
     operations = record_operations(types, own.words, own.components)
     operations += [record_served(architecture, types, port) for port in served.values()]
-    names = [(name_interface(port.name), port.id, port.at) for port in sent.values()]
+    names = [(name_port_member(port.name), port.id, port.at) for port in sent.values()]
     names += [(each["name"], each["element"], each["span"]) for each in operations]
     clashing, findings = drop_clashes(names, "name")
     own.record["outputs"] = []
@@ -114,7 +114,7 @@ def record_outputs(architecture: Architecture, types: MiddlewareTypes, own: Comp
         if port.id not in clashing:
             port_type = types.find_port_type(port.type, port.annotations.hints, port.at)
             findings += _drop_mute_interface(port_type, port, is_sent=True)
-            own.record["outputs"].append({**_record_port(port, name_interface(port.name)), "type": port_type})
+            own.record["outputs"].append({**_record_port(port, name_port_member(port.name)), "type": port_type})
     kept = [each for each in operations if each.pop("element") not in clashing]
     for each in operations:
         del each["span"]
@@ -138,7 +138,7 @@ def record_inputs(
         # An input without a type of its own has that of what it reads.
         ends: tuple[Input | Output, ...] = (port, *sources)
         shown = next((each for each in ends if each.type), port)
-        interface = name_interface(name)
+        interface = name_port_member(name)
         if interface.casefold() in taken:
             interface = f"{name_member(name)}_input"
         record = _record_port(port, interface)
@@ -216,7 +216,7 @@ def _split_by_type(
         source_type = types.find_port_type(source.type, source.annotations.hints, source.at)
         if name_port_type(source_type) not in seen:
             seen.add(name_port_type(source_type))
-            record = _record_port(port, name_interface(f"{name}_{source.name}"))
+            record = _record_port(port, name_port_member(f"{name}_{source.name}"))
             yield {**record, "type": source_type, "is_fed": True}, f"{port.id} {source.name}", port
 
 
@@ -240,7 +240,7 @@ def _record_port(port: Input | Output, name: str) -> dict[str, Any]:
         "name": name,
         "title": port.name,
         "member": name.rstrip("_"),
-        "wire": shorten_name(name),
+        "wire": shorten_wire_name(name),
         "type_name": port.type or "",
         "description": port.description or "",
         "place": write_place(port.at),

@@ -15,7 +15,7 @@ from archgen.model.node import Qos
 from archgen.views.generation.component_records import read_own_hints
 from archgen.views.generation.generation_context import GenerationContext, tell_left_out, write_place
 from archgen.views.generation.middleware_classes import ComponentClass, name_port_type
-from archgen.views.generation.middleware_names import drop_clashes, name_member, shorten_name
+from archgen.views.generation.middleware_names import drop_clashes, name_member, shorten_wire_name
 from archgen.views.generation.player_interfaces import OPAQUE
 from archgen.views.generation.simulated_timing import find_period, find_timing
 
@@ -67,13 +67,13 @@ def connect_instances(
         if output.component not in instances or reader.component not in instances:
             continue
         source, target = classes[output.component].record, classes[reader.component].record
-        sent = _find(source["outputs"], output.name)
+        sent = _find_port(source["outputs"], output.name)
         same = [
             each for each in target["inputs"] if sent and name_port_type(each["type"]) == name_port_type(sent["type"])
         ]
-        read = _find(same, reader.name)
-        served = _find(source["operations"], output.name, "port")
-        call = _find(target["calls"], reader.name)
+        read = _find_port(same, reader.name)
+        served = _find_port(source["operations"], output.name, "port")
+        call = _find_port(target["calls"], reader.name)
         ends: dict[str, Any] = {
             **_record_end("source", instances[output.component], sent or served),
             **_record_end("target", instances[reader.component], read or call),
@@ -112,7 +112,7 @@ def _record_end(end: str, instance: Mapping[str, Any], port: Mapping[str, Any] |
     return {f"{end}_{key}": value for key, value in words.items()}
 
 
-def _find(ports: Iterable[dict[str, Any]], name: str, key: str = "title") -> dict[str, Any] | None:
+def _find_port(ports: Iterable[dict[str, Any]], name: str, key: str = "title") -> dict[str, Any] | None:
     return next((each for each in ports if each[key] == name), None)
 
 
@@ -170,7 +170,7 @@ def _find_address(context: GenerationContext, host: str) -> str:
     """Return the name under which other computers find a host: what its hints say, if that is a name, else its id."""
     known = context.architecture.hosts.get(host)
     written = str(read_own_hints(known.annotations.hints, context.backend).get("address") or "") if known else ""
-    return written if _ADDRESS.match(written) else shorten_name(name_member(host)) if host else "localhost"
+    return written if _ADDRESS.match(written) else shorten_wire_name(name_member(host)) if host else "localhost"
 
 
 def _list_joined_ports(connections: Iterable[Mapping[str, Any]]) -> dict[str, list[dict[str, str]]]:

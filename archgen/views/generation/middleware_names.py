@@ -60,7 +60,7 @@ def name_member(name: str) -> str:
     return f"{member.rstrip('_')}_" if member in IDL_KEYWORDS | _MACROS else member
 
 
-def name_interface(name: str) -> str:
+def name_port_member(name: str) -> str:
     """Return a name as ports and operations of components have it, which come with names of their own."""
     member = name_member(name)
     return f"{member}_" if member in _TASK_NAMES else member
@@ -71,7 +71,7 @@ def name_inside(name: str, outer_name: str) -> str:
     return f"{name.rstrip('_')}_value" if name.casefold() == outer_name.casefold() else name
 
 
-def name_class(words: str) -> str:
+def make_class_name(words: str) -> str:
     """Return a name as classes and records have it: `LaserScan`."""
     name = make_camel_name(words)
     return f"{name}_" if name.casefold() in IDL_KEYWORDS else name
@@ -79,7 +79,7 @@ def name_class(words: str) -> str:
 
 def name_component_class(words: str) -> str:
     """Return a name as classes of components have it: other than all that is made beside them."""
-    name = name_class(words)
+    name = make_class_name(words)
     return f"{name}_" if name.casefold() in _CLASS_NAMES or name.casefold().endswith(_HELPER_WORDS) else name
 
 
@@ -101,7 +101,7 @@ def name_space(name: str) -> str:
     return f"{space}_" if space in _TAKEN_SPACES | _OWN_SPACES else space
 
 
-def shorten_name(name: str) -> str:
+def shorten_wire_name(name: str) -> str:
     """Return a name with at most 40 characters: Player reads an address, of which it is a part, into 128 bytes."""
     if len(name) <= _MOST_WIRE:
         return name

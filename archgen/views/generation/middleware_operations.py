@@ -10,7 +10,7 @@ from archgen.model.code_names import list_name_words
 from archgen.model.component import Component, Output
 from archgen.model.parameter import Operation
 from archgen.views.generation.generation_context import write_place
-from archgen.views.generation.middleware_names import name_inside, name_interface, name_member, shorten_name
+from archgen.views.generation.middleware_names import name_inside, name_member, name_port_member, shorten_wire_name
 from archgen.views.generation.middleware_types import MiddlewareTypes
 
 _MOST_ARGUMENTS = 4
@@ -59,7 +59,7 @@ def _record_operation(types: MiddlewareTypes, words: str, operation: Operation, 
         "port": None,
         "is_command": is_command(operation),
         "arguments": [
-            {"name": name_inside(name_member(name), name_interface(operation.id)), "title": name, "type": each}
+            {"name": name_inside(name_member(name), name_port_member(operation.id)), "title": name, "type": each}
             for name, each in arguments
         ],
         "result": made,
@@ -78,7 +78,9 @@ def record_served(architecture: Architecture, types: MiddlewareTypes, port: Outp
         "title": port.name,
         "port": port.name,
         "is_command": architecture.flow_of(port) == "action",
-        "arguments": [{"name": name_inside("request", name_interface(port.name)), "title": "request", "type": request}]
+        "arguments": [
+            {"name": name_inside("request", name_port_member(port.name)), "title": "request", "type": request}
+        ]
         if request
         else [],
         "result": answer,
@@ -88,5 +90,5 @@ def record_served(architecture: Architecture, types: MiddlewareTypes, port: Outp
 
 
 def _record_names(name: str) -> dict[str, str]:
-    interface = name_interface(name)
-    return {"name": interface, "member": interface.rstrip("_"), "wire": shorten_name(interface)}
+    interface = name_port_member(name)
+    return {"name": interface, "member": interface.rstrip("_"), "wire": shorten_wire_name(interface)}

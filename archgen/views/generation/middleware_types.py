@@ -14,7 +14,7 @@ from archgen.views.generation.component_records import read_own_hints
 from archgen.views.generation.generation_context import tell_left_out, write_place
 from archgen.views.generation.middleware_names import (
     drop_clashes,
-    name_class,
+    make_class_name,
     name_data_space,
     name_inside,
     name_member,
@@ -119,7 +119,7 @@ class MiddlewareTypes:
 
     def add_answer(self, name: str, fields: Iterable[tuple[str, dict[str, Any]]], span: Span) -> dict[str, Any]:
         """Return a record of its own for what an operation takes or answers, with the types of its fields by name."""
-        record = self._start_record(f"calls/{name}", "calls", name_class(name), name, span)
+        record = self._start_record(f"calls/{name}", "calls", make_class_name(name), name, span)
         record["fields"] = self._record_fields(record, [(field, field_type, "") for field, field_type in fields], span)
         record["is_fixed"] = all(each["type"]["is_fixed"] for each in record["fields"])
         self._records[record["key"]] = record
@@ -216,7 +216,7 @@ class MiddlewareTypes:
         record = self._start_record(
             key,
             name_data_space(package, self.space),
-            name_class(f"{name} {definition.part_names[part]}"),
+            make_class_name(f"{name} {definition.part_names[part]}"),
             definition.name,
             span,
         )

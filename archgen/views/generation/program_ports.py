@@ -11,7 +11,7 @@ from archgen.model.language_keywords import PYTHON_KEYWORDS
 from archgen.model.node import Endpoint, Node, Qos
 from archgen.model.quantity import Quantity
 from archgen.views.generation.generation_context import tell_left_out, write_place
-from archgen.views.generation.program_senders import record_envelope
+from archgen.views.generation.message_envelopes import record_envelope
 
 PORT_SECTIONS: Mapping[tuple[str, str], str] = {
     ("publishes", "topic"): "publishers",

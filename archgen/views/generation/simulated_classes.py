@@ -76,7 +76,7 @@ class SimulatedClass:
         return None
 
 
-def name_class(architecture: Architecture, component: Component) -> ClassName:
+def name_simulated_class(architecture: Architecture, component: Component) -> ClassName:
     """Return the class of a component: instances of one type have one, and so have the same parts of them."""
     type_words = find_type_words(architecture, component)
     if type_words is not None:
@@ -92,7 +92,7 @@ def collect_classes(context: GenerationContext, types: SimulatedTypes) -> dict[s
     classes: dict[str, SimulatedClass] = {}
     for component_id in context.wanted_components:
         component = architecture.components[component_id]
-        class_name = name_class(architecture, component)
+        class_name = name_simulated_class(architecture, component)
         if component_id in architecture.shells:
             # What nothing inside of a composed component carries yet.
             class_name = ClassName(class_name.package, f"{class_name.words} rest")

@@ -113,21 +113,23 @@ def _find_type(declared: Iterable[str | None], values: Iterable[object]) -> str 
         if written:
             base = _DECLARED_TYPES.get(written.removesuffix("[]"))
             found = f"{base}_array" if base and written.endswith("[]") else base
-            return found if all(_fits(each, found) for each in values) else None
+            return found if all(_fits_type(each, found) for each in values) else None
     found_types = {infer_ros_type(each) for each in values}
     for suffix in ("", "_array"):
         if found_types == {f"integer{suffix}", f"double{suffix}"}:
             found_types = {f"double{suffix}"}
     found = min(found_types) if len(found_types) == 1 else None if found_types else "string"
-    return found if found and all(_fits(each, found) for each in values) else None
+    return found if found and all(_fits_type(each, found) for each in values) else None
 
 
-def _fits(value: object, ros_type: str | None) -> bool:
+def _fits_type(value: object, ros_type: str | None) -> bool:
     """Whether Java has the value as a value of the type."""
     if ros_type is None:
         return False
     if ros_type.endswith("_array"):
-        return isinstance(value, list | tuple) and all(_fits(each, ros_type.removesuffix("_array")) for each in value)
+        return isinstance(value, list | tuple) and all(
+            _fits_type(each, ros_type.removesuffix("_array")) for each in value
+        )
     if ros_type in {"string", "bool"} or isinstance(value, bool):
         return isinstance(value, str if ros_type == "string" else bool) and ros_type in {"string", "bool"}
     is_small = isinstance(value, int | float) and -_MOST_WHOLE <= value < _MOST_WHOLE

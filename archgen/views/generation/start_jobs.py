@@ -48,7 +48,7 @@ def _list_jobs_of_step(
             "depends_on": _merge_needs(needs + wall),
         }
         if step["is_watched"]:
-            own_need = [_need(step, _end_of_process(step))]
+            own_need = [_make_need(step, _end_of_process(step))]
             is_health = step["runs"] == "program" and not step["lifecycle"]
             yield {
                 **common,
@@ -84,7 +84,7 @@ def _list_needs(awaited: Mapping[str, Any] | None, until: str) -> Iterator[dict[
     if awaited is None:
         return
     if until == "started" and _has_process(awaited):
-        yield _need(awaited, _end_of_process(awaited))
+        yield _make_need(awaited, _end_of_process(awaited))
     elif until != "started":
         yield from _list_ends(awaited)
 
@@ -93,16 +93,16 @@ def _list_ends(step: Mapping[str, Any]) -> Iterator[dict[str, str]]:
     """Yield what shows that a step is up: nothing for one of which nobody here sees that."""
     if not _has_process(step):
         if list_seen_signs(step):
-            yield _need(step, "completed", up=True)
+            yield _make_need(step, "completed", up=True)
     elif not step["is_watched"]:
-        yield _need(step, _end_of_process(step))
+        yield _make_need(step, _end_of_process(step))
     elif step["lifecycle"] or step["runs"] != "program":
-        yield _need(step, "completed", up=True)
+        yield _make_need(step, "completed", up=True)
     else:
-        yield _need(step, "healthy", up=True)
+        yield _make_need(step, "healthy", up=True)
 
 
-def _need(step: Mapping[str, Any], how: str, *, up: bool = False) -> dict[str, str]:
+def _make_need(step: Mapping[str, Any], how: str, *, up: bool = False) -> dict[str, str]:
     return {"job": f"{step['name']}-up" if up else step["name"], "step": step["name"], "how": how}
 
 

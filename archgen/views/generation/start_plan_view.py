@@ -14,7 +14,7 @@ from archgen.views.generation.generation_context import GeneratedView, Generatio
 from archgen.views.generation.start_hints import find_unread_hints, read_hint
 from archgen.views.generation.start_jobs import list_jobs, list_phase_needs, list_seen_signs
 from archgen.views.generation.start_step_record import UNPLACED, record_step
-from archgen.views.generation.wanted_steps import find_wanted_steps
+from archgen.views.generation.wanted_start_steps import find_wanted_steps
 
 
 def make_view(context: GenerationContext) -> GeneratedView:

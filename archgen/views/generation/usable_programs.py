@@ -28,13 +28,13 @@ def drop_unusable(
         twin, twin_node = first_packages.setdefault(package.casefold(), (package, node))
         fault = _explain_bad_package(package, language)
         if fault:
-            findings.setdefault((package,), _tell(f"the package `{package}` is left out: {fault}", node))
+            findings.setdefault((package,), _diagnose_program(f"the package `{package}` is left out: {fault}", node))
         elif twin != package:
             message = f"the package `{package}` is left out: on many systems it is the folder of `{twin}`"
-            findings.setdefault((package,), _tell(message, node, twin_node))
+            findings.setdefault((package,), _diagnose_program(message, node, twin_node))
         elif len(executable) > _MAX_NAME or not _EXECUTABLE.match(executable):
             message = f"the program `{executable}` of `{node.id}` is left out: no file is called so that ROS runs"
-            findings[package, executable] = _tell(message, node)
+            findings[package, executable] = _diagnose_program(message, node)
         else:
             usable[package, executable] = nodes
     return usable, list(findings.values())
@@ -51,7 +51,7 @@ def _explain_bad_package(package: str, language: str) -> str:
     return ""
 
 
-def _tell(message: str, node: Node, first: Node | None = None) -> Diagnostic:
+def _diagnose_program(message: str, node: Node, first: Node | None = None) -> Diagnostic:
     labels = (Label(first.at, "the first one"),) if first else ()
     help_line = "give the node another `package` or `executable`"
     severity = NOT_GENERATED.severity

@@ -123,7 +123,7 @@ class DrawnLevel:
             yield _FlowPart(port, connection, source, reader, style, names, types, warning)
 
     def _find_source(self, connection: Connection, producer: str) -> str:
-        """Return the box that a connection comes from: of a closed component that gives on what it reads, itself."""
+        """Return the box that a connection comes from: of a closed component that passes on what it reads, itself."""
         port_id = connection.shell_port or ""
         for holder in (port_id, port_id.rpartition(".")[0]):
             if holder in self.architecture.shells and connection.input.startswith(f"{holder}."):

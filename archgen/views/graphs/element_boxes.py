@@ -12,7 +12,7 @@ from archgen.model.component_nesting import find_component, list_members, list_s
 from archgen.views.graph_shapes import Box, Cluster
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
-from archgen.views.type_names import name_type
+from archgen.views.type_names import name_component_type
 
 BadgeSeverity = Literal["error", "warning", "note"]
 
@@ -38,7 +38,7 @@ def component_box(lookup: Lookup, component: Component, *, lines: tuple[str, ...
 
 def type_lines(lookup: Lookup, component: Component) -> tuple[str, ...]:
     """Return a line with the type that a component is made from; none where its title says it already."""
-    type_name = name_type(lookup.architecture, component)
+    type_name = name_component_type(lookup.architecture, component)
     return (type_name,) if type_name not in {"", component.title} else ()
 
 
@@ -59,7 +59,7 @@ def _component_style(component: Component) -> Literal["component", "source", "si
 def _component_tooltip(lookup: Lookup, component: Component) -> str:
     lines = [f"{component.title} ({component.id})", f"Group: {lookup.architecture.groups[component.group].title}"]
     lines += [f"Inside of: {title}"] if (title := join_surrounding_titles(lookup, component)) else []
-    lines += [f"Type: {name_type(lookup.architecture, component)}"] if component.component_type else []
+    lines += [f"Type: {name_component_type(lookup.architecture, component)}"] if component.component_type else []
     lines += [f"Role: {component.role}"] if component.role else []
     lines += [f"Owner: {join_owner_titles(lookup, component.owners)}"] if component.owners else []
     lines += [component.functionality] if component.functionality else []

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from archgen.model.coordinate_frames import Frame, list_children
+from archgen.model.coordinate_frames import Frame, index_child_frames
 from archgen.views.elements.frame_users import name_writer
 from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs import element_boxes
@@ -46,7 +46,7 @@ def draw_frames(lookup: Lookup) -> Graph:
 def _order_names(frames: Iterable[Frame]) -> list[str]:
     """Return the names of all frames and parents, level by level from the roots on; circles, without a root, at last."""
     frames_by_name = {frame.id: frame for frame in frames}
-    children = list_children(frames_by_name)
+    children = index_child_frames(frames_by_name)
     names = [name for name in children if name not in frames_by_name]
     names += [frame.id for frame in frames_by_name.values() if frame.parent is None]
     # The list grows while it is read: each name adds those below it.

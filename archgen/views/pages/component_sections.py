@@ -21,7 +21,7 @@ from archgen.views.elements.instance_values import TypeTexts, add_own_value
 from archgen.views.elements.parameter_blocks import list_equal_settings
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Markdown, Paragraph, Section
-from archgen.views.type_names import find_type
+from archgen.views.type_names import find_component_type
 
 _MAX_DEPTH = 2
 """So many composed components may be around one that has a heading: the document has four levels of them."""
@@ -88,7 +88,7 @@ class ReportSections:
 
     def _say_type_once(self, component: Component, blocks: Iterable[Block]) -> tuple[Block, ...]:
         """Leave out what the section of the component's type has, and add what the instance says otherwise."""
-        component_type = find_type(self.lookup.architecture, component)
+        component_type = find_component_type(self.lookup.architecture, component)
         if component_type is None:
             return tuple(blocks)
         type_texts = {component_type.functionality, component_type.description}

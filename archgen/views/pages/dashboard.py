@@ -60,7 +60,7 @@ def _list_figures(lookup: Lookup, edition: DocumentEdition) -> Iterator[KeyFigur
         free_ids = [r.id for r in requirements if not requirement_servers.is_served(lookup, r)]
         served_count = len(requirements) - len(free_ids)
         note = _list_some(free_ids, "has no component", "have none") if free_ids else "all of them"
-        note_cell = _note("uncovered" if free_ids else "met", note)
+        note_cell = _make_note("uncovered" if free_ids else "met", note)
         yield KeyFigure(
             "Requirements served", str(served_count), str(len(requirements)), note_cell, "page:requirements"
         )
@@ -70,7 +70,7 @@ def _list_figures(lookup: Lookup, edition: DocumentEdition) -> Iterator[KeyFigur
         note = (
             f"{count_noun(gap_count, 'component')} without a requirement" if gap_count else "each serves a requirement"
         )
-        note_cell = _note("uncovered" if gap_count else "met", note)
+        note_cell = _make_note("uncovered" if gap_count else "met", note)
         yield KeyFigure(
             "Components traced", str(project_row.traced), str(project_row.components), note_cell, "page:progress"
         )
@@ -78,7 +78,7 @@ def _list_figures(lookup: Lookup, edition: DocumentEdition) -> Iterator[KeyFigur
         yield _host_figure(lookup)
 
 
-def _note(status: str, text: str) -> Inlines:
+def _make_note(status: str, text: str) -> Inlines:
     """Return the line below a figure; its state gives it icon and colour."""
     return (Text(text, status=status),)  # type: ignore[arg-type]
 
@@ -96,7 +96,7 @@ def _point_figure(lookup: Lookup) -> KeyFigure:
         worst = "missed"
     count = len(lookup.findings) + len(chains)
     return KeyFigure(
-        "Open points", str(count), "", _note(worst, join_words(parts) or "nothing is open"), "page:findings"
+        "Open points", str(count), "", _make_note(worst, join_words(parts) or "nothing is open"), "page:findings"
     )
 
 
@@ -108,7 +108,7 @@ def _chain_figure(lookup: Lookup) -> KeyFigure:
     if words and not counts["missed"]:
         words.append("none missed")
     met_count = len(results) - sum(counts.values())
-    note = _note(worst, join_words(words) or "every deadline is met")
+    note = _make_note(worst, join_words(words) or "every deadline is met")
     return KeyFigure("Chains proven in time", str(met_count), str(len(results)), note, "page:chains")
 
 
@@ -119,7 +119,9 @@ def _host_figure(lookup: Lookup) -> KeyFigure:
     worst = next((timing_tables.LOAD_STATES[name] for name, count in counts.items() if count), "met")
     note = join_words([f"{count} {words[name]}" for name, count in counts.items() if count]) or "all of them"
     proven_count = len(hosts) - sum(counts.values())
-    return KeyFigure("Hosts proven schedulable", str(proven_count), str(len(hosts)), _note(worst, note), "page:hosts")
+    return KeyFigure(
+        "Hosts proven schedulable", str(proven_count), str(len(hosts)), _make_note(worst, note), "page:hosts"
+    )
 
 
 def _chains_without_finding(lookup: Lookup) -> list[str]:

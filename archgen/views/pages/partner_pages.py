@@ -118,10 +118,10 @@ def _make_matrix(lookup: Lookup, exchanges: Sequence[PartnerExchange]) -> Matrix
 
 def _count_cells(givers: Iterable[str], exchange: PartnerExchange) -> Iterator[Inlines]:
     for giver in givers:
-        yield _number(len(exchange.list_given(giver)))
+        yield _make_number(len(exchange.list_given(giver)))
 
 
-def _number(count: int) -> Inlines:
+def _make_number(count: int) -> Inlines:
     return (Text(str(count), sort_number=str(count)),)
 
 

@@ -106,7 +106,7 @@ def _write_sentence(anchor: str, blocks: Sequence[Block]) -> Inlines:
         parts = [
             (name, Text(f" {word}")) for names, word in zip((figures, tables), words, strict=True) for name in names
         ]
-        return (*_join(parts, ", "), Text("."))
+        return (*_join_parts(parts, ", "), Text("."))
     return _write_purposes(blocks)
 
 
@@ -120,11 +120,11 @@ def _write_purposes(blocks: Sequence[Block]) -> Inlines:
             unexplained += names
             continue
         is_range = len(names) >= _MIN_RANGE
-        named = _join([names[0], names[-1]], ", ", " to ") if is_range else _join(names, ", ")
+        named = _join_parts([names[0], names[-1]], ", ", " to ") if is_range else _join_parts(names, ", ")
         clauses.append((*named, Text(f" {words if len(names) == 1 else _to_plural(words)}")))
     if unexplained:
-        clauses.append((Text("see also " if clauses else "See "), *_join(unexplained, ", ")))
-    return (*_join(clauses, "; ", "; "), Text("."))
+        clauses.append((Text("see also " if clauses else "See "), *_join_parts(unexplained, ", ")))
+    return (*_join_parts(clauses, "; ", "; "), Text("."))
 
 
 def _find_purpose(block: Block) -> str:
@@ -144,7 +144,7 @@ def _name_block(block: Block) -> Text:
     return Text("the table", ref=block.anchor if isinstance(block, Table) else None, is_number=True)
 
 
-def _join(parts: Sequence[Inlines], separator: str, last_separator: str = " and ") -> Inlines:
+def _join_parts(parts: Sequence[Inlines], separator: str, last_separator: str = " and ") -> Inlines:
     """Join parts; the last one behind "and"."""
     runs: list[Text] = []
     for index, part in enumerate(parts):

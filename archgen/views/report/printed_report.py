@@ -80,7 +80,7 @@ class _ReportPrinter:
         return (printed_section,) if printed_section.blocks or printed_section.sections else ()
 
     def _print_others(self, section: Section) -> Section:
-        blocks = tuple(_flatten(self._keep_legible(section.blocks)))
+        blocks = tuple(_unturn_tables(self._keep_legible(section.blocks)))
         if section.anchor == "page:requirements" and (
             table := front_pages.make_use_case_table(self.lookup, has_chapter="use_cases" in self.edition.chapter_names)
         ):
@@ -114,7 +114,7 @@ class _ReportPrinter:
                 yield dataclasses.replace(figure, anchor=anchor, graph=piece.id, caption=caption)
 
     def _print_group(self, section: Section) -> Section:
-        blocks = list(_flatten(self._keep_legible(section.blocks)))
+        blocks = list(_unturn_tables(self._keep_legible(section.blocks)))
         texts = [block for block in blocks if isinstance(block, Markdown)]
         others = [_drop_column(block, "Nodes") for block in blocks if not isinstance(block, Markdown)]
         sections = tuple(self._print_component(each) for each in section.sections)
@@ -139,7 +139,7 @@ class _ReportPrinter:
 
     def _make_ros_blocks(self, component_id: str) -> tuple[Block, ...]:
         component = self.lookup.architecture.components[component_id]
-        return tuple(_flatten(self._keep_legible(ros_blocks.make_ros_blocks(self.lookup, component))))
+        return tuple(_unturn_tables(self._keep_legible(ros_blocks.make_ros_blocks(self.lookup, component))))
 
     def make_ros_annexes(self) -> Iterator[Section]:
         """Yield the annexes of the ROS side: the components one by one, and the parameters of all nodes."""
@@ -172,7 +172,7 @@ class _ReportPrinter:
 
     def _split_timing(self, section: Section) -> Iterator[Section]:
         """Yield the chapter of timing with its verdicts, and the annex of its tables."""
-        blocks = tuple(_flatten(self._keep_legible(section.blocks)))
+        blocks = tuple(_unturn_tables(self._keep_legible(section.blocks)))
         if blocks:
             yield dataclasses.replace(section, blocks=blocks, sections=())
         sections = tuple(self._print_others(each) for each in section.sections)
@@ -188,7 +188,7 @@ def walk_sections(sections: Iterable[Section]) -> Iterator[Section]:
         yield from walk_sections(section.sections)
 
 
-def _flatten(blocks: Iterable[Block]) -> Iterator[Block]:
+def _unturn_tables(blocks: Iterable[Block]) -> Iterator[Block]:
     """Yield blocks with tables that need no turned page, and no facts without rows."""
     for block in blocks:
         if isinstance(block, Table):

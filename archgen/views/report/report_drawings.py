@@ -32,7 +32,7 @@ def make_report_drawings(
     }
     fitted = dict(_cut_sequences(lookup, fitted))
     legend = _draw_legend([drawing for drawing in fitted.values() if isinstance(drawing, Graph)])
-    fitted = {name: _leave_legend(drawing) for name, drawing in fitted.items()}
+    fitted = {name: _drop_legend(drawing) for name, drawing in fitted.items()}
     return fitted | ({LEGEND_NAME: legend} if legend.legend else {})
 
 
@@ -85,7 +85,7 @@ def _join_graphs(graphs: Sequence[Graph]) -> Graph:
     return Graph("", "", "flow", boxes, arrows, kind="component")
 
 
-def _leave_legend(drawing: Drawing) -> Drawing:
+def _drop_legend(drawing: Drawing) -> Drawing:
     """Return a picture of the report's own without its legend, which stands once at the beginning."""
     if isinstance(drawing, Graph) and drawing.id.startswith(_PREFIX):
         return replace(drawing, legend=(), legend_colours=())
@@ -98,12 +98,12 @@ def _fit_drawing(lookup: Lookup, drawing: Drawing) -> Drawing:
     if drawing.kind == "implementation":
         return join_topics(drawing)
     if drawing.kind in {"component", "composed"}:
-        return _rename(drawing, boxes=drawing.boxes, arrows=drawing.arrows)
+        return _copy_graph(drawing, boxes=drawing.boxes, arrows=drawing.arrows)
     if drawing.kind == "group-timing":
-        return leave_neighbours(drawing)
+        return drop_neighbours(drawing)
     if drawing.kind == "group":
         inside = sum(box.emphasis != "neighbour" for box in drawing.boxes)
-        return leave_neighbours(drawing) if inside > _MAX_INSIDE_BOXES else fold_neighbouring_groups(lookup, drawing)
+        return drop_neighbours(drawing) if inside > _MAX_INSIDE_BOXES else fold_neighbouring_groups(lookup, drawing)
     return drawing
 
 
@@ -149,7 +149,7 @@ def join_topics(graph: Graph) -> Graph:
         if plain_arrows and graph.direction is None and _has_inner_flow(boxes, plain_arrows)
         else graph.direction
     )
-    joined = _rename(graph, boxes=shown, arrows=(*arrows, *plain_arrows))
+    joined = _copy_graph(graph, boxes=shown, arrows=(*arrows, *plain_arrows))
     return replace(joined, direction=direction)
 
 
@@ -170,13 +170,13 @@ def _is_inner(boxes: Mapping[str, Box], first: Arrow, second: Arrow) -> bool:
     return (boxes[first.tail].emphasis == "neighbour") == (boxes[second.head].emphasis == "neighbour")
 
 
-def leave_neighbours(graph: Graph) -> Graph:
+def drop_neighbours(graph: Graph) -> Graph:
     """Return a group's picture with what runs inside it alone."""
     boxes = tuple(box for box in graph.boxes if box.emphasis != "neighbour")
     inside = {box.id for box in boxes}
     arrows = tuple(arrow for arrow in graph.arrows if arrow.tail in inside and arrow.head in inside)
     notes = ("Inside the group only; the tables of its components name the neighbours.",)
-    return _rename(graph, boxes=boxes, arrows=arrows, notes=notes)
+    return _copy_graph(graph, boxes=boxes, arrows=arrows, notes=notes)
 
 
 def fold_neighbouring_groups(lookup: Lookup, graph: Graph) -> Graph:
@@ -203,7 +203,7 @@ def fold_neighbouring_groups(lookup: Lookup, graph: Graph) -> Graph:
     for arrow in graph.arrows:
         merged.setdefault((new_ids[arrow.tail], new_ids[arrow.head], arrow.style), []).append(arrow)
     arrows = tuple(_merge_arrows(ends, each, members) for ends, each in merged.items())
-    return _rename(graph, boxes=boxes, arrows=arrows)
+    return _copy_graph(graph, boxes=boxes, arrows=arrows)
 
 
 def _merge_arrows(ends: tuple[str, str, str], arrows: Sequence[Arrow], folded: Collection[str]) -> Arrow:
@@ -228,7 +228,7 @@ def _merge_arrows(ends: tuple[str, str, str], arrows: Sequence[Arrow], folded: C
     )
 
 
-def _rename(
+def _copy_graph(
     graph: Graph, *, boxes: tuple[Box, ...], arrows: tuple[Arrow, ...], notes: tuple[str, ...] | None = None
 ) -> Graph:
     return replace(

@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from archgen.model.annotated_elements import Annotated
 from archgen.model.component import Connection, Input, Output
-from archgen.model.counted_outputs import find_counted_output
 from archgen.model.node import Topic
 from archgen.model.parameter_values import find_effective_parameters
 from archgen.model.port_media import name_on_medium, nature_of, uses_ros, word_of_medium
+from archgen.model.relied_outputs import find_relied_output
 from archgen.views.elements import parameter_blocks, promise_words
 from archgen.views.elements.frame_users import index_frame_ports, list_shown_frames
 from archgen.views.lookup import Lookup
@@ -72,7 +72,7 @@ def _describe_words(lookup: Lookup, connection: Connection) -> tuple[str, str, s
     """Return what the outputs that a connection names promise, their versions, and until when they may be used."""
     architecture = lookup.architecture
     leaves = (architecture.outputs[output] for output in connection.outputs)
-    ports = {port.id: port for leaf in leaves for port in (find_counted_output(architecture, connection, leaf),)}
+    ports = {port.id: port for leaf in leaves for port in (find_relied_output(architecture, connection, leaf),)}
     facts = [tuple(value for _, value in promise_words.list_card_facts(port)) for port in ports.values()]
     promises, versions, deprecations = (
         ("; ".join(dict.fromkeys(filter(None, values))) for values in zip(*facts, strict=True))

@@ -17,7 +17,7 @@ def make_frame_table(lookup: Lookup) -> Table | None:
     rows = tuple(
         (
             _name_cell(frame),
-            link_declared_frame(architecture, frame.parent) if frame.parent is not None else _muted("a root"),
+            link_declared_frame(architecture, frame.parent) if frame.parent is not None else _mute_words("a root"),
             link_writer(architecture, frame) if frame.parent is not None else (),
             _rate_cell(frame),
             inline_text.join_inlines(_link_port(architecture, port) for port in ports_by_frame.get(frame.id, ())),
@@ -44,7 +44,7 @@ def link_declared_frame(architecture: Architecture, name: str) -> Inlines:
 def link_writer(architecture: Architecture, frame: Frame) -> Inlines:
     """Link to who writes a frame."""
     if frame.by is None:
-        return _muted(NOBODY)
+        return _mute_words(NOBODY)
     if frame.by_kind == "node":
         return (inline_text.node_link(architecture.nodes[frame.by]),)
     component = architecture.components.get(frame.by)
@@ -59,12 +59,12 @@ def _name_cell(frame: Frame) -> Inlines:
 def _rate_cell(frame: Frame) -> Inlines:
     if frame.parent is None:
         return ()
-    return _muted("static") if frame.static else inline_text.quantity_to_inlines(frame.rate)
+    return _mute_words("static") if frame.static else inline_text.quantity_to_inlines(frame.rate)
 
 
 def _link_port(architecture: Architecture, port_id: str) -> Inlines:
     return inline_text.port_link(architecture, architecture.outputs.get(port_id) or architecture.inputs[port_id])
 
 
-def _muted(words: str) -> Inlines:
+def _mute_words(words: str) -> Inlines:
     return (Text(words, muted=True),)

@@ -81,8 +81,8 @@ def _make_row(lookup: Lookup, number: int, step: StartStep, steps: Mapping[str, 
         (Text(str(number), sort_number=str(number)),),
         inline_text.join_lines(_name_step(lookup, step)),
         inline_text.join_lines(_list_ways(step)),
-        inline_text.join_lines(_list_waits(step, steps)) or _muted("nothing"),
-        inline_text.join_lines(_list_signs(step)) or _muted("at once"),
+        inline_text.join_lines(_list_waits(step, steps)) or _mute_words("nothing"),
+        inline_text.join_lines(_list_signs(step)) or _mute_words("at once"),
     )
 
 
@@ -103,13 +103,17 @@ def link_step(step: StartStep) -> Text:
 def _list_ways(step: StartStep) -> Iterator[Inlines]:
     for words in step.preparations:
         yield (Text(shlex.join(words), code=True),)
-    yield (Text(shlex.join(step.command), code=True),) if step.command else _muted(start_phrases.describe_unknown(step))
+    yield (
+        (Text(shlex.join(step.command), code=True),)
+        if step.command
+        else _mute_words(start_phrases.describe_unknown(step))
+    )
     for words in step.transitions:
         yield (Text(shlex.join(words), code=True),)
     for name, words in step.ros.value_commands.items() if step.ros else ():
         yield (Text(f"parameter {name}: the output of ", muted=True), Text(shlex.join(words), code=True))
     for phrase in start_phrases.describe_process(step):
-        yield _muted(phrase)
+        yield _mute_words(phrase)
     for right in step.needs_rights:
         yield (Text(f"needs rights {right}", strong=True),)
 
@@ -121,7 +125,7 @@ def _list_waits(step: StartStep, steps: Mapping[str, StartStep]) -> Iterator[Inl
         yield (link_step(steps[wait.awaited]), Text(f" ({end}{'; '.join(wait.reasons)})", muted=True))
     rest = waits[_MAX_WAITS:]
     if rest:
-        yield _muted(f"and for {len(rest)} others that are needed no more than these: archgen start names them")
+        yield _mute_words(f"and for {len(rest)} others that are needed no more than these: archgen start names them")
 
 
 def _list_signs(step: StartStep) -> Iterator[Inlines]:
@@ -133,5 +137,5 @@ def _list_signs(step: StartStep) -> Iterator[Inlines]:
         yield (Text(f"state {state}"),)
 
 
-def _muted(words: str) -> Inlines:
+def _mute_words(words: str) -> Inlines:
     return (Text(words, muted=True),)

@@ -82,7 +82,7 @@ def make_waterfall(lookup: Lookup, timing_lookup: TimingLookup, result: ChainRes
         tuple(_make_total(result, total, whole)),
         tuple(_make_labels(result, total, whole)),
         (float(deadline / whole) if deadline is not None else None, step_limit),
-        f"deadline {_format(deadline)}" if deadline is not None else "",
+        f"deadline {_format_time(deadline)}" if deadline is not None else "",
         tuple(_make_ticks(axis)),
         tuple(_make_steps(lookup, timing_lookup, result.terms, axis)),
         _describe_cut(axis),
@@ -96,9 +96,11 @@ def _describe_cut(axis: _CutAxis) -> str:
     if axis.cut is None:
         return ""
     start, end = axis.cut
-    length = _format(end - start)
+    length = _format_time(end - start)
     return (
-        f"The {length} from {_format(start)} on are drawn short." if start else f"The first {length} are drawn short."
+        f"The {length} from {_format_time(start)} on are drawn short."
+        if start
+        else f"The first {length} are drawn short."
     )
 
 
@@ -106,7 +108,7 @@ def _sum_known(terms: Sequence[ChainTerm]) -> Fraction:
     return sum_fractions(map(chain_charts.sum_known_parts, terms))
 
 
-def _format(time: Fraction) -> str:
+def _format_time(time: Fraction) -> str:
     return chain_status.round_duration(time) if time else "0"
 
 
@@ -152,12 +154,12 @@ def list_known_kinds(result: ChainResult) -> Iterator[tuple[PieceKind, Fraction,
     for kind, word in _KINDS:
         length = sum((getattr(term, kind).value or Fraction(0) for term in result.terms), Fraction(0))
         if length:
-            yield kind, length, f"{word} {_format(length)}"
+            yield kind, length, f"{word} {_format_time(length)}"
 
 
 def _make_labels(result: ChainResult, total: Fraction, whole: Fraction) -> Iterator[tuple[float, str]]:
     yield 0.0, "0"
-    yield float(total / whole), f"{_format(total)}{'' if result.bound.complete else ' known'}"
+    yield float(total / whole), f"{_format_time(total)}{'' if result.bound.complete else ' known'}"
 
 
 def _make_ticks(axis: _CutAxis) -> Iterator[tuple[float, str]]:
@@ -178,7 +180,7 @@ def _make_ticks(axis: _CutAxis) -> Iterator[tuple[float, str]]:
     for time in sorted(times):
         place = axis.find_share(time)
         if place - last_place > 0.06 and place < 0.97:  # noqa: PLR2004 - shares that keep two figures apart
-            yield place, _format(time)
+            yield place, _format_time(time)
             last_place = place
 
 

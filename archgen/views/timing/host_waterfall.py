@@ -189,7 +189,7 @@ def _make_partner_rows(lookup: Lookup, shares: dict[str, TimingValue]) -> Iterat
     names_by_owners: dict[tuple[str, ...], list[str]] = {}
     for name in shares:
         names_by_owners.setdefault(list_node_owners(lookup, name), []).append(name)
-    sums = [(owners, names, _add(shares[name] for name in names)) for owners, names in names_by_owners.items()]
+    sums = [(owners, names, _add_shares(shares[name] for name in names)) for owners, names in names_by_owners.items()]
     for owners, names, share in sorted(sums, key=lambda entry: -(entry[2].value or Fraction(0))):
         title = inline_text.owner_links(lookup.architecture, owners) or (Text("nobody yet", muted=True),)
         yield (title, inline_text.to_inlines(str(len(names))), *_make_share_cells(share))
@@ -210,7 +210,7 @@ def _make_share_cells(share: TimingValue) -> tuple[Inlines, Inlines]:
     return (Text("", meter=meter, sort_number=number),), (figure,)
 
 
-def _add(shares: Iterable[TimingValue]) -> TimingValue:
+def _add_shares(shares: Iterable[TimingValue]) -> TimingValue:
     shares = tuple(shares)
     side: Side = next((share.side for share in shares if share.side != "exact"), "exact")
     total = sum((share.value or Fraction(0) for share in shares), Fraction(0))

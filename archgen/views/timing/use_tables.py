@@ -86,7 +86,7 @@ def make_measured_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | 
         (
             timing_tables.activity_link(timing_lookup, activity.id),
             inline_text.to_inlines(describe_percentiles(activity, tick)),
-            timing_tables.duration_cell(_longest(activity, tick)),
+            timing_tables.duration_cell(_find_longest(activity, tick)),
             inline_text.to_inlines("longest seen, not proven" if activity.wcet_measured else "written"),
         )
         for activity in timing_lookup.analysis.system.activities.values()
@@ -108,7 +108,7 @@ def describe_percentiles(activity: Activity, tick: Fraction) -> str:
     return ", ".join(f"{key} {format_duration(Fraction(ticks * tick))}" for key, ticks in activity.percentiles.items())
 
 
-def _longest(activity: Activity, tick: Fraction) -> TimingValue:
+def _find_longest(activity: Activity, tick: Fraction) -> TimingValue:
     return TimingValue(None, complete=False) if activity.wcet is None else TimingValue(activity.wcet * tick)
 
 

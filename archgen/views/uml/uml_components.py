@@ -207,6 +207,6 @@ def _list_ports(component: Component) -> dict[tuple[str, str], str]:
     return inputs | {("outputs", name): each.type or "" for name, each in component.outputs.items()}
 
 
-def name_interface(path: str, port: str) -> str:
+def name_output_interface(path: str, port: str) -> str:
     """Return the name of the interface of an output that has none of its own: `CameraImage`."""
     return make_camel_name(f"{path.rpartition('.')[2]}_{port}")

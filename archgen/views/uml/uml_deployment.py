@@ -49,12 +49,14 @@ def write_deployment(
             artifact["children"].append(make_tree("manifestation", "Manifestation", manifestation_id, **words))
         trees.append(artifact)
         if node.host in host_trees:
-            _deploy(registry, host_trees[node.host], host_ids[node.host], artifact_id, f"{node.host}.{node.id}")
+            _deploy_artifact(
+                registry, host_trees[node.host], host_ids[node.host], artifact_id, f"{node.host}.{node.id}"
+            )
     trees += _write_links(architecture, registry, packed, host_ids, component_ids)
     return trees
 
 
-def _deploy(registry: IdRegistry, host: UmlTree, host_id: str, artifact_id: str, path: str) -> None:
+def _deploy_artifact(registry: IdRegistry, host: UmlTree, host_id: str, artifact_id: str, path: str) -> None:
     words = {"client": host_id, "supplier": artifact_id, "deployedArtifact": artifact_id}
     host["children"].append(make_tree("deployment", "Deployment", registry.claim(f"deployment.{path}"), **words))
 
@@ -70,7 +72,7 @@ def _write_hints(
     for number, each in enumerate(list_names(hints, "artifacts"), 1):
         artifact_id = registry.claim(f"library.{name}.{number}")
         libraries.append(make_tree("packagedElement", "Artifact", artifact_id, each))
-        _deploy(registry, host, host_id, artifact_id, f"library.{name}.{number}")
+        _deploy_artifact(registry, host, host_id, artifact_id, f"library.{name}.{number}")
     return libraries
 
 

@@ -8,7 +8,7 @@ from typing import Any
 from archgen.model.generic_names import read_generic_name
 from archgen.model.path_resolver import title_from_id
 from archgen.views.uml.uml_signatures import make_signature
-from archgen.views.uml.uml_tree import IdRegistry, UmlTree, make_slug, make_tree, read_mapping
+from archgen.views.uml.uml_tree import IdRegistry, UmlTree, make_id_word, make_tree, read_mapping
 from archgen.views.uml.uml_types import UmlTypes
 
 
@@ -62,7 +62,7 @@ class UmlTemplates:
         return self._bound_ids[key]
 
     def _bind(self, type_name: str, base: str, arguments: tuple[str, ...]) -> str:
-        slug = make_slug(type_name)
+        slug = make_id_word(type_name)
         class_id = self._registry.claim(f"bound.{slug}")
         title = f"{title_from_id(base.rpartition('.')[2])}<{', '.join(arguments)}>"
         bound = make_tree("packagedElement", "Class", class_id, title)

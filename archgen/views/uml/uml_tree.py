@@ -34,12 +34,12 @@ class IdRegistry:
     def __init__(self) -> None:
         self._taken: set[str] = set()
 
-    def claim(self, wanted: str, hints: object = None) -> str:
+    def claim(self, wanted_id: str, hints: object = None) -> str:
         """Return a free id: that of the hints, else the wanted one behind archgen's own prefix."""
         kept = read_hints(hints).get("id")
-        element_id = kept if isinstance(kept, str) and _USABLE_ID.match(kept) else f"{OWN_PREFIX}{wanted}"
+        element_id = kept if isinstance(kept, str) and _USABLE_ID.match(kept) else f"{OWN_PREFIX}{wanted_id}"
         if element_id in self._taken and element_id == kept:
-            element_id = f"{OWN_PREFIX}{wanted}"
+            element_id = f"{OWN_PREFIX}{wanted_id}"
         number = 2
         free_id = element_id
         while free_id in self._taken:
@@ -66,7 +66,7 @@ def read_mapping(value: object) -> Mapping[str, Any]:
     return value if isinstance(value, Mapping) else {}
 
 
-def make_slug(name: str) -> str:
+def make_id_word(name: str) -> str:
     """Return a word for an id made of any text."""
     return make_id(name, "x")
 

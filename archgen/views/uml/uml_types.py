@@ -11,7 +11,7 @@ from archgen.views.uml.uml_tree import (
     IdRegistry,
     UmlTree,
     make_comments,
-    make_slug,
+    make_id_word,
     make_tree,
     read_mapping,
 )
@@ -40,7 +40,7 @@ class UmlTypes:
         self.generic_ids: dict[str, str] = {}
         """The ids of the names that stand for types in the component type that is being written."""
         for name, body in types.items():
-            self._ids[name] = registry.claim(f"type.{make_slug(name)}", read_mapping(body).get("hints"))
+            self._ids[name] = registry.claim(f"type.{make_id_word(name)}", read_mapping(body).get("hints"))
 
     def refer(self, name: str) -> str:
         """Return the id of a type that something names."""
@@ -49,7 +49,7 @@ class UmlTypes:
         self._written.add(name)
         if name not in self._ids:
             is_primitive = _PRIMITIVE.match(name) is not None
-            self._ids[name] = self._registry.claim(f"name.{make_slug(name)}")
+            self._ids[name] = self._registry.claim(f"name.{make_id_word(name)}")
             kind = "PrimitiveType" if is_primitive else "DataType"
             self._named[name] = make_tree("packagedElement", kind, self._ids[name], name)
         return self._ids[name]
@@ -63,7 +63,7 @@ class UmlTypes:
         element_id = self._registry.claim(f"choices.{path}")
         tree = make_tree("packagedElement", "Enumeration", element_id, path.rpartition(".")[2])
         for choice in choices:
-            literal_id = self._registry.claim(f"literal.{path}.{make_slug(choice)}")
+            literal_id = self._registry.claim(f"literal.{path}.{make_id_word(choice)}")
             tree["children"].append(make_tree("ownedLiteral", "EnumerationLiteral", literal_id, choice))
         self._enumerations.append(tree)
         return element_id
@@ -85,12 +85,12 @@ class UmlTypes:
         tree = make_tree("packagedElement", kind, element_id, name)
         tree["children"] += make_comments(element_id, body)
         if names := [str(each) for each in body.get("generic") or ()]:
-            formal_ids = [self._registry.claim(f"formal.type.{make_slug(name)}.{each}") for each in names]
-            signature_id = self._registry.claim(f"signature.type.{make_slug(name)}")
+            formal_ids = [self._registry.claim(f"formal.type.{make_id_word(name)}.{each}") for each in names]
+            signature_id = self._registry.claim(f"signature.type.{make_id_word(name)}")
             signature, self.generic_ids = make_signature(signature_id, names, formal_ids)
             tree["children"].append(signature)
         for value in body.get("values") or ():
-            literal_id = self._registry.claim(f"literal.{element_id}.{make_slug(str(value))}")
+            literal_id = self._registry.claim(f"literal.{element_id}.{make_id_word(str(value))}")
             tree["children"].append(make_tree("ownedLiteral", "EnumerationLiteral", literal_id, str(value)))
         for field_name, field in read_mapping(body.get("fields")).items():
             written = str(read_mapping(field).get("type") or "")

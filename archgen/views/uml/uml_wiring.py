@@ -8,7 +8,7 @@ from typing import Any
 from archgen.model.architecture import Architecture
 from archgen.model.code_names import make_camel_name
 from archgen.model.component import Connection, Input
-from archgen.views.uml.uml_components import PortPath, UmlComponents, name_interface
+from archgen.views.uml.uml_components import PortPath, UmlComponents, name_output_interface
 from archgen.views.uml.uml_tree import TYPE_PREFIX, IdRegistry, UmlTree, list_names, make_tree, read_hints, read_mapping
 from archgen.views.uml.uml_types import UmlTypes
 
@@ -36,7 +36,7 @@ class UmlWiring:
     def _write_interface(self, port: PortPath, name: str, *, is_first: bool) -> None:
         path = ".".join(port)
         interface_id = self._registry.claim(f"{'interface' if name else 'made_interface'}.{path}")
-        interface = make_tree("packagedElement", "Interface", interface_id, name or name_interface(*port))
+        interface = make_tree("packagedElement", "Interface", interface_id, name or name_output_interface(*port))
         operation_id = self._registry.claim(f"getter.{path}")
         operation = make_tree("ownedOperation", "Operation", operation_id, f"get{make_camel_name(port[1])}")
         shell = self._architecture.shells.get(port[0])
@@ -123,23 +123,23 @@ class UmlWiring:
         kept = read_hints(hints).get("interface")
         path = ".".join(port)
         interface_id = self._registry.claim(f"{'interface' if kept else 'made_interface'}.needed.{path}")
-        name = kept if isinstance(kept, str) and kept else name_interface(*port)
+        name = kept if isinstance(kept, str) and kept else name_output_interface(*port)
         self.relations.append(make_tree("packagedElement", "Interface", interface_id, name))
         self._use(port, interface_id)
 
     def write_delegations(self, composed: Iterator[tuple[str, Mapping[str, Any]]]) -> None:
-        """Write what outputs of composed components give on. `composed` are these with their paths."""
+        """Write what outputs of composed components pass on. `composed` are these with their paths."""
         for path, body in composed:
             place = self._components.samples.get(path.removeprefix(TYPE_PREFIX), "") if _is_type(path) else path
             for name, port in read_mapping(body.get("outputs")).items():
                 given = self._architecture.shell_ports.get(f"output {place}.{name}", ()) if place else ()
-                inner = [(_move(each, place, path), each.rpartition(".")[2]) for each in given]
+                inner = [(_move_path(each, place, path), each.rpartition(".")[2]) for each in given]
                 for each in inner or _read_references(path, read_mapping(port).get("from")):
                     if each in self._components.port_ids and (path, name) in self._components.port_ids:
                         self._join(path, (path, name), each)
 
 
-def _move(output: str, place: str, path: str) -> str:
+def _move_path(output: str, place: str, path: str) -> str:
     """Return the path of an output's component inside of a type, for that inside of an instance."""
     component = output.rpartition(".")[0]
     return f"{path}.{component.rpartition('.')[2]}" if component.rpartition(".")[0] == place else ""

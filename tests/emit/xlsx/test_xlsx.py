@@ -9,7 +9,7 @@ import zipfile
 
 import pytest
 
-from archgen.emit.written_formats import name_written_format
+from archgen.emit.own_file_marks import name_written_format
 from archgen.emit.xlsx import XlsxWriterError, collect_sheets, write_workbook
 from archgen.views.shapes import Column, Facts, Outline, Section, Table, Text
 

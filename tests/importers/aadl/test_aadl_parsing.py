@@ -12,11 +12,11 @@ from archgen.importers.aadl.aadl_tree import (
     AadlList,
     AadlName,
     AadlNumber,
+    AadlProperty,
     AadlRange,
     AadlRecord,
-    AadlText,
+    AadlString,
     AadlValue,
-    Property,
 )
 from archgen.importers.aadl.package_parsing import parse_text
 from archgen.importers.aadl.token_cursor import MAX_DEPTH
@@ -51,7 +51,7 @@ def test_tokens_of_a_line() -> None:
         ("1_000", AadlNumber(Fraction(1000))),
         ("1 ms .. 2 ms", AadlRange(AadlNumber(Fraction(1), "ms"), AadlNumber(Fraction(2), "ms"))),
         ("1 .. 9 delta 2", AadlRange(AadlNumber(Fraction(1)), AadlNumber(Fraction(9)))),
-        ('"a ""b"""', AadlText('a "b"')),
+        ('"a ""b"""', AadlString('a "b"')),
         ("Periodic", AadlName("Periodic")),
         ("consts::Slow", AadlName("consts::Slow")),
         ("TRUE", AadlName("TRUE")),
@@ -74,7 +74,7 @@ def test_values_of_properties(written: str, value: AadlValue) -> None:
 
 def test_associations_with_all_that_may_follow() -> None:
     text = "s::p +=> constant 1 in modes (m), 2 in modes (n) applies to a.b, c[1].d in binding (memory m::r);"
-    found: Property = parse_package(f"data d properties {text} end d;").packages[0].classifiers[0].properties[0]
+    found: AadlProperty = parse_package(f"data d properties {text} end d;").packages[0].classifiers[0].properties[0]
     assert (found.name, found.appended, found.modes, found.paths) == ("s::p", True, ("m",), (("a", "b"), ("c", "d")))
 
 

@@ -585,6 +585,17 @@ def test_hostile_python_ends_and_runs_nothing(body: str, tmp_path: Path, monkeyp
     assert not (tmp_path / "trace").exists()
 
 
+@pytest.mark.parametrize("name", ["Imported", "Method", "dict_method", "list_method", "LAUNCH_DESCRIPTION"])
+def test_functions_that_nobody_knows_are_no_methods_of_the_reader(name: str, tmp_path: Path) -> None:
+    imported = read_python(tmp_path, f"from mine import {name}\nreturn LaunchDescription([{name}('x')])")
+    assert messages_of(imported) == [f"not taken: {name}:15: what it gives is computed: `{name}('x')`"]
+
+
+def test_a_slice_inside_of_a_tuple_is_quoted(tmp_path: Path) -> None:
+    body = "x = [1, 2][0:1, 0]\nreturn LaunchDescription([Node(package='p', executable='e', name='n', arguments=[x])])"
+    assert nodes_of(read_python(tmp_path, body))["n"]["package"] == "p"
+
+
 def test_files_that_include_themselves_end(tmp_path: Path) -> None:
     path = write_files(tmp_path, a__launch__xml='<launch><include file="$(dirname)/a.launch.xml"/></launch>')
     assert [note.message for note in read_launch([path]).notes] == [f"`{path}` is not read: it includes itself"]

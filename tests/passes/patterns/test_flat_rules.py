@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 import yaml
 
+from archgen.checking.checked_packing import pack_checked_project
 from archgen.link.open_shells import OpenShells
 from archgen.passes.flat_names import name_flat_components
 from archgen.passes.linked_tree import LinkedTree
@@ -37,7 +38,7 @@ def _run(checked: CheckedProject, *names: str) -> CheckedProject:
 
 
 def _pack(checked: CheckedProject) -> dict[str, object]:
-    packed = checked.pack_project()
+    packed = pack_checked_project(checked)
     data = yaml.safe_load(write_yaml(packed.data, packed.comments))
     assert isinstance(data, dict)
     return data

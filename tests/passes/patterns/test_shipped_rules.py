@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 import yaml
 
+from archgen.checking.checked_packing import pack_checked_project
 from archgen.passes.pass_shape import STATES
 from archgen.passes.patterns.pass_files import list_shipped_passes
 from archgen.passes.patterns.pattern_registry import find_known_passes
@@ -29,7 +30,7 @@ EXAMPLES = ("arm", "bringup", "cleaning_robot", "drone", "first_robot")
 
 def _pack(checked: CheckedProject, name: str = "") -> object:
     """Give a packed project; of what connects, without the word that it follows from, which rules leave."""
-    packed = checked.pack_project()
+    packed = pack_checked_project(checked)
     data = yaml.safe_load(write_yaml(packed.data, packed.comments))
     data.pop("variants", None)
     return _drop_key(data, "autoconnect") if name in {"connect_ports", "connect_types"} else data

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from archgen.passes.patterns.pattern_shapes import PortReference
 from archgen.passes.patterns.view_types import ConceptualTypes
-from archgen.passes.patterns.view_values import read_scalar, read_value
+from archgen.passes.patterns.view_values import read_scalar, read_view_value
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, YamlNode
 from tests.passes.patterns.transforming import tree_of
 
@@ -48,7 +48,7 @@ def test_an_edit_is_seen_once_the_types_are_read_again(tmp_path: Path) -> None:
 def test_scalars_are_texts_and_what_is_left_empty_is_nothing(tmp_path: Path) -> None:
     port = tree_of(ROBOT, tmp_path).get(("groups", "g", "components", "eye", "outputs", "seen"))
     assert isinstance(port, MappingNode)
-    assert read_value(port, lambda _: None, {}) == {"type": "Pose", "external": "true"}
+    assert read_view_value(port, lambda _: None, {}) == {"type": "Pose", "external": "true"}
     assert read_scalar(ScalarNode(None, "", port.span)) is None
 
 
@@ -60,7 +60,7 @@ def test_references_to_what_stands_in_a_type_move_to_what_is_made_from_it(tmp_pa
         def find_reference(_node: YamlNode) -> PortReference:
             return reference
 
-        moved = read_value(node, find_reference, {"station": "robot.head"})
+        moved = read_view_value(node, find_reference, {"station": "robot.head"})
         assert isinstance(moved, PortReference)
         return moved.component, moved.port, moved.holder
 

@@ -7,7 +7,7 @@ from fractions import Fraction
 import pytest
 
 from archgen.timing.figures.figure_wording import (
-    describe_value,
+    describe_timing_value,
     format_duration,
     format_number,
     format_rate,
@@ -142,4 +142,4 @@ def test_why_a_figure_is_unknown_is_one_word(value: TimingValue, reason: str) ->
     ],
 )
 def test_a_figure_is_told_with_its_side(value: TimingValue, unit: str, text: str) -> None:
-    assert describe_value(value, unit) == text
+    assert describe_timing_value(value, unit) == text

@@ -13,9 +13,9 @@ from archgen.views.generation.aadl_words import (
     make_aadl_name,
     make_duration_property,
     make_named_properties,
-    write_duration,
+    write_aadl_duration,
+    write_aadl_string,
     write_range,
-    write_text,
     write_texts,
 )
 
@@ -52,7 +52,7 @@ def test_names_that_differ_in_case_alone_get_numbers() -> None:
 
 
 def test_texts_hold_no_quote_no_backslash_and_ascii_alone() -> None:
-    assert write_text('a "b" \\ 100 %\nö') == '"a %22b%22 %5C 100 %25%0A%C3%B6"'
+    assert write_aadl_string('a "b" \\ 100 %\nö') == '"a %22b%22 %5C 100 %25%0A%C3%B6"'
     assert write_texts(["a", "b"]) == '("a", "b")'
 
 
@@ -67,7 +67,7 @@ def test_texts_hold_no_quote_no_backslash_and_ascii_alone() -> None:
     ],
 )
 def test_durations(duration: Fraction, expected: str) -> None:
-    assert write_duration(duration) == expected
+    assert write_aadl_duration(duration) == expected
 
 
 def test_a_range_is_rounded_outwards() -> None:

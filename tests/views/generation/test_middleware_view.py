@@ -11,12 +11,12 @@ from archgen.model.parameter import CallMode, Operation
 from archgen.pipeline import check_project
 from archgen.views.generation.generation_context import GenerationContext
 from archgen.views.generation.middleware_names import (
-    name_class,
+    make_class_name,
     name_inside,
-    name_interface,
     name_member,
+    name_port_member,
     name_space,
-    shorten_name,
+    shorten_wire_name,
 )
 from archgen.views.generation.middleware_operations import is_command
 from archgen.views.generation.middleware_view import make_view
@@ -138,13 +138,13 @@ def test_names_are_no_words_of_anybody() -> None:
         "linux_",
         "x",
     ]
-    assert [name_interface(each) for each in ("start", "image", "operations")] == ["start_", "image", "operations_"]
-    assert [name_class(each) for each in ("object", "laser_scan")] == ["Object_", "LaserScan"]
+    assert [name_port_member(each) for each in ("start", "image", "operations")] == ["start_", "image", "operations_"]
+    assert [make_class_name(each) for each in ("object", "laser_scan")] == ["Object_", "LaserScan"]
     assert [name_space(each) for each in ("rtt", "robot")] == ["rtt_", "robot"]
     assert [name_inside(each, "Image") for each in ("image", "width")] == ["image_value", "width"]
-    assert shorten_name("x" * 40) == "x" * 40
-    assert len(shorten_name("x" * 41)) == 40
-    assert shorten_name("x" * 41) != shorten_name("x" * 42)
+    assert shorten_wire_name("x" * 40) == "x" * 40
+    assert len(shorten_wire_name("x" * 41)) == 40
+    assert shorten_wire_name("x" * 41) != shorten_wire_name("x" * 42)
 
 
 def test_interfaces_of_player_have_their_words() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from archgen.views.graph_shapes import Arrow, Box, Graph
-from archgen.views.report.report_drawings import join_topics, leave_neighbours
+from archgen.views.report.report_drawings import drop_neighbours, join_topics
 
 
 def _graph(*arrows: tuple[str, str], kind: str = "implementation") -> Graph:
@@ -35,6 +35,6 @@ def test_a_topic_between_nodes_of_the_component_stays_and_the_picture_stands_upr
 
 
 def test_a_group_without_its_neighbours_says_so() -> None:
-    inside = leave_neighbours(_graph(("a", "b"), ("<n", "a"), kind="group"))
+    inside = drop_neighbours(_graph(("a", "b"), ("<n", "a"), kind="group"))
     assert [(arrow.tail, arrow.head) for arrow in inside.arrows] == [("a", "b")]
     assert inside.notes == ("Inside the group only; the tables of its components name the neighbours.",)

@@ -1,85 +1,21 @@
-"""Groups and composed components as systems of AADL, and the ways that data takes through their borders."""
+"""The systems of a launch in AADL as one tree, and the ways that data takes through their borders."""
 
 from __future__ import annotations
-
-from collections.abc import Mapping
-from typing import Any
 
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Group
 from archgen.views.generation.aadl_ports import PortPart, find_outer_port
-from archgen.views.generation.aadl_processes import Process
+from archgen.views.generation.aadl_processes import NodeProcess
+from archgen.views.generation.aadl_system_part import SystemPart
 from archgen.views.generation.aadl_words import (
     AadlProperty,
     NameSpace,
-    list_tags,
-    make_classifier,
     make_item,
     make_named_properties,
     make_property,
     make_text_properties,
 )
-from archgen.views.generation.generation_context import write_place
-
-_Place = tuple[str, object]
-"""A port of a composed component with what it carries, or a node with the key of its port."""
-
-
-class SystemPart:
-    """A system: the launch of everything, a group, or a composed component; it grows as connections and flows are found."""
-
-    def __init__(
-        self, name: str, classifier: str, parent: SystemPart | None, element: Group | Component | None
-    ) -> None:
-        """Begin with nothing inside; `name` is what it is called in the system around it."""
-        self.name, self.classifier, self.parent, self.element = name, classifier, parent, element
-        self.names = NameSpace()
-        self.features: dict[_Place, str] = {}
-        self.feature_items: list[dict[str, Any]] = []
-        self.subcomponents: list[dict[str, Any]] = []
-        self.connections: list[dict[str, Any]] = []
-        self.flow_specs: list[dict[str, Any]] = []
-        self.flows: list[dict[str, Any]] = []
-        self.properties: list[AadlProperty] = []
-        self._joined: dict[tuple[str, str], str] = {}
-        self.accesses: dict[str, str] = {}
-        """The names of its accesses to what something inside needs of the outermost system."""
-
-    @property
-    def path(self) -> tuple[SystemPart, ...]:
-        """The systems that lead here, from the outermost on."""
-        return (*(self.parent.path if self.parent else ()), self)
-
-    def name_inside(self, scope: SystemPart, name: str) -> str:
-        """Return how something of this system is named from a system around it: `group.arm.motor`."""
-        steps = self.path[len(scope.path) :]
-        return ".".join((*(each.name for each in steps), name))
-
-    def connect(self, name: str, text: str, properties: list[AadlProperty]) -> str:
-        """Add a connection; return its name."""
-        own_name = self.names.take_name(name)
-        self.connections.append(make_item(own_name, text, properties))
-        return own_name
-
-    def join_ends(self, name: str, kind: str, ends: tuple[str, str], properties: list[AadlProperty]) -> str:
-        """Join two ends that may be joined already; return the connection's name."""
-        if ends not in self._joined:
-            self._joined[ends] = self.connect(name, f"{kind} {ends[0]} -> {ends[1]}", properties)
-        return self._joined[ends]
-
-    def make_classifiers(self, properties: list[AadlProperty]) -> list[dict[str, Any]]:
-        """Return its type, with further properties, and its implementation."""
-        own_type = make_classifier("system", self.classifier, features=self.feature_items, flows=self.flow_specs)
-        own_type.update(properties=properties, place=write_place(self.element.at) if self.element else "")
-        implementation = make_classifier("system", f"{self.classifier}.impl")
-        implementation.update(
-            subcomponents=self.subcomponents,
-            connections=self.connections,
-            flows=self.flows,
-            properties=self.properties,
-        )
-        return [own_type, implementation]
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +42,7 @@ class SystemTree:
         self._package_name = package_name
         self._classifiers = NameSpace((root.classifier,))
 
-    def find_home(self, process: Process) -> tuple[SystemPart, str]:
+    def find_home(self, process: NodeProcess) -> tuple[SystemPart, str]:
         """Return the system that a process stands in, and the component that it is there; nothing for one of several."""
         components = [found for each in process.node.implements if (found := self._architecture.find_component(each))]
         whole = process.whole
@@ -136,8 +72,8 @@ class SystemTree:
 
     def join(
         self,
-        source: tuple[Process, PortPart],
-        reader: tuple[Process, PortPart],
+        source: tuple[NodeProcess, PortPart],
+        reader: tuple[NodeProcess, PortPart],
         properties: list[AadlProperty],
     ) -> Route:
         """Join the ports of two processes, through the borders of all systems between them."""
@@ -161,7 +97,7 @@ class SystemTree:
         joint = scope.join_ends(name, output.connection_kind, (end, own_end), properties)
         return Route(tuple(outward), scope, joint, tuple(reversed(inward)))
 
-    def _cross(self, system: SystemPart, process: Process, part: PortPart, inner_end: str) -> tuple[str, str]:
+    def _cross(self, system: SystemPart, process: NodeProcess, part: PortPart, inner_end: str) -> tuple[str, str]:
         """Return the feature of a system for a port inside, and the connection inside that leads there."""
         shell_port = self._find_shell_port(system, part)
         place = (shell_port or process.node.id, part.text if shell_port else part.key)
@@ -184,7 +120,7 @@ class SystemTree:
             return None
         return find_outer_port(self._architecture, shell, part)
 
-    def lead_access(self, process: Process, feature: str, accessed: str, name: str) -> None:
+    def lead_access(self, process: NodeProcess, feature: str, accessed: str, name: str) -> None:
         """Lead the access to something of the outermost system, `data access ros::tf`, by systems to a process' feature."""
         kind = accessed.rpartition(" ")[0]
         wanted_name = feature
@@ -196,18 +132,3 @@ class SystemTree:
             name = inner.accesses[accessed]
         end = f"{process.name_in_system}.{feature}"
         process.home.connect(end.replace(".", "_"), f"{kind} {name} -> {end}", [])
-
-
-def list_system_properties(element: Group | Component) -> list[AadlProperty]:
-    """Return what a group or a composed component says of itself."""
-    own_id = element.id.rpartition(".")[2]
-    texts: Mapping[str, str | None] = {
-        "description": element.description,
-        "functionality": getattr(element, "functionality", None),
-        "owner": element.owner,
-    }
-    return [
-        *(each for each in make_named_properties(own_id, own_id, element.title)),
-        *make_text_properties(**texts),
-        *list_tags(element),
-    ]

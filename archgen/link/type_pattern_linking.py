@@ -15,7 +15,7 @@ from archgen.link.declare.type_declaration import DeclaredTypes
 from archgen.link.element_outline import build_outline
 from archgen.link.project_linking import link_project
 from archgen.model.architecture import Architecture
-from archgen.model.type_patterns import PATTERN_GROUP, TypePatterns
+from archgen.model.component_type_patterns import PATTERN_GROUP, TypePatterns
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
 _OUTER_SECTIONS = ("component_types", "libraries", "types", "ros", "project")

@@ -9,9 +9,9 @@ from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.class_features import ClassFeatures
 from archgen.importers.xmi.component_assembly import ComponentAssembly
 from archgen.importers.xmi.component_facts import ClassFacts
-from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call, make_hints
+from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, make_hints, name_element
 from archgen.importers.xmi.made_names import choose_id, say_title
-from archgen.importers.xmi.port_facts import InterfaceUses, PortFacts, name_interface
+from archgen.importers.xmi.port_facts import InterfaceUses, PortFacts, get_interface_name
 from archgen.importers.xmi.port_wiring import PortWiring, list_inner_references, name_port
 from archgen.importers.xmi.uml_catalogue import read_description
 from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, is_true
@@ -117,7 +117,7 @@ class ComponentSections:
         body |= self._write_inside(facts)
         self._made_types[type_id] = body
         self._type_of[facts] = type_id
-        words = f"{call(facts.element)} has more than the class that realizes it: the component type `{type_id}` lies between them"
+        words = f"{name_element(facts.element)} has more than the class that realizes it: the component type `{type_id}` lies between them"
         self._ledger.note(facts.element, words)
 
     def make_types(self) -> dict[str, object]:
@@ -171,7 +171,7 @@ class ComponentSections:
             and facts.base is None
             and not features.list_sections()
         ):
-            words = f"no class realizes {call(facts.element)}: it has no parameters and no operations"
+            words = f"no class realizes {name_element(facts.element)}: it has no parameters and no operations"
             self._ledger.note(facts.element, words)
         body |= self._write_ports(facts.ports, facts, is_type=False)
         body |= features.list_sections() | self._write_inside(facts)
@@ -232,7 +232,7 @@ class ComponentSections:
         interfaces = [
             name
             for key in (port.provided if port.is_output else port.required)
-            if (name := name_interface(key)) and not _is_own(key)
+            if (name := get_interface_name(key)) and not _is_own(key)
         ]
         # The interface stands at who provides it: who uses it is connected with that.
         kept = [] if is_fed and not port.is_output else interfaces

@@ -12,7 +12,7 @@ from archgen.importers.launch.launch_values import (
     LaunchValue,
     Substitution,
     UnknownValue,
-    describe_value,
+    describe_launch_value,
     name_object,
 )
 from archgen.syntax.plain_scalars import resolve_scalar
@@ -63,7 +63,7 @@ def _evaluate_mapping(value: Mapping[Any, LaunchValue], context: LaunchContext, 
         if isinstance(key, str):
             found[key] = evaluate_parameter(raw_value, context, depth + 1)
         else:
-            found[describe_value(key)] = key
+            found[describe_launch_value(key)] = key
     return found
 
 

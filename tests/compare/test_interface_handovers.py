@@ -8,8 +8,8 @@ from typing import cast
 
 import pytest
 
-from archgen.compare.boundary_hands import follow_hands
 from archgen.compare.figure_changes import BoundaryChange, BoundaryKind, FigureChange, FigureKey
+from archgen.compare.interface_handovers import join_handovers
 from archgen.timing.figures.timing_values import TimingValue
 
 
@@ -77,4 +77,4 @@ def _show(figure: object) -> str:
     ],
 )  # fmt: skip
 def test_what_another_partner_gives_or_takes_is_one_change(changes: str, expected: list[str]) -> None:
-    assert [write_change(change) for change in follow_hands(read_changes(changes))] == expected
+    assert [write_change(change) for change in join_handovers(read_changes(changes))] == expected

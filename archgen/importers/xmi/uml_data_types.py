@@ -8,10 +8,10 @@ from collections.abc import Collection, Iterable, Mapping
 
 from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi import uml_values
-from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, call, make_hints
+from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, make_hints, name_element
 from archgen.importers.xmi.template_classes import SIGNATURE_KINDS, read_generic_names
 from archgen.importers.xmi.uml_catalogue import read_description
-from archgen.importers.xmi.uml_index import Reference, UmlIndex, get_id, get_kind, get_name, list_children
+from archgen.importers.xmi.uml_index import Reference, UmlIndex, get_id, get_kind, get_name, list_child_elements
 from archgen.link.data_types.message_names import spell_message_name
 from archgen.model.element_ids import make_id
 from archgen.model.generic_names import read_generic_name
@@ -21,7 +21,7 @@ _UNDECLARED = (f"{OWN_PREFIX}name.", f"{OWN_PREFIX}choices.")
 _MESSAGE = re.compile(r"[a-zA-Z][a-zA-Z0-9_]*(?:/msg)?/[A-Z][A-Za-z0-9_]*\Z")
 
 
-class DataTypes:
+class UmlDataTypes:
     """Makes the section `types`. Nothing else than the file says: a type with a field of unknown type has no fields."""
 
     def __init__(self, index: UmlIndex, ledger: ImportLedger, elements: Iterable[XmlElement]) -> None:
@@ -36,10 +36,10 @@ class DataTypes:
                 continue
             if not name or name in self._elements:
                 why = "there is another one of this name" if name else "it has no name"
-                ledger.leave(element, f"{call(element)} is not taken: {why}")
+                ledger.leave(element, f"{name_element(element)} is not taken: {why}")
                 continue
             self._elements[name] = element
-            for signature in list_children(element, *SIGNATURE_KINDS):
+            for signature in list_child_elements(element, *SIGNATURE_KINDS):
                 self._read_signature(name, signature)
         self._valueless: set[str] = set()
         self._fields = {name: self._read_fields(name, each) for name, each in self._elements.items()}
@@ -58,7 +58,7 @@ class DataTypes:
     def _read_fields(self, type_name: str, element: XmlElement) -> dict[str, dict[str, object]] | None:
         """Return the fields of a type; None where it has none, or one whose type is not known."""
         fields: dict[str, dict[str, object]] = {}
-        children = list_children(element, "Property")
+        children = list_child_elements(element, "Property")
         for child in children:
             name = make_id(get_name(child), "field") if get_name(child) else ""
             written = uml_values.find_type_name(self._index, child)
@@ -92,7 +92,7 @@ class DataTypes:
         """Leave out fields and values of types after which no message can be called, or whose message another one has."""
         first_types: dict[str, str] = {}
         for name, element in self._elements.items():
-            literals = list_children(element, "EnumerationLiteral") if _is_enumeration(element) else []
+            literals = list_child_elements(element, "EnumerationLiteral") if _is_enumeration(element) else []
             if not self._fields[name] and not literals:
                 continue
             message = spell_message_name(name, {})
@@ -145,7 +145,7 @@ class DataTypes:
     def _drop_fields(self, name: str, reason: str) -> None:
         self._fields[name] = None
         element = self._elements[name]
-        properties = list_children(element, "Property")
+        properties = list_child_elements(element, "Property")
         self._ledger.leave(properties[0], f"the fields of `{name[:80]}` are not taken: {reason}", others=properties[1:])
 
     def make_types(self) -> dict[str, object]:
@@ -158,7 +158,7 @@ class DataTypes:
             if _is_enumeration(element) and name not in self._valueless:
                 body |= self._write_values(element)
             elif fields := self._fields[name]:
-                for child in list_children(element, "Property"):
+                for child in list_child_elements(element, "Property"):
                     self._ledger.take(child)
                 body["fields"] = {key: each if len(each) > 1 else each["type"] for key, each in fields.items()}
             texts = read_description(self._index, self._ledger, element)
@@ -169,7 +169,9 @@ class DataTypes:
         return section
 
     def _write_values(self, element: XmlElement) -> dict[str, object]:
-        values = [make_id(get_name(each), "value").upper() for each in list_children(element, "EnumerationLiteral")]
+        values = [
+            make_id(get_name(each), "value").upper() for each in list_child_elements(element, "EnumerationLiteral")
+        ]
         if len(set(values)) != len(values):
             self._ledger.leave(element, f"the values of `{get_name(element)[:80]}` are not taken: two have one name")
             return {}

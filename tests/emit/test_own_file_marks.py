@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.emit.written_formats import PACKED_HEADER, explain_refusal, name_written_format
+from archgen.emit.own_file_marks import PACKED_HEADER, explain_refusal, name_written_format
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from typing import Any
 from archgen.diagnostics.source_span import Span
 from archgen.importers.foreign.bounded_files import read_bounded
 from archgen.importers.foreign.foreign_import import ForeignFileError
-from archgen.importers.launch.parameter_values import read_value_text
+from archgen.importers.launch.launch_parameter_values import read_value_text
 from archgen.link.parameter_texts import ParameterText, matches_node_name, read_parameter_text
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, YamlNode, node_to_data
 
@@ -19,7 +19,7 @@ _MAX_BYTES = 4_000_000
 MAX_OPENED_BYTES = 32_000_000
 """How much YAML launch files in Python may open altogether."""
 FILE_KIND = "parameter file"
-"""The substitution for a file among parameters: its path, the namespace of its values, and its FileChanges."""
+"""The substitution for a file among parameters: its path, the namespace of its values, and its FileRewrites."""
 
 
 class ParameterFileReader:
@@ -95,11 +95,11 @@ def read_inline_value(text: str) -> Any:  # noqa: ANN401
     return read_value_text(text)
 
 
-def merge_values(values: dict[str, Any], more: Mapping[str, Any]) -> None:
+def overlay_parameters(values: dict[str, Any], more: Mapping[str, Any]) -> None:
     """Put values over others, leaf by leaf."""
     for name, value in more.items():
         old = values.get(name)
         if isinstance(old, dict) and isinstance(value, dict):
-            merge_values(old, value)
+            overlay_parameters(old, value)
         else:
             values[name] = value

@@ -9,7 +9,7 @@ from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass
 from archgen.link import mapping_values
-from archgen.link.parameter_files import ParameterFileSearch
+from archgen.link.parameter_file_search import ParameterFileSearch
 from archgen.link.parameter_texts import ParameterText, find_node_values, read_parameter_text
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node

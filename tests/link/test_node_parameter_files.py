@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline
-from archgen.link import parameter_reading
+from archgen.checking.checked_packing import pack_checked_project
+from archgen.link import node_parameter_files
 from archgen.link.parameter_texts import matches_node_name
 from archgen.model.parameter_values import find_effective_parameters
 from archgen.syntax.yaml_writer import write_yaml
@@ -29,7 +30,7 @@ def check(folder: Path, files: Mapping[str, str]) -> pipeline.CheckedProject:
 
 
 def pack(checked: pipeline.CheckedProject) -> str:
-    packed = checked.pack_project()
+    packed = pack_checked_project(checked)
     return write_yaml(packed.data, packed.comments)
 
 
@@ -149,7 +150,7 @@ def test_a_file_that_nodes_name_is_not_said_to_be_ignored(tmp_path: Path) -> Non
 
 
 def test_what_is_read_is_bounded_and_the_bound_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(parameter_reading, "MAX_VALUES", 2)
+    monkeypatch.setattr(node_parameter_files, "MAX_VALUES", 2)
     text = "/**: {ros__parameters: {gain: 1.0, use_sim_time: true, qos_overrides: {a: 1}}}"
     checked = check(tmp_path, {"archgen.yaml": PROJECT, "config/a.yaml": text})
     assert [f"{f.severity} {f.rule}: {f.message}" for f in checked.findings if f.rule == "too-large"] == [

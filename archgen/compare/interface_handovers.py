@@ -9,7 +9,7 @@ from archgen.compare.figure_changes import BoundaryChange, FigureChange
 from archgen.compare.interface_figures import is_same_figure
 
 
-def follow_hands(changes: Iterable[BoundaryChange]) -> Iterator[BoundaryChange]:
+def join_handovers(changes: Iterable[BoundaryChange]) -> Iterator[BoundaryChange]:
     """Yield the changes; an interface that went from one partner to another, at either end, as one change."""
     return _follow_takers(_follow_givers(changes))
 

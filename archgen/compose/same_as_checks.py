@@ -10,7 +10,7 @@ _OWN_INPUT_KEYS = frozenset({"from", "external"})
 _OWN_NODE_KEYS = frozenset({"host", "namespace", "start"})
 
 
-def find_changes_of_reference(body: MappingNode, component_id: str, type_name: str) -> list[Diagnostic]:
+def find_same_as_changes(body: MappingNode, component_id: str, type_name: str) -> list[Diagnostic]:
     """Return what a reference says that its type decides."""
     changed = [entry for entry in body if entry.key not in _OWN_KEYS]
     inputs, node = body.get("inputs"), body.get("node")

@@ -9,9 +9,9 @@ from archgen.compose.expanded_project import ExpandedProject
 from archgen.derivation.derived_parts import DerivedParts
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.frozen import dataclass, replace
-from archgen.link import element_outline, named_files, parameter_reading
+from archgen.link import element_outline, named_files, node_parameter_files
 from archgen.link.link_memory import LinkMemory
-from archgen.link.parameter_reading import ReadParameters
+from archgen.link.node_parameter_files import ReadParameters
 from archgen.link.project_types import declare_project_types
 from archgen.model.architecture import Architecture
 from archgen.model.known_parts import KnownParts
@@ -64,7 +64,7 @@ def link_merged_project(merged_project: MergedProject, part_memory: PartMemory |
         is_partial=loaded_project.partial,
         memory=linked_parts,
     )
-    read_parameters = parameter_reading.read_node_parameters(
+    read_parameters = node_parameter_files.read_node_parameters(
         merged_table, linked_architecture, loaded_project.files if merged_project.is_folder else None
     )
     for path, text in read_parameters.texts.items():

@@ -8,9 +8,10 @@ from typing import Any
 from archgen.importers.aadl.aadl_tree import AadlLink, AadlList, AadlName
 from archgen.importers.aadl.archgen_words import find_own_text
 from archgen.importers.aadl.classifier_names import KnownClassifier, find_only_implementations
+from archgen.importers.aadl.classifier_shapes import ClassifierUse, ResolvedClassifier
 from archgen.importers.aadl.import_notes import NoteList
-from archgen.importers.aadl.property_values import Scope, UsedProperties, read_size, read_text, read_texts
-from archgen.importers.aadl.resolved_classifiers import UNBOUND, ClassifierResolver, Resolved, Use
+from archgen.importers.aadl.property_values import PropertyScope, UsedProperties, read_first_text, read_size, read_texts
+from archgen.importers.aadl.resolved_classifiers import UNBOUND, ClassifierResolver
 
 _ROS_PACKAGE = re.compile(r"[a-z][a-z0-9_]*_(?:msgs|srvs|interfaces|actions)\Z")
 _ROS_NAME = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
@@ -38,7 +39,7 @@ _KEEPING_CLASSIFIERS = frozenset({"internal_state", "tf"})
 """Data of the library of components: they are hints of who has them, and no types."""
 
 
-class DataTypes:
+class AadlDataTypes:
     """The types of a model; each gets its name when it is first asked for."""
 
     def __init__(self, resolver: ClassifierResolver, notes: NoteList, used: UsedProperties) -> None:
@@ -49,7 +50,7 @@ class DataTypes:
         self._taken_names: set[str] = set()
         self._only_implementations = find_only_implementations(resolver.names)
 
-    def name_use(self, use: Use, kind: str = "msg") -> str:
+    def name_use(self, use: ClassifierUse, kind: str = "msg") -> str:
         """Return the name of the type of a port; nothing where it has none."""
         if not use.name or use.category == UNBOUND:
             return ""
@@ -85,32 +86,40 @@ class DataTypes:
                 self._name_known(known, "msg")
         return count
 
-    def _is_part(self, known: KnownClassifier | None) -> bool:
+    def _is_part(self, known_classifier: KnownClassifier | None) -> bool:
         """Whether an export of archgen's wrote data as the request or the answer of a call: the message says it."""
-        resolved = self._resolver.resolve(Use(known.full_name, known)) if known else None
-        return resolved is not None and bool(find_own_text(Scope(self._resolver, self._used, resolved), (), "part_of"))
+        resolved = (
+            self._resolver.resolve(ClassifierUse(known_classifier.full_name, known_classifier))
+            if known_classifier
+            else None
+        )
+        return resolved is not None and bool(
+            find_own_text(PropertyScope(self._resolver, self._used, resolved), (), "part_of")
+        )
 
-    def _is_shadowed(self, known: KnownClassifier) -> bool:
+    def _is_shadowed(self, known_classifier: KnownClassifier) -> bool:
         """Whether a type is told by its only implementation."""
-        return known.key in self._only_implementations
+        return known_classifier.key in self._only_implementations
 
-    def _name_known(self, known: KnownClassifier, kind: str) -> str:
+    def _name_known(self, known_classifier: KnownClassifier, kind: str) -> str:
         # A type and its only implementation are one: it has the fields of the implementation.
-        known = self._only_implementations.get(known.key, known)
-        key = known.key
+        known_classifier = self._only_implementations.get(known_classifier.key, known_classifier)
+        key = known_classifier.key
         type_key = key.partition(".")[0]
-        is_only = self._only_implementations.get(type_key) is known
+        is_only = self._only_implementations.get(type_key) is known_classifier
         if key in self._names:
             return self._names[key]
-        resolved = self._resolver.resolve(Use(known.full_name, known)) or Resolved(known)
-        scope = Scope(self._resolver, self._used, resolved)
+        resolved = self._resolver.resolve(
+            ClassifierUse(known_classifier.full_name, known_classifier)
+        ) or ResolvedClassifier(known_classifier)
+        scope = PropertyScope(self._resolver, self._used, resolved)
         own_kind = find_own_text(scope, (), "flow_kind") or kind
-        own_message = find_own_text(scope, (), "message_name") or _make_message(known.full_name, own_kind)
-        name = find_own_text(scope, (), "id") or known.classifier.name.partition(".")[0]
-        if known.classifier.is_implementation and not is_only:
-            name = known.classifier.name.replace(".", " ")
+        own_message = find_own_text(scope, (), "message_name") or _make_message(known_classifier.full_name, own_kind)
+        name = find_own_text(scope, (), "id") or known_classifier.classifier.name.partition(".")[0]
+        if known_classifier.classifier.is_implementation and not is_only:
+            name = known_classifier.classifier.name.replace(".", " ")
         if name in self._taken_names:
-            name = f"{name} ({known.package.name.replace('::', ' ')})"[:200]
+            name = f"{name} ({known_classifier.package.name.replace('::', ' ')})"[:200]
         self._names[key] = name
         body = self._describe(resolved, scope, kind)
         if own_message and not body:
@@ -120,17 +129,17 @@ class DataTypes:
         message = own_message or _find_message(resolved, own_kind)
         body = {**({"message": message} if message else {}), **body}
         self._taken_names.add(name)
-        if known.package.name.lower() not in _BASE_PACKAGES:
-            self._add_type(known, name, body)
+        if known_classifier.package.name.lower() not in _BASE_PACKAGES:
+            self._add_type(known_classifier, name, body)
         return name
 
-    def _add_type(self, known: KnownClassifier, name: str, body: dict[str, Any]) -> None:
+    def _add_type(self, known_classifier: KnownClassifier, name: str, body: dict[str, Any]) -> None:
         if not self._resolver.names.is_own:
             hints = body.get("hints", {}).get("aadl", {})
-            body = {**body, "hints": {"aadl": {"classifier": known.full_name, **hints}}}
+            body = {**body, "hints": {"aadl": {"classifier": known_classifier.full_name, **hints}}}
         self.types[name] = body
 
-    def _describe(self, resolved: Resolved, scope: Scope, kind: str) -> dict[str, Any]:
+    def _describe(self, resolved: ResolvedClassifier, scope: PropertyScope, kind: str) -> dict[str, Any]:
         body: dict[str, Any] = {}
         for key, word in (("comment", "description"), ("status", "status"), ("version", "version")):
             if text := find_own_text(scope, (), word):
@@ -148,11 +157,11 @@ class DataTypes:
         hints: dict[str, Any] = {}
         if texts := read_texts(scope.value((), "source_text")):
             hints["source_text"] = texts
-        if text := read_text(scope.value((), "source_name")):
+        if text := read_first_text(scope.value((), "source_name")):
             hints["source_name"] = text
         return {**body, "hints": {"aadl": hints}} if hints else body
 
-    def _describe_call(self, resolved: Resolved) -> dict[str, Any]:
+    def _describe_call(self, resolved: ResolvedClassifier) -> dict[str, Any]:
         if self._resolver.names.is_own:
             return self._read_call_parts(resolved)
         parts: dict[str, dict[str, Any]] = {"request": {}, "response": {}}
@@ -164,7 +173,7 @@ class DataTypes:
                         parts[part][_fold_field_name(port.written.name)] = name
         return {key: value for key, value in parts.items() if value} and parts
 
-    def _read_call_parts(self, resolved: Resolved) -> dict[str, Any]:
+    def _read_call_parts(self, resolved: ResolvedClassifier) -> dict[str, Any]:
         """Return what an export of archgen's says of the parts of a call: their fields, or a type."""
         parts: dict[str, Any] = {}
         for name, port in resolved.ports.items():
@@ -174,18 +183,18 @@ class DataTypes:
             content = self._only_implementations.get(known.key)
             if not self._is_part(known):
                 parts[_CALL_PARTS[name]] = self.name_use(port.use)
-            elif content and (data := self._resolver.resolve(Use(content.full_name, content))):
-                parts[_CALL_PARTS[name]] = self._read_fields(data, Scope(self._resolver, self._used, data))
+            elif content and (data := self._resolver.resolve(ClassifierUse(content.full_name, content))):
+                parts[_CALL_PARTS[name]] = self._read_fields(data, PropertyScope(self._resolver, self._used, data))
         return parts
 
-    def _read_enumerators(self, scope: Scope) -> list[str]:
+    def _read_enumerators(self, scope: PropertyScope) -> list[str]:
         value = scope.value((), "data_model::data_representation")
         if not (isinstance(value, AadlName) and value.name.lower() == "enum"):
             return []
         words = [re.sub(r"\W", "_", text).upper() for text in read_texts(scope.value((), "data_model::enumerators"))]
         return list(dict.fromkeys(word for word in words if word and word[0].isalpha()))
 
-    def _read_fields(self, resolved: Resolved, scope: Scope) -> dict[str, Any]:
+    def _read_fields(self, resolved: ResolvedClassifier, scope: PropertyScope) -> dict[str, Any]:
         fields: dict[str, Any] = {}
         for name, part in resolved.parts.items():
             if part.category != "data":
@@ -210,7 +219,7 @@ class DataTypes:
                 fields = {_fold_field_name(name): self._name_field(use) for name, use in zip(names, uses, strict=True)}
         return {name: type_name for name, type_name in fields.items() if type_name}
 
-    def _name_field(self, use: Use) -> str:
+    def _name_field(self, use: ClassifierUse) -> str:
         """Return the type of a field: one of ROS where the model has one of its own base types."""
         if use.category == UNBOUND:
             return use.name
@@ -230,12 +239,12 @@ class DataTypes:
         return type_name
 
 
-def _is_library_data(known: KnownClassifier) -> bool:
-    name = known.classifier.name.lower().partition(".")[0]
-    return known.package.name.lower() in _BASE_PACKAGES or name in _KEEPING_CLASSIFIERS or known.is_of_library
+def _is_library_data(classifier: KnownClassifier) -> bool:
+    name = classifier.classifier.name.lower().partition(".")[0]
+    return classifier.package.name.lower() in _BASE_PACKAGES or name in _KEEPING_CLASSIFIERS or classifier.is_of_library
 
 
-def _find_message(resolved: Resolved, kind: str) -> str:
+def _find_message(resolved: ResolvedClassifier, kind: str) -> str:
     """Return the message of ROS that a type is made from, or nothing."""
     entries = (resolved.known, *resolved.ancestors)
     # What is in none of the files is told by its name.

@@ -8,12 +8,12 @@ from typing import Any
 
 from archgen.importers.launch.launch_actions import LaunchCondition
 from archgen.importers.launch.launch_context import LaunchContext
+from archgen.importers.launch.launch_parameter_values import CommandWords, evaluate_parameter, read_value_text
 from archgen.importers.launch.launch_values import LaunchValue, UnknownValue
-from archgen.importers.launch.parameter_values import CommandWords, evaluate_parameter, read_value_text
 
 
 @dataclass(slots=True, eq=False)
-class FileChanges:
+class FileRewrites:
     """Values by the names of parameters, and texts that are put in the place of others, under a condition."""
 
     values: Mapping[LaunchValue, LaunchValue] = field(default_factory=dict)

@@ -1,0 +1,102 @@
+"""The ways of a chain on which data takes longest or shortest, and what they bound."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from typing import NamedTuple
+
+from archgen.timing.chains import chain_regions
+from archgen.timing.chains.cost_network import CostNetwork, PathAim
+from archgen.timing.chains.path_search import CostedPath, PathSet, find_paths
+from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
+from archgen.timing.figures.value_arithmetic import (
+    is_boundless,
+    is_known_bound,
+    sum_bounds,
+)
+from archgen.timing.system.timing_system import Arc
+
+
+class ExtremePath(NamedTuple):
+    """The extreme path of a route: in which view of the network, and what it bounds all paths by."""
+
+    view: CostNetwork
+    path: CostedPath
+    value: TimingValue
+
+
+def find_aimed_paths(network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], aim: PathAim) -> PathSet:
+    """Return the paths of a route, with the extreme one for an aim first."""
+    graph, start_costs = network.cost_graph(aim)
+    return find_paths(graph, start_costs, regions, longest=aim != "best")
+
+
+def find_extreme_value(network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], aim: PathAim) -> TimingValue:
+    """Return the extreme figure of a route for an aim."""
+    extreme_path = find_extreme_path(network, regions, aim)
+    return extreme_path.value if extreme_path else UNKNOWN_VALUE
+
+
+def find_extreme_path(
+    network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], aim: PathAim
+) -> ExtremePath | None:
+    """Return the extreme path of a route for an aim, in the view of the network in which it bounds best."""
+    if not regions:
+        return None
+    extreme_paths: list[ExtremePath] = []
+    for view in network.list_views() if aim != "best" else (network,):
+        path_set = find_aimed_paths(view, regions, aim)
+        path = next(path_set.best_paths(), None)
+        if path is None:
+            return None
+        extreme_paths.append(ExtremePath(view, path, _bound_path_set(view, path_set, path, aim)))
+    return min(extreme_paths, key=_bound_order)
+
+
+def _bound_order(extreme_path: ExtremePath) -> tuple[bool, bool, Fraction, bool]:
+    """Sort key: known bounds before sums with gaps, these before what has no bound; the smallest first.
+
+    Of equal ones that by runs: where a step elsewhere loses its bound, the terms of all others stay what they were.
+    """
+    view, _, bound = extreme_path
+    return is_boundless(bound), not is_known_bound(bound), bound.value or Fraction(0), not view.by_runs
+
+
+def sum_path(network: CostNetwork, path: CostedPath, aim: PathAim) -> TimingValue:
+    """Return the sum of a path's costs for an aim."""
+    cost_values = list(network.start_costs(network.names[path.start], aim))
+    for arc_index in path.arcs:
+        cost_values += network.step_costs(network.arcs[arc_index], aim)
+    return sum_bounds(cost_values, "at least" if aim == "best" else "at most")
+
+
+def _bound_path_set(network: CostNetwork, path_set: PathSet, path: CostedPath, aim: PathAim) -> TimingValue:
+    """Return the extreme path's sum; it bounds all paths only where the costs of the others are known too."""
+    value = sum_path(network, path, aim)
+    if path_set.cut_arcs:
+        value = replace(
+            value,
+            assumptions=(
+                *value.assumptions,
+                _cut_arcs_text([network.arcs[arc_index] for arc_index in path_set.cut_arcs]),
+            ),
+        )
+    if aim == "best" or path_set.path_count == 1 or is_boundless(value):
+        return value
+    # Costs of unknown figures count as 0 in the network, so that a path with a gap may seem shorter than it is: if any
+    # arc on any path lacks a figure, the bound is open.
+    other_costs = sum_bounds(
+        [part for arc_index in path_set.arcs_on_paths() for part in network.step_costs(network.arcs[arc_index], aim)]
+    )
+    if other_costs.complete:
+        return value
+    missing = tuple(dict.fromkeys((*value.missing, *other_costs.missing)))
+    return replace(value, complete=False, missing=missing, side="at least")
+
+
+def _cut_arcs_text(arcs: Sequence[Arc]) -> str:
+    pairs = [f"{arc.source} > {arc.target}" for arc in arcs[:3]]
+    more_text = f" and {len(arcs) - 3} more" if len(arcs) > 3 else ""  # noqa: PLR2004 - as many as are named
+    return f"the loops are large: ways that go back along {', '.join(pairs)}{more_text} are left out"

@@ -1,0 +1,94 @@
+"""Processing resources taken apart: what shares no work can be analysed by itself."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+
+from archgen.frozen import replace
+from archgen.timing.system.core_placement import ProcessingResource
+from archgen.timing.system.core_sets import ThreadUnit
+from archgen.timing.system.thread_pools import (
+    ThreadPool,
+    find_crowded_pools,
+    is_reentrant,
+)
+from archgen.timing.system.timing_system import TimingSystem
+
+
+def split_resources(system: TimingSystem, resource_list: Iterable[ProcessingResource]) -> Iterator[ProcessingResource]:
+    """Yield the parts of resources whose responses are found at once."""
+    for resource in resource_list:
+        for part in divide_resource(system, resource):
+            yield from part_waiting_units(system, part)
+
+
+def divide_resource(system: TimingSystem, resource: ProcessingResource) -> Iterable[ProcessingResource]:
+    """Yield one core for each thread where there are cores enough for all of them, else the resource as it is.
+
+    A process of which members wait for threads has as many cores as threads.
+    """
+    if resource.cores == 1 or resource.joined or resource.foreign_units:
+        return (resource,)
+    members = [system.activities[name] for name in resource.members]
+    crowded_pools = find_crowded_pools(system, members)
+    if any(is_reentrant(system, activity) and activity.id not in crowded_pools for activity in members):
+        return (resource,)  # as many threads as are asked for
+    units_by_pool: dict[ThreadPool, list[ThreadUnit]] = defaultdict(list)
+    for unit in resource.units:
+        if unit[0] in crowded_pools:
+            units_by_pool[crowded_pools[unit[0]]].append(unit)
+    lone_units = [unit for unit in resource.units if unit[0] not in crowded_pools]
+    if len(lone_units) + sum(pool.threads or 0 for pool in units_by_pool) > resource.cores:
+        return (resource,)
+    return (
+        *(replace(resource, cores=1, units=(unit,), undisturbed=True) for unit in lone_units),
+        *(replace(resource, cores=pool.threads or 1, units=tuple(units)) for pool, units in units_by_pool.items()),
+    )
+
+
+def part_waiting_units(system: TimingSystem, resource: ProcessingResource) -> Iterable[ProcessingResource]:
+    """Yield a part for each thread that waits for resources, and one for all others; the resource where none waits."""
+    is_waiting = any(
+        system.activities[name].uses for unit in (*resource.units, *resource.foreign_units) for name in unit
+    )
+    waiting_units = tuple(_find_waiting_units(system, resource)) if is_waiting else ()
+    if not waiting_units or resource.missing:
+        yield resource
+        return
+    waiting_ids = {name for unit in waiting_units for name in unit}
+    other_units = tuple(unit for unit in resource.units if unit[0] not in waiting_ids)
+    if other_units:
+        yield replace(
+            resource,
+            units=other_units,
+            foreign_units=(*resource.foreign_units, *waiting_units),
+            roaming_units=(*resource.roaming_units, *waiting_units),
+            neighbour_units=waiting_units,
+        )
+    for unit in waiting_units:
+        neighbours = (*other_units, *(other_unit for other_unit in waiting_units if other_unit != unit))
+        yield replace(
+            resource,
+            units=(unit,),
+            foreign_units=(*resource.foreign_units, *neighbours),
+            neighbour_units=neighbours,
+            waits=True,
+        )
+
+
+def _find_waiting_units(system: TimingSystem, resource: ProcessingResource) -> Iterable[ThreadUnit]:
+    """Yield the units that wait for resources; those of a process with too few threads wait for one another."""
+    all_members = [system.activities[name] for unit in (*resource.units, *resource.foreign_units) for name in unit]
+    crowded_pools = find_crowded_pools(system, all_members)
+    waiting_pools = {
+        crowded_pools[activity.id] for activity in all_members if activity.uses and activity.id in crowded_pools
+    }
+    crowds: dict[ThreadPool, list[str]] = {}
+    for unit in resource.units:
+        pool = crowded_pools.get(unit[0])
+        if pool is not None and pool in waiting_pools:
+            crowds.setdefault(pool, []).extend(unit)
+        elif any(system.activities[name].uses for name in unit):
+            yield unit
+    yield from (tuple(names) for names in crowds.values())
