@@ -12,8 +12,9 @@ import pytest
 import yaml
 
 from archgen import pipeline
-from archgen.compare import ArchitectureVersion, Change, Comparison, compare_versions
-from archgen.products.compared_versions import make_comparison_input
+from archgen.compare import ArchitectureVersion, Change, Comparison
+from archgen.compare.compare_versions import compare_versions
+from archgen.products.comparison_input import make_comparison_input
 from archgen.syntax import yaml_writer as writer
 from tests.judged_projects import judge_ramcip
 from tests.running import RAMCIP
