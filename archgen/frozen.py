@@ -34,10 +34,12 @@ else:
             copier = _COPIERS[instance.__class__] = _make_copier(instance.__class__)
         copy_fields, setters = copier
         # What has no quick way, or no such field, is left to the standard library, which says what is wrong.
-        if copy_fields is None or not setters.keys() >= changes.keys():
+        if copy_fields is None:
             return dataclasses.replace(instance, **changes)
         copy = copy_fields(instance)
         for name, value in changes.items():
+            if name not in setters:
+                return dataclasses.replace(instance, **changes)
             setters[name](copy, value)
         return copy
 
