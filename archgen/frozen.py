@@ -1,7 +1,8 @@
 """Frozen dataclasses with slots whose classes are made in a third of the time, and their objects in a third to two thirds.
 
 Until Python 3.13 the standard library compiles six methods for each class on import: with a hundred classes that was a
-quarter of a short run. Here only `__init__` is compiled, and fills the slots directly; the other methods are shared.
+quarter of a short run. Here only `__init__` is compiled, once for all classes of one shape, and fills the slots directly;
+the other methods are shared.
 To type checkers, and in everything that the project relies on (`fields`, `replace`, equality, hashes, pickles), it is
 `dataclasses.dataclass`. Measurements and rejected ways: docs/decisions/0004-frozen.md. Once Python 3.13 is the oldest
 supported version, measure again: this file may then go.
@@ -10,7 +11,9 @@ supported version, measure again: this file may then go.
 from __future__ import annotations
 
 import dataclasses
+from functools import cache
 from operator import attrgetter
+from types import CodeType, FunctionType
 from typing import TYPE_CHECKING, Any
 
 __all__ = ["dataclass", "replace"]
@@ -31,10 +34,12 @@ else:
             copier = _COPIERS[instance.__class__] = _make_copier(instance.__class__)
         copy_fields, setters = copier
         # What has no quick way, or no such field, is left to the standard library, which says what is wrong.
-        if copy_fields is None or not setters.keys() >= changes.keys():
+        if copy_fields is None:
             return dataclasses.replace(instance, **changes)
         copy = copy_fields(instance)
         for name, value in changes.items():
+            if name not in setters:
+                return dataclasses.replace(instance, **changes)
             setters[name](copy, value)
         return copy
 
@@ -49,7 +54,7 @@ def _make_frozen(cls: type) -> type:
     fields = dataclasses.fields(frozen_class)
     compared_names = [field.name for field in fields if field.compare]
     methods = {
-        "__init__": _compile_init(frozen_class, fields),
+        "__init__": _make_init(frozen_class, fields),
         "__repr__": _make_repr([field.name for field in fields if field.repr]),
         **_make_equality(attrgetter(*compared_names) if compared_names else lambda _: ()),
         "__setattr__": _refuse_assignment,
@@ -64,33 +69,67 @@ def _make_frozen(cls: type) -> type:
     return frozen_class
 
 
-def _compile_init(frozen_class: type, fields: tuple[dataclasses.Field[Any], ...]) -> Any:  # noqa: ANN401 - a method of any class
-    """Compile `__init__`, with the signature that the standard library would give it."""
+def _make_init(frozen_class: type, fields: tuple[dataclasses.Field[Any], ...]) -> Any:  # noqa: ANN401 - a method of any class
+    """Make `__init__`, with the signature that the standard library would give it.
+
+    Classes of the same shape share what was compiled, with other names: to compile takes ten times as long.
+    """
     open_class = _make_open_class(frozen_class) if len(fields) >= _MIN_OPEN_FIELDS else None
+    given = sorted((field for field in fields if field.init), key=attrgetter("kw_only"))
     namespace: dict[str, Any] = {"absent": _NO_VALUE, "open_class": open_class, "frozen_class": frozen_class}
     namespace["set_class"] = _SET_CLASS
-    positional, keywords, body = ["self"], ["*"], []
-    for field in fields:
+    defaults: dict[str, Any] = {}
+    made_places: list[int] = []
+    for at, field in enumerate(given):
         # The slots' own setters are called directly: they bypass the frozen `__setattr__`, and unlike
         # `object.__setattr__`, which the standard library's frozen classes call, need not look up the slot by its name.
-        namespace[f"set_{field.name}"] = frozen_class.__dict__[field.name].__set__
-        if not field.init:
-            continue
-        default, value = "", field.name
+        namespace[f"set_{at}"] = frozen_class.__dict__[field.name].__set__
         if field.default is not dataclasses.MISSING:
-            namespace[f"default_{field.name}"], default = field.default, f"=default_{field.name}"
+            defaults[field.name] = field.default
         elif field.default_factory is not dataclasses.MISSING:
-            namespace[f"make_{field.name}"], default = field.default_factory, "=absent"
-            value = f"make_{field.name}() if {field.name} is absent else {field.name}"
-        (keywords if field.kw_only else positional).append(field.name + default)
-        body.append(f" self.{field.name} = {value}" if open_class else f" set_{field.name}(self, {value})")
-    if open_class:
+            namespace[f"make_{at}"], defaults[field.name] = field.default_factory, _NO_VALUE
+            made_places.append(at)
+    positional = [field.name for field in given if not field.kw_only]
+    late_names = [name for name in positional if name in defaults]
+    if late_names != positional[len(positional) - len(late_names) :]:
+        message = f"{frozen_class.__name__}: a field without a default follows one that has one"
+        raise TypeError(message)
+    has_end = hasattr(frozen_class, "__post_init__")
+    code = _compile_init(
+        len(positional), len(given), tuple(made_places), is_open=open_class is not None, has_end=has_end
+    )
+    names = {f"field_{at}": field.name for at, field in enumerate(given)}
+    code = code.replace(
+        co_varnames=tuple([names.get(name, name) for name in code.co_varnames]),
+        co_names=tuple([names.get(name, name) for name in code.co_names]),
+    )
+    init = FunctionType(code, namespace, "__init__", tuple([defaults.pop(name) for name in late_names]))
+    init.__kwdefaults__ = defaults
+    return init
+
+
+@cache
+def _compile_init(
+    positional_count: int, count: int, made_places: tuple[int, ...], *, is_open: bool, has_end: bool
+) -> CodeType:
+    """Compile an `__init__` of fields that are called `field_0`, `field_1`, ...; some are made unless they are given."""
+    names = [f"field_{at}" for at in range(count)]
+    values = [
+        f"make_{at}() if {name} is absent else {name}" if at in made_places else name for at, name in enumerate(names)
+    ]
+    if is_open:
+        body = [f" self.{name} = {value}" for name, value in zip(names, values, strict=True)]
         body = [" set_class(self, open_class)", *body, " set_class(self, frozen_class)"]
-    if hasattr(frozen_class, "__post_init__"):
+    else:
+        body = [f" set_{at}(self, {value})" for at, value in enumerate(values)]
+    if has_end:
         body.append(" self.__post_init__()")
-    parameters = ", ".join(positional + (keywords if len(keywords) > 1 else []))
-    exec(f"def __init__({parameters}):\n" + "\n".join(body or [" pass"]), namespace)  # noqa: S102 - of field names only
-    return namespace["__init__"]
+    keywords = ["*", *names[positional_count:]] if count > positional_count else []
+    parameters = ", ".join(["self", *names[:positional_count], *keywords])
+    namespace: dict[str, Any] = {}
+    exec(f"def __init__({parameters}):\n" + "\n".join(body or [" pass"]), namespace)  # noqa: S102 - of numbers only
+    code: CodeType = namespace["__init__"].__code__
+    return code
 
 
 _SET_CLASS: Any = object.__dict__["__class__"].__set__

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import dataclasses
+import inspect
 import pickle
 from dataclasses import field
 from typing import Any
@@ -146,3 +147,46 @@ def test_a_copy_is_frozen_as_well() -> None:
 def test_a_copy_has_no_field_that_its_class_lacks() -> None:
     with pytest.raises(TypeError, match="unexpected keyword argument 'column'"):
         replace(Place("a"), column=2)  # type: ignore[call-arg]
+
+
+@dataclass(frozen=True, slots=True)
+class Size:
+    """One of a shape that `Offset` has as well."""
+
+    width: int
+    height: int = 1
+    marks: list[str] = field(default_factory=list)
+    unit: str = field(default="m", kw_only=True)
+
+
+@dataclass(frozen=True, slots=True)
+class Offset:
+    """One whose names are those of other fields of the shape."""
+
+    height: int
+    width: int = 2
+    labels: set[str] = field(default_factory=set)
+    field_0: str = field(default="n", kw_only=True)
+
+
+def test_classes_of_one_shape_keep_their_own_names_and_defaults() -> None:
+    assert Size.__init__.__code__.co_code == Offset.__init__.__code__.co_code
+    assert repr(Size(3)) == "Size(width=3, height=1, marks=[], unit='m')"
+    assert repr(Offset(3)) == "Offset(height=3, width=2, labels=set(), field_0='n')"
+    assert repr(Offset(width=5, height=4, field_0="k")) == "Offset(height=4, width=5, labels=set(), field_0='k')"
+    assert str(inspect.signature(Named)) == "(name)"
+    with pytest.raises(TypeError, match="unexpected keyword argument 'unit'"):
+        Offset(1, unit="m")  # type: ignore[call-arg]
+    with pytest.raises(TypeError, match=r"missing 1 required positional argument: 'height'"):
+        Offset()  # type: ignore[call-arg]
+
+
+def test_a_field_without_a_default_stands_before_those_that_have_one() -> None:
+    class Wrong:
+        """One that nobody could make by position."""
+
+        first: int = 1
+        second: int
+
+    with pytest.raises(TypeError, match="Wrong: a field without a default follows one that has one"):
+        dataclass(frozen=True, slots=True)(Wrong)

@@ -79,3 +79,10 @@ def test_the_baseline_is_written_without_ruamel(tmp_path: Path) -> None:
 def test_a_new_project_is_written_by_ruamel(tmp_path: Path) -> None:
     (tmp_path / "t.csv").write_text("Group,Component\narm,grip\n", encoding="utf-8")
     assert "ruamel.yaml" in imported_modules(tmp_path, "init", "robot", "--from", "t.csv", "--yes")
+
+
+def test_a_site_that_is_compared_with_nothing_imports_no_comparison(tmp_path: Path) -> None:
+    modules = imported_modules(tmp_path, "site", str(ROOT / "examples/first_robot"), "-o", "out")
+    assert (tmp_path / "out/index.html").exists()
+    rooms = ("archgen.compare", "archgen.views.changes", "archgen.timing.search")
+    assert [name for name in modules if name.startswith(rooms)] == []

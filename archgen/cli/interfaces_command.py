@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from archgen.pipeline import CheckedProject
     from archgen.products.agreement_documents import AgreementFormat
     from archgen.products.compared_versions import ProjectVersion
-    from archgen.views.agreement import PartnerAgreement
+    from archgen.views.agreement.partner_agreement import PartnerAgreement
 
 _AGREEMENT_FORMATS = ("markdown", "html", "docx")
 

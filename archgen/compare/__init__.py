@@ -2,11 +2,11 @@
 
 `kinds` says what elements of each kind have. `match_elements` pairs renamed and moved elements first, `element_listing`
 lists both versions in normal form under common ids, and every difference then is a change (`difference_finder`), described by `change_sentences` with its
-effects on connections (`connection_maps`). `edits` says which changes are one item to people.
+effects on connections (`connection_maps`). `change_listing` stops there; `compare_versions` goes on to what they break. `edits` says which
+changes are one item to people.
 """
 
 from archgen.compare.architecture_version import ArchitectureVersion
-from archgen.compare.compare_versions import compare_versions, list_changes
 from archgen.compare.comparison import ChainChange, Change, Comparison, PartnerBreak
 
 __all__ = [
@@ -15,6 +15,4 @@ __all__ = [
     "Change",
     "Comparison",
     "PartnerBreak",
-    "compare_versions",
-    "list_changes",
 ]

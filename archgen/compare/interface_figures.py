@@ -17,7 +17,8 @@ from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, Qos
 from archgen.model.partner_interfaces import PartnerInterface, list_givers
 from archgen.model.ros_distro import is_ros_1
-from archgen.timing.analysis import Analysis, EventPace, TopicLoad
+from archgen.timing.analysis import Analysis, TopicLoad
+from archgen.timing.endpoint_paces import find_pace
 from archgen.timing.figures.figure_wording import name_unknown_reason
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
 from archgen.timing.rates.link_traffic import find_topic_loads
@@ -149,12 +150,6 @@ class FigureReader:
 
     def _activity_of(self, endpoint: Endpoint) -> str:
         return activity_builder.activity_of_endpoint(self._activity_names, endpoint)
-
-
-def find_pace(analysis: Analysis, activity_names: activity_builder.ActivityNames, endpoint: Endpoint) -> EventPace:
-    """Return how often something is published at an endpoint."""
-    activity = activity_builder.activity_of_endpoint(activity_names, endpoint)
-    return analysis.outputs.get((activity, activity_builder.endpoint_key(endpoint)), EventPace(None))
 
 
 def is_same_figure(name: str, before: ComparedFigure | None, after: ComparedFigure | None) -> bool:

@@ -6,6 +6,7 @@ import hashlib
 import re
 import unicodedata
 from collections.abc import Iterable
+from functools import lru_cache
 
 MAX_PART_LENGTH = 100
 """Characters that one part of a path may have: a third of what file systems take, so that folders can nest."""
@@ -53,6 +54,7 @@ def explain_long_path(path: str) -> str:
     )
 
 
+@lru_cache(65536)  # asked of each file of a site, and of each in its manifest
 def is_safe_path(path: str) -> bool:
     """Return whether a path stays below its folder and means the same file on every system."""
     parts = path.split("/")

@@ -13,6 +13,7 @@ from archgen.emit import file_tree
 from archgen.emit.picture import Picture
 from archgen.git.project_revision import find_revision, find_revision_date
 from archgen.link.timing_overrides import apply_overrides
+from archgen.model.partner_interfaces import find_interfaces_between
 from archgen.pipeline import CheckedProject
 from archgen.products import project_views, signed_agreements
 from archgen.products.compared_versions import ProjectVersion
@@ -23,8 +24,8 @@ from archgen.timing.chains.measured_comparison import Observation
 from archgen.timing.search.chain_budgets import MAX_SHARE_TRIES, SharedBudget, UnknownBudgetError, share_chain_budget
 from archgen.timing.search.change_trials import ChangeTrials
 from archgen.views import inline_text
-from archgen.views.agreement import PartnerAgreement, find_interfaces_between, make_agreement
 from archgen.views.agreement.budget_section import BudgetFinder
+from archgen.views.agreement.partner_agreement import PartnerAgreement, make_agreement
 from archgen.views.graph_shapes import Graph
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Paragraph, Section

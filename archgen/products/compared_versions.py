@@ -7,15 +7,14 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from archgen import git, pipeline, project
-from archgen.compare import ArchitectureVersion, Comparison, compare_versions
+from archgen.compare import Comparison
+from archgen.compare.compare_versions import compare_versions
 from archgen.diagnostics.common_wording import shorten_hash
-from archgen.diagnostics.rule_options import format_percentage
 from archgen.frozen import dataclass, replace
-from archgen.link.type_pattern_linking import link_type_patterns
 from archgen.model.variant import BASE_NAME
 from archgen.pipeline import CheckedProject, VersionCache
+from archgen.products.comparison_input import make_comparison_input
 from archgen.project.project_search import find_project
-from archgen.syntax.yaml_tree import MappingNode
 
 _PATH_PREFIXES = ("./", "../", "/", "~")
 WORKING_TREE_NAME = "the working tree"
@@ -228,38 +227,3 @@ def _find_left_out_files(before: CheckedProject, after: CheckedProject) -> tuple
     later_files = after.loaded_project.files
     old_files = (*before.yaml_files, *before.loaded_project.interface_files)
     return tuple(file for file in old_files if file not in read_files and later_files.has_path(file))
-
-
-def make_comparison_input(checked_project: CheckedProject) -> ArchitectureVersion:
-    """Return what a comparison looks at."""
-    unread_files = dict.fromkeys(error.span.file for error in checked_project.reading_errors)
-    return ArchitectureVersion(
-        architecture=checked_project.architecture,
-        findings=checked_project.findings,
-        silenced_findings=checked_project.silenced_findings,
-        rule_settings={
-            **{rule: str(severity) for rule, severity in checked_project.loaded_project.rule_settings.items()},
-            **{
-                f"{rule}.{name}": format_percentage(share)
-                for rule, options in checked_project.rule_options.items()
-                for name, share in options.items()
-            },
-        },
-        chapters={path: chapter.text for path, chapter in checked_project.chapters.texts.items()},
-        chapter_order=checked_project.chapters.order,
-        # Where a project does not write them, they come from the name of its folder: that is no change of the project.
-        unnamed_keys=frozenset({"id", "title"} - _written_project_keys(checked_project)),
-        analysis=checked_project.analysis,
-        sound_files=frozenset(checked_project.yaml_files).difference(unread_files),
-        unread_files=tuple(sorted(unread_files)),
-        broken_files=checked_project.loaded_project.broken_files,
-        library_files=frozenset(checked_project.loaded_project.library_files),
-        waiting_rules=checked_project.waiting_rules,
-        type_patterns=link_type_patterns(checked_project.merged_table, checked_project.architecture),
-    )
-
-
-def _written_project_keys(checked_project: CheckedProject) -> set[str]:
-    """Return the keys that are written below `project`."""
-    project_section = checked_project.merged_table.get("project")
-    return {entry.key for entry in project_section} if isinstance(project_section, MappingNode) else set()

@@ -8,9 +8,10 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline
-from archgen.compare import Change, Comparison, compare_versions
+from archgen.compare import Change, Comparison
+from archgen.compare.compare_versions import compare_versions
 from archgen.model.architecture import Architecture
-from archgen.products.compared_versions import make_comparison_input
+from archgen.products.comparison_input import make_comparison_input
 
 Compared = Callable[[str, str], Comparison]
 ComparedFolders = Callable[[Mapping[str, str], Mapping[str, str]], Comparison]

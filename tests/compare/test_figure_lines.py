@@ -12,7 +12,7 @@ import pytest
 from archgen import resources
 from archgen.compare.figure_changes import BoundaryChange
 from archgen.emit.data.comparison_json import comparison_record
-from archgen.views.agreement import make_agreement
+from archgen.views.agreement.partner_agreement import make_agreement
 from archgen.views.changes.boundary_lines import write_boundary_lines
 from archgen.views.changes.comparison_document import describe_comparison
 from archgen.views.changes.figure_lines import write_load_lines

@@ -21,7 +21,7 @@ from archgen.products import agreement_documents
 from archgen.products.agreement_documents import PartnersError
 from archgen.products.compared_versions import read_version
 from archgen.products.output_options import OutputOptions
-from archgen.views.agreement import PartnerAgreement
+from archgen.views.agreement.partner_agreement import PartnerAgreement
 from tests import hostile
 from tests.agreeing import DUO, checked, written
 from tests.emit.docx import inspection, judges

@@ -8,8 +8,8 @@ import pytest
 
 from archgen.model.frame_sharing import find_shared_frames
 from archgen.model.partner_interfaces import find_all_interfaces
-from archgen.views.agreement import PartnerAgreement, make_agreement
 from archgen.views.agreement.interface_versions import hash_interface
+from archgen.views.agreement.partner_agreement import PartnerAgreement, make_agreement
 from archgen.views.shapes import Table
 from tests.agreeing import DUO, checked, lines, section, view
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from archgen.views.agreement import PartnerAgreement, make_agreement
+from archgen.views.agreement.partner_agreement import PartnerAgreement, make_agreement
 from tests.agreeing import checked, lines, section, view
 
 ROBOT = """\

@@ -12,8 +12,8 @@ from archgen import pipeline, resources
 from archgen.link.interface_sources import load_interfaces
 from archgen.model.partner_interfaces import find_all_interfaces, find_interfaces_between
 from archgen.products import agreement_documents
-from archgen.views.agreement import PartnerAgreement, make_agreement
 from archgen.views.agreement.message_fields import field_table, list_field_rows
+from archgen.views.agreement.partner_agreement import PartnerAgreement, make_agreement
 from archgen.views.shapes import Outline, Table
 from tests.agreeing import DUO, checked, lines, section, text, view
 from tests.judged_projects import judge_ramcip

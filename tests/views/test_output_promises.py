@@ -10,8 +10,8 @@ from archgen.diagnostics.source_span import NO_SPAN
 from archgen.model.partner_interfaces import find_interfaces_between
 from archgen.model.quantity import parse_quantity
 from archgen.timing.chains.measured_comparison import Observation
-from archgen.views.agreement import make_agreement
 from archgen.views.agreement.output_promises import list_counted_ports
+from archgen.views.agreement.partner_agreement import make_agreement
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Facts, Table
 from tests.agreeing import checked, section, text, view

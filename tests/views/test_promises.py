@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.views.agreement import make_agreement
+from archgen.views.agreement.partner_agreement import make_agreement
 from archgen.views.shapes import Facts, Table
 from tests.agreeing import checked, section, text, view
 

@@ -6,8 +6,9 @@ These are functions, not template macros: measured on 350 pages they take a quar
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import field
+from functools import lru_cache
 
 from archgen.emit.picture import Picture
 from archgen.emit.site import page_pictures, status_marks, waterfall_html
@@ -26,7 +27,6 @@ from archgen.views.sequences.sequence_charts import CHART_PREFIX
 from archgen.views.shapes import (
     Block,
     Bullets,
-    Column,
     Dashboard,
     DashboardCard,
     Facts,
@@ -182,20 +182,23 @@ class PageWriter:
         body = "\n".join(
             [self._write_row(row, anchor, openings) for row, anchor in zip(table.rows, anchors, strict=True)]
         )
+        heads = "".join([_write_head(column.title, column.align) for column in table.columns])
         return (
             f'<div class="table{" narrow" if len(table.columns) < _MIN_WIDE_COLUMNS else ""}"{self._id_attribute(table.anchor)}>\n'
             f'<div class="scroll" role="group" tabindex="0" aria-label="{caption}">\n<table>\n'
             f"<caption{' class=spoken' if hides_caption else ''}>{caption}</caption>\n"
-            f"{_write_widths(table.columns)}"
-            f"<thead><tr>{_write_heads(table.columns)}</tr></thead>\n<tbody>\n{body}\n</tbody>\n</table>\n</div>\n</div>"
+            f"{_write_widths(tuple([column.weight for column in table.columns]))}"
+            f"<thead><tr>{heads}</tr></thead>\n<tbody>\n{body}\n</tbody>\n</table>\n</div>\n</div>"
         )
 
     def _write_row(self, row: tuple[Inlines, ...], anchor: str | None, openings: Sequence[str]) -> str:
         write_run = self._write_run
         cells = "".join(
             [
-                # Most cells have one run.
-                f"{opening}{_write_sort_number(cell)}>{write_run(cell[0]) if len(cell) == 1 else self.write_inlines(cell)}</td>"
+                # Most cells have one run, without a number.
+                f"{opening}>{write_run(cell[0])}</td>"
+                if len(cell) == 1 and cell[0].sort_number is None
+                else f"{opening}{_write_sort_number(cell)}>{self.write_inlines(cell)}</td>"
                 for opening, cell in zip(openings, row, strict=True)
             ]
         )
@@ -268,21 +271,21 @@ def _write_sort_number(cell: Inlines) -> str:
     return ""
 
 
-def _write_heads(columns: Iterable[Column]) -> str:
-    return "".join(
-        [f'<th scope="col"{_ALIGNMENT_CLASS[column.align]}>{escape_html(column.title)}</th>' for column in columns]
-    )
+@lru_cache(8192)  # few columns are called anything else than those of other pages
+def _write_head(title: str, align: str) -> str:
+    return f'<th scope="col"{_ALIGNMENT_CLASS[align]}>{escape_html(title)}</th>'
 
 
-def _write_widths(columns: tuple[Column, ...]) -> str:
+@lru_cache(8192)
+def _write_widths(weights: tuple[float, ...]) -> str:
     """Return the columns' shares of the width, where they differ, as classes: a page's policy refuses style attributes.
 
     A browser takes them as hints.
     """
-    if len({column.weight for column in columns}) < 2:  # noqa: PLR2004 - one share for all
+    if len(set(weights)) < 2:  # noqa: PLR2004 - one share for all
         return ""
-    total = math.fsum([column.weight for column in columns])
+    total = math.fsum(weights)
     if not total:
         return ""
-    cols = "".join([f'<col class="p{column.weight / total * 100:.0f}">' for column in columns])
+    cols = "".join([f'<col class="p{weight / total * 100:.0f}">' for weight in weights])
     return f"<colgroup>{cols}</colgroup>\n"

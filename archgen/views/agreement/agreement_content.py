@@ -7,9 +7,10 @@ from dataclasses import field
 
 from archgen.frozen import dataclass
 from archgen.timing.search.chain_budgets import SharedBudget
+from archgen.views.agreement.interface_record import InterfaceRecord
 from archgen.views.agreement.interface_terms import partner_titles
 from archgen.views.agreement.signature_record import SignatureRecord
-from archgen.views.agreement.term_changes import AgreementChanges, InterfaceRecord
+from archgen.views.agreement.term_changes import AgreementChanges
 from archgen.views.graph_shapes import Graph
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Paragraph

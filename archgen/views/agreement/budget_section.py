@@ -10,8 +10,8 @@ from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.search.chain_budgets import PartnerShare, SharedBudget
 from archgen.views import inline_text
 from archgen.views.agreement.agreement_content import AgreementContent
+from archgen.views.agreement.interface_record import InterfaceRecord
 from archgen.views.agreement.interface_terms import partner_titles
-from archgen.views.agreement.term_changes import InterfaceRecord
 from archgen.views.shapes import Column, Inlines, Paragraph, Section, Table, Text
 from archgen.views.timing import value_format
 

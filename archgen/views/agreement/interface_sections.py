@@ -4,20 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import field
+from typing import TYPE_CHECKING
 
 from archgen.frozen import dataclass
 from archgen.views import inline_text
 from archgen.views.agreement import message_fields
+from archgen.views.agreement.interface_record import InterfaceRecord
 from archgen.views.agreement.interface_terms import InterfaceEnd, InterfaceTerms, partner_titles
 from archgen.views.agreement.promise_rows import write_promise_table
 from archgen.views.agreement.signature_record import SignatureRecord
-from archgen.views.agreement.term_changes import AgreementChanges, InterfaceRecord, TermChange, write_signed_kind
 from archgen.views.element_references import message_link
 from archgen.views.graphs.element_boxes import join_surrounding_titles
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Facts, Inlines, Paragraph, Section, Table, Text
 from archgen.views.shapes import drop_empty_columns as tidy
 from archgen.views.timing import timing_tables
+
+if TYPE_CHECKING:
+    from archgen.views.agreement.term_changes import AgreementChanges, TermChange
 
 _MAX_VALUE_LENGTH = 400
 """Maximal number of characters of a value in a table of changes."""
@@ -57,6 +61,8 @@ class SectionWriter:
 
     def write_removed(self, record: InterfaceRecord, anchor: str) -> Section:
         """Return the section of a removed interface, as it was."""
+        from archgen.views.agreement.term_changes import write_signed_kind
+
         removed_notice = Paragraph(inline_text.to_inlines(write_signed_kind("removed")), "error")
         interface_terms = record.terms
         facts = Facts((("Version", inline_text.to_inlines(interface_terms.version)), *interface_terms.facts))
@@ -187,6 +193,8 @@ class SectionWriter:
 
 
 def _change_row(change: TermChange) -> tuple[Inlines, ...]:
+    from archgen.views.agreement.term_changes import write_signed_kind
+
     return (
         inline_text.to_inlines(change.name),
         inline_text.to_inlines(write_signed_kind(change.kind)),

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from fractions import Fraction
 
-from archgen.compare.interface_figures import find_pace
 from archgen.frozen import dataclass, replace
 from archgen.model.declared_timing import OutputTiming, Timing
 from archgen.model.node import Endpoint
 from archgen.model.partner_interfaces import PartnerInterface, list_givers
 from archgen.model.ros_distro import is_ros_1
 from archgen.timing.analysis import ChainResult, EventPace
+from archgen.timing.endpoint_paces import find_pace
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.system import activity_builder
 from archgen.timing.system.message_sizes import MessageSize

@@ -7,7 +7,7 @@ from dataclasses import field
 
 from archgen.frozen import dataclass
 from archgen.views import inline_text
-from archgen.views.agreement.term_changes import InterfaceKey, InterfaceRecord
+from archgen.views.agreement.interface_record import InterfaceKey, InterfaceRecord
 from archgen.views.shapes import Column, Inlines, Table, Text
 
 

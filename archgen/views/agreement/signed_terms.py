@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from archgen.views.agreement.interface_record import InterfaceKey
 from archgen.views.agreement.plain_terms import CONTRADICTION_KIND
-from archgen.views.agreement.term_changes import AgreementChanges, InterfaceKey, TermChange
+from archgen.views.agreement.term_changes import AgreementChanges, TermChange
 
 
 def write_verdict(changes: AgreementChanges) -> Iterator[str]:

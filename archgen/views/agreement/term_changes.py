@@ -12,8 +12,7 @@ from dataclasses import field
 from archgen.compare.comparison import ChangeKind
 from archgen.compare.matched_ids import MatchedIds
 from archgen.frozen import dataclass
-from archgen.model.partner_interfaces import PartnerPair
-from archgen.views.agreement.interface_terms import InterfaceTerms
+from archgen.views.agreement.interface_record import InterfaceKey, InterfaceRecord
 from archgen.views.agreement.plain_terms import PlainTerm
 from archgen.views.agreement.promise_rows import SOURCE_PHRASE, is_weaker
 from archgen.views.changes.change_wording import CHANGE_SIGNS, choose_mark
@@ -21,22 +20,11 @@ from archgen.views.shapes import Text
 
 NAME_KIND = "name"
 """The kind of the term that a renamed interface has its old and new id in."""
-InterfaceKey = tuple[str, PartnerPair]
-"""What identifies an interface: what flows, and between whom, by the ids of the later revision."""
 
 
 def write_signed_kind(kind: ChangeKind) -> Text:
     """Return a kind of change as a sign and a word, so that nothing depends on colour."""
     return Text(f"{CHANGE_SIGNS[kind]} {kind}", change=choose_mark(kind))
-
-
-@dataclass(frozen=True, slots=True)
-class InterfaceRecord:
-    """An interface of one revision with its terms as plain text. `key` has the ids of the later revision."""
-
-    terms: InterfaceTerms
-    key: InterfaceKey
-    plain_terms: Mapping[str, PlainTerm]
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from archgen.frozen import dataclass, replace
 from archgen.model.document_chapters import GENERATED_CHAPTERS, Chapter
@@ -13,7 +13,6 @@ from archgen.model.project_history import History
 from archgen.model.report_settings import ReportSettings
 from archgen.views import inline_text
 from archgen.views.agreement.signature_record import SignedTag
-from archgen.views.changes.site_changes import SiteChanges
 from archgen.views.chart_shapes import Drawing
 from archgen.views.graph_shapes import GraphKind
 from archgen.views.lookup import Lookup
@@ -33,6 +32,9 @@ from archgen.views.tables import (
     start_table,
     type_tables,
 )
+
+if TYPE_CHECKING:
+    from archgen.views.changes.site_changes import SiteChanges
 
 DetailLevel = Literal["functional", "implementation"]
 RosPlace = Literal["annex", "inline"]

@@ -9,7 +9,6 @@ from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node
 from archgen.views import inline_text
-from archgen.views.changes.site_changes import add_changes
 from archgen.views.elements.functional_level import make_component_table
 from archgen.views.elements.implementation_level import make_node_blocks
 from archgen.views.lookup import Lookup
@@ -75,6 +74,8 @@ def make_pages(lookup: Lookup, edition: DocumentEdition) -> tuple[Page, ...]:
     all_pages = _make_paths_distinct(split_pages(whole_pages))
     marked_pages = page_marks.mark_pages(lookup, all_pages)
     if edition.changes:
+        from archgen.views.changes.site_changes import add_changes
+
         marked_pages = add_changes(marked_pages, edition.changes, edition.drawings)
     return page_places.place_pages(lookup, marked_pages)
 

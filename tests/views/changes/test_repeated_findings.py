@@ -7,8 +7,9 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline
-from archgen.compare import Comparison, compare_versions
-from archgen.products.compared_versions import make_comparison_input
+from archgen.compare import Comparison
+from archgen.compare.compare_versions import compare_versions
+from archgen.products.comparison_input import make_comparison_input
 from archgen.views.changes.comparison_document import describe_comparison
 from archgen.views.changes.repeated_findings import find_repeated_findings
 
