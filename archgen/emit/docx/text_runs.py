@@ -9,6 +9,7 @@ from archgen.emit.docx.docx_writer import DocxWriter
 from archgen.emit.docx.text_metrics import CODE_SCALE, measure_code, measure_word, split_name
 from archgen.emit.docx.word_xml import format_field, format_run, mark_label, name_bookmark, name_label_bookmark
 from archgen.views.shapes import Text
+from archgen.views.short_figures import write_comparisons
 
 MUTED_COLOUR = '<w:color w:val="55606A"/>'
 _CHANGE_COLOURS = {"added": "1C6B3C", "removed": "B3261E", "changed": "8A5300"}
@@ -38,15 +39,18 @@ class RunSetting:
 
         Word finds a name by its letters only where nothing stands between them.
         """
-        if not self.width or len(text.text) * self.size / 4 < self.width:
+        # No letter is wider than the type is high.
+        if not self.width or (len(text.text) + 1) * self.size < self.width:
             return text.text
         return " ".join(self._break_name(word, is_code=text.code) for word in text.text.split(" "))
 
     def _break_name(self, word: str, *, is_code: bool) -> str:
-        width = (measure_code(word) if is_code else measure_word(word)) * self.size
+        # A comma may follow, and stays with its word.
+        width = (measure_code(word) if is_code else measure_word(word)) * self.size + _COMMA_WIDTH * self.size
         return "\u200b".join(split_name(word)) if width > self.width else word
 
 
+_COMMA_WIDTH = measure_word(",")
 _PLAIN_SETTING = RunSetting()
 
 
@@ -67,7 +71,7 @@ def join_text(inlines: Iterable[Text]) -> str:
 
 def _format_text(writer: DocxWriter, text: Text, setting: RunSetting, link_style: str = "") -> str:
     before = LINE_BREAK if text.line_break else ""
-    shown = setting.break_names(text)
+    shown = setting.break_names(text) if text.code else write_comparisons(setting.break_names(text))
     if not (link_style or text.strong or text.emphasis or text.code or text.muted or text.change or text.status):
         return before + format_run(shown)
     # In the order of the schema: style, font, bold, italics, colour (ECMA-376 17.3.2.28).
