@@ -32,7 +32,7 @@ def make_edge_blocks(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator[Bl
         return
     counted_edges = f"{inline_text.count_noun(len(shown_edges), 'edge')} whose readers are not asked on demand"
     sentences = [
-        f"Of {counted_edges}, {len(notable_edges) or 'none'} are read less or more often than written, or in another rhythm."
+        f"Of {counted_edges}, {len(notable_edges) or 'none'} are read less or more often than published, or in another rhythm."
     ]
     sentences += [f"Of {unknown_count} the rates are not known."] if unknown_count else []
     if notable_edges:

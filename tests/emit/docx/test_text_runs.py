@@ -2,23 +2,35 @@
 
 from __future__ import annotations
 
-import pytest
-
-from archgen.emit.docx.text_metrics import measure_code
+from archgen.emit.docx.text_metrics import measure_code, measure_word
 from archgen.emit.docx.text_runs import RunSetting
 from archgen.views.shapes import Text
 
-NAME = "ramcip_msgs/msg/TrackedPeople"
+NAME = Text("ramcip_msgs/msg/TrackedPeople", code=True)
+BROKEN_NAME = "ramcip_\u200bmsgs/\u200bmsg/\u200bTrackedPeople"
+NAME_WIDTH = measure_code(NAME.text) * 9
 
 
-@pytest.mark.parametrize("spare", [-1.0, 1.0])
-def test_a_name_that_is_wider_than_its_cell_has_places_to_break(spare: float) -> None:
-    # 1.0: it fits by itself, but not with the comma that follows it.
-    setting = RunSetting(9, measure_code(NAME) * 9 + spare)
-    assert setting.break_names(Text(NAME, code=True)) == "ramcip_\u200bmsgs/\u200bmsg/\u200bTrackedPeople"
+def test_a_name_that_is_wider_than_its_cell_has_places_to_break() -> None:
+    assert RunSetting(9, NAME_WIDTH - 1).break_names([Text("reads "), NAME]) == ["reads ", BROKEN_NAME]
+
+
+def test_a_comma_stays_with_its_name_and_counts() -> None:
+    assert RunSetting(9, NAME_WIDTH + 1).break_names([NAME, Text(", more")])[0] == BROKEN_NAME
 
 
 def test_a_name_that_fits_is_left_whole() -> None:
     # Word finds a name by its letters only where nothing stands between them.
-    setting = RunSetting(9, measure_code(NAME) * 9 + 9)
-    assert setting.break_names(Text(NAME, code=True)) == NAME
+    runs = [NAME, Text("of somebody else", line_break=True)]
+    assert RunSetting(9, NAME_WIDTH + 1).break_names(runs) == [NAME.text, "of somebody else"]
+
+
+def test_a_name_of_several_runs_is_one_word() -> None:
+    runs = [Text("reads /reasoning/"), Text("communication_act", ref="port:x"), Text(" every 500 ms")]
+    width = measure_word("/reasoning/communication_act") * 9
+    assert RunSetting(9, width + 1).break_names(runs) == [run.text for run in runs]
+    assert RunSetting(9, width - 1).break_names(runs) == [
+        "reads /\u200breasoning/\u200b",
+        "communication_\u200bact",
+        " every 500 ms",
+    ]

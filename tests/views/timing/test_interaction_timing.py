@@ -73,7 +73,7 @@ def test_edges_whose_readers_keep_another_pace(view: Lookup) -> None:
     assert view.timing is not None
     lead, *rows = read(interaction_timing.make_edge_blocks(view, view.timing))
     assert str(lead).startswith(
-        "Of 3 edges whose readers are not asked on demand, 2 are read less or more often than written, or in another rhythm. Of 1 the rates are not known."
+        "Of 3 edges whose readers are not asked on demand, 2 are read less or more often than published, or in another rhythm. Of 1 the rates are not known."
     )
     assert rows == [
         ["From", "Topic", "To", "Not read", "Times read", "Beat"],
@@ -86,7 +86,7 @@ def test_of_a_part_only_the_edges_that_touch_it(view: Lookup) -> None:
     assert view.timing is not None
     part = make_lookup(view.architecture, scope=DocumentScope(nodes=frozenset({"button"})), timing_lookup=view.timing)
     assert read(interaction_timing.make_edge_blocks(part, view.timing)) == [
-        "Of 1 edge whose readers are not asked on demand, none are read less or more often than written, or in another rhythm. Of 1 the rates are not known."
+        "Of 1 edge whose readers are not asked on demand, none are read less or more often than published, or in another rhythm. Of 1 the rates are not known."
     ]
 
 
