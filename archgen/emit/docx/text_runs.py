@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
@@ -46,6 +47,8 @@ class RunSetting:
         pieces = [text.text.split(" ") for text in inlines]
         for word in _list_words(inlines, pieces):
             parts = [(pieces[run][place], inlines[run].code) for run, place in word]
+            if _FIGURE.match("".join(part for part, _ in parts)):
+                continue
             width = sum(measure_code(part) if is_code else measure_word(part) for part, is_code in parts)
             if width * self.size > self.width:
                 for run, place in word:
@@ -70,6 +73,8 @@ def _list_words(inlines: Sequence[Text], pieces: Sequence[Sequence[str]]) -> lis
     return words
 
 
+_FIGURE = re.compile(r"[^\w/]*[0-9]")
+"""No name: its point is a decimal one."""
 _PLAIN_SETTING = RunSetting()
 
 

@@ -249,13 +249,12 @@ def make_traffic_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | N
 
 
 def make_bandwidth_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | None:
-    """List topics with their message size and traffic."""
-    topic_names = [
-        name
-        for name in timing_lookup.analysis.topics
-        if name in lookup.architecture.topics and _is_topic_shown(lookup, name)
-    ]
+    """List topics with their message size and traffic, the most that is delivered first, what is unknown last."""
     topic_loads = timing_lookup.analysis.topics
+    topic_names = sorted(
+        (name for name in topic_loads if name in lookup.architecture.topics and _is_topic_shown(lookup, name)),
+        key=lambda name: -(topic_loads[name].delivered.value or 0),
+    )
     rows = tuple(
         (
             inline_text.to_inlines(inline_text.topic_link(name)),

@@ -34,3 +34,7 @@ def test_a_name_of_several_runs_is_one_word() -> None:
         "communication_\u200bact",
         " every 500 ms",
     ]
+
+
+def test_figures_are_left_whole() -> None:
+    assert RunSetting(9, 20).break_names([Text("≤ 1234.567\u202fms left")]) == ["≤ 1234.567\u202fms left"]
