@@ -118,7 +118,7 @@ def _format_statistics(title: str, project_size: ArchitectureSize, rows: tuple[P
         if row.components
     ]
     if populated_rows:
-        headings = ("Progress", "components", *PROGRESS_STEPS)
+        headings = ("Components", "total", *PROGRESS_STEPS)  # narrow: 80 columns hold the table
         table_lines = format_table(headings, populated_rows, width and width - 2, has_figures=True)
         lines += [f"  {line}" for line in table_lines]
     return "\n".join(map(defuse_command, lines)) + "\n"

@@ -309,8 +309,10 @@ class Page:
     """A matrix above the page's section."""
     waterfall: Waterfall | None = None
     """Where time goes, above the page's section: that of a chain, of a host, of all chains."""
-    mark: Literal["open", "missed"] | None = None
-    """What the navigation marks: something here is open, or a deadline is missed."""
+    mark: Literal["open", "missed", "error"] | None = None
+    """What the navigation marks: something here is open, a deadline is missed, or there is an error."""
+    is_empty: bool = False
+    """Whether there is nothing on it yet: only the paths of other pages lead to it, the navigation does not."""
     is_changed: bool = False
     """Whether this differs from the version that the site is compared with; the navigation marks that, too."""
 

@@ -8,7 +8,14 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_UP, Decimal
 _UNITS = "ns|us|ms|s|Hz|kHz|MHz|B|kB|MB|GB|B/s|kB/s|MB/s|GB/s|%"
 QUANTITY = re.compile(rf"(?<![\w.])([<>]= )?([0-9]+(?:\.[0-9]+)?) ({_UNITS})(?![\w/])")
 """A number and its unit, with the sign of a bound: the groups are sign, number and unit."""
+_COMPARISON = re.compile(r"([<>])=[ \u00a0](?=[+-]?[0-9])")
 _DIGITS = 3
+
+
+def write_comparisons(text: str) -> str:
+    """Write the signs before figures as people do: `<= 15 Hz` as `≤ 15 Hz`."""
+    # Most texts have none: the pattern costs more than looking for one.
+    return _COMPARISON.sub(lambda found: f"{'≤' if found[1] == '<' else '≥'} ", text) if "=" in text else text
 
 
 def shorten_quantity(sign: str, number: str, unit: str) -> tuple[str, str]:
@@ -40,6 +47,11 @@ def shorten_bounds(text: str) -> str:
         return f"{match[1] or ''}{number} {unit}"
 
     return QUANTITY.sub(shorten_bound, text)
+
+
+def shorten_text(text: str) -> str:
+    """Return a text with its figures short, for where no other place has room for all digits: pictures and tips."""
+    return "".join([short or part for part, short in split_figures(text)])
 
 
 def split_figures(text: str) -> list[tuple[str, str]]:

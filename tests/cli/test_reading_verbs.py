@@ -224,3 +224,18 @@ def test_show_says_whether_the_chains_of_a_requirement_are_in_time(run: Run, tmp
     assert "  served by:\n    the chain k (not proven)\n" in run("show", "R-1", "-C", tmp_path).out
     shown_chain = run("show", "k", "-C", tmp_path).out
     assert "  state:          not proven\n  requirements:   R-1\n" in shown_chain
+
+
+def test_a_terminal_of_80_columns_shows_progress_as_a_table(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    title = "Robotic Assistant for Patients at Home, with a long name"
+    components = ", ".join(f"c{n}: {{functionality: Runs.}}" for n in range(12))
+    text = f'project: {{title: "{title}"}}\ngroups: {{g: {{components: {{{components}}}}}}}\n'
+    (tmp_path / "robot.yaml").write_text(text, encoding="utf-8")
+    monkeypatch.setattr("archgen.cli.stats_command.find_width", lambda _stream: 80)
+    lines = run("stats", tmp_path / "robot.yaml").out.splitlines()
+    heading = next(line for line in lines if "described" in line)
+    assert heading.split() == ["Components", "total", "described", "typed", "mapped", "timed", "traced"]
+    assert not any("described:" in line for line in lines)
+    assert max(map(len, lines)) <= 80

@@ -198,4 +198,13 @@ def test_a_project_with_next_to_nothing_has_a_start_page(tmp_path: Path, robot: 
     board = list_pages(look_up(tmp_path, robot))["page:index"].dashboard
     assert board is not None
     assert board.figures[0].title == "Open points"
-    assert [card.title for card in board.cards] == ["Open points"]
+    # The figure says that nothing is open: a card would say it again.
+    assert [card.title for card in board.cards] == ["Open points"] * (board.figures[0].value != "0")
+
+
+def test_the_tree_marks_errors_and_the_figure_warns(tmp_path: Path) -> None:
+    wrong = ROBOT.replace("groups:", "groups:\n  wrong: {components: {a: {inputs: {x: nowhere.y}}}}", 1)
+    lookup = look_up(tmp_path, wrong)
+    marks = {anchor: page.mark for anchor, page in list_pages(lookup).items() if page.mark}
+    assert marks["group:wrong"] == marks["page:findings"] == "error"
+    assert marks["group:g"] == "missed"

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+
+from archgen.emit.site import build_site
 from archgen.views.pages.page_parts import MAX_FIGURES, MAX_ROWS, split_pages
 from archgen.views.shapes import Block, Bullets, Column, Figure, Page, Section, Table, Text
 
@@ -49,3 +52,26 @@ def test_many_pictures_have_a_page_each_and_a_list_of_links() -> None:
     assert [page.path for page in further_pages][:2] == ["things/0.html", "things/1.html"]
     figures = [block for page in further_pages for block in page.section.blocks if isinstance(block, Figure)]
     assert [figure.anchor for figure in figures] == [item[0].ref for item in links.items]
+
+
+def test_further_pages_are_not_counted_as_elements() -> None:
+    home = Page("index.html", "page:index", "Home", "home", Section("page:index", "Home"))
+    nodes = Page("nodes/a.html", "node:a", "a", "nodes", Section("node:a", "a"), (("Things", "page:things"),))
+    pages = [home, *_split(_make_table(MAX_ROWS + 1)), nodes]
+    files = build_site(pages, {}, title="R", revision="", notices=(), chapter_files=lambda _path: None).files
+    assert re.findall(r'Things <span class="count" aria-hidden="true">([^<]*)<', files["index.html"].decode()) == ["1"]
+
+
+def test_a_page_without_content_is_not_in_the_tree() -> None:
+    home = Page("index.html", "page:index", "Home", "home", Section("page:index", "Home"))
+    things, views = (
+        Page(f"{name}.html", f"page:{name}", name, "spanning", Section(f"page:{name}", name), is_empty=True)
+        for name in ("things", "views")
+    )
+    thing = Page("things/a.html", "thing:a", "a", "things", Section("thing:a", "a"), (("things", "page:things"),))
+    pages = [home, things, views, thing]
+    files = build_site(pages, {}, title="R", revision="", notices=(), chapter_files=lambda _path: None).files
+    html = files["index.html"].decode()
+    assert "things.html" in html
+    assert "views.html" not in html
+    assert "views.html" in files

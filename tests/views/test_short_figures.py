@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.views.short_figures import shorten_bounds, split_figures
+from archgen.views.short_figures import shorten_bounds, shorten_text, split_figures, write_comparisons
 
 
 @pytest.mark.parametrize(
@@ -37,3 +37,21 @@ def test_bounds_stay_true_and_what_differs_stays_apart(text: str, shown: str) ->
 )
 def test_upper_bounds_are_rounded_up(text: str, shown: str) -> None:
     assert shorten_bounds(text) == shown
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("<= 15 Hz, at least >= 2 ms", "≤ 15 Hz, at least ≥ 2 ms"),
+        ("<=\u00a095\u00a0%", "≤ 95\u00a0%"),
+        ("<= +24.2 ms", "≤ +24.2 ms"),
+        ("a <= b", "a <= b"),
+        ("x<=5", "x<=5"),
+    ],
+)
+def test_signs_before_figures_are_real_ones(text: str, shown: str) -> None:
+    assert write_comparisons(text) == shown
+
+
+def test_pictures_show_short_figures() -> None:
+    assert shorten_text("0.24 Hz · 4166.667 ms") == "0.24 Hz · 4.17 s"

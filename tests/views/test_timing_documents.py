@@ -125,3 +125,12 @@ def test_a_chain_names_what_is_missing(view: Lookup) -> None:
     assert said["Reaction time and data age, at the latest"].endswith(
         "; no bound: execution time of light_engine unknown"
     )
+
+
+def test_topics_stand_by_what_they_deliver_the_most_first(view: Lookup) -> None:
+    assert view.timing is not None
+    table = timing_tables.make_bandwidth_table(view, view.timing)
+    assert table is not None
+    amounts = [float(row[3][0].sort_number or 0) for row in table.rows]
+    assert amounts == sorted(amounts, reverse=True)
+    assert amounts[0] > amounts[-1] == 0

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from archgen.emit.docx.docx_writer import DocxWriter
 from archgen.emit.docx.text_metrics import CODE_SCALE, measure_code, measure_word, split_name
 from archgen.emit.docx.word_xml import format_field, format_run, mark_label, name_bookmark, name_label_bookmark
 from archgen.views.shapes import Text
+from archgen.views.short_figures import write_comparisons
 
 MUTED_COLOUR = '<w:color w:val="55606A"/>'
 _CHANGE_COLOURS = {"added": "1C6B3C", "removed": "B3261E", "changed": "8A5300"}
@@ -33,29 +35,56 @@ class RunSetting:
     size: float = 0
     width: float = 0
 
-    def break_names(self, text: Text) -> str:
-        """Return text with places to break in each name that is wider than the line, and in no other.
+    def break_names(self, inlines: Sequence[Text]) -> list[str]:
+        """Return the runs' texts with places to break in each name that is wider than the line, and in no other.
 
-        Word finds a name by its letters only where nothing stands between them.
+        A name may run through several runs, where a part of it is a link. Word finds a name by its letters only where
+        nothing stands between them.
         """
-        if not self.width or len(text.text) * self.size / 4 < self.width:
-            return text.text
-        return " ".join(self._break_name(word, is_code=text.code) for word in text.text.split(" "))
+        # No letter is wider than the type is high.
+        if not self.width or sum(len(text.text) + 1 for text in inlines) * self.size < self.width:
+            return [text.text for text in inlines]
+        pieces = [text.text.split(" ") for text in inlines]
+        for word in _list_words(inlines, pieces):
+            parts = [(pieces[run][place], inlines[run].code) for run, place in word]
+            if _FIGURE.match("".join(part for part, _ in parts)):
+                continue
+            width = sum(measure_code(part) if is_code else measure_word(part) for part, is_code in parts)
+            if width * self.size > self.width:
+                for run, place in word:
+                    pieces[run][place] = self._break_name(pieces[run][place], is_last=(run, place) == word[-1])
+        return [" ".join(words) for words in pieces]
 
-    def _break_name(self, word: str, *, is_code: bool) -> str:
-        width = (measure_code(word) if is_code else measure_word(word)) * self.size
-        return "\u200b".join(split_name(word)) if width > self.width else word
+    @staticmethod
+    def _break_name(part: str, *, is_last: bool) -> str:
+        broken = "\u200b".join(split_name(part)) if part else part
+        return broken if is_last or not part.endswith(("_", ".", "/")) else f"{broken}\u200b"
 
 
+def _list_words(inlines: Sequence[Text], pieces: Sequence[Sequence[str]]) -> list[list[tuple[int, int]]]:
+    """Return words as the numbers of their runs and of their places there: a comma behind a name is a part of it."""
+    words: list[list[tuple[int, int]]] = []
+    for run, places in enumerate(pieces):
+        for place in range(len(places)):
+            if words and not place and not inlines[run].line_break:
+                words[-1].append((run, place))
+            else:
+                words.append([(run, place)])
+    return words
+
+
+_FIGURE = re.compile(r"[^\w/]*[0-9]")
+"""No name: its point is a decimal one."""
 _PLAIN_SETTING = RunSetting()
 
 
 def format_runs(writer: DocxWriter, inlines: Iterable[Text], setting: RunSetting = _PLAIN_SETTING) -> str:
     """Return runs of text as they stand in a paragraph."""
+    runs = tuple(inlines)
     return "".join(
         [
-            _format_link(writer, text, setting) if text.ref or text.url else _format_text(writer, text, setting)
-            for text in inlines
+            (_format_link if text.ref or text.url else _format_text)(writer, text, shown, setting)
+            for text, shown in zip(runs, setting.break_names(runs), strict=True)
         ]
     )
 
@@ -65,9 +94,9 @@ def join_text(inlines: Iterable[Text]) -> str:
     return "".join(["\n" + text.text if text.line_break else text.text for text in inlines])
 
 
-def _format_text(writer: DocxWriter, text: Text, setting: RunSetting, link_style: str = "") -> str:
+def _format_text(writer: DocxWriter, text: Text, shown: str, setting: RunSetting, link_style: str = "") -> str:
     before = LINE_BREAK if text.line_break else ""
-    shown = setting.break_names(text)
+    shown = shown if text.code else write_comparisons(shown)
     if not (link_style or text.strong or text.emphasis or text.code or text.muted or text.change or text.status):
         return before + format_run(shown)
     # In the order of the schema: style, font, bold, italics, colour (ECMA-376 17.3.2.28).
@@ -91,7 +120,7 @@ def _format_text(writer: DocxWriter, text: Text, setting: RunSetting, link_style
     return before + format_run(shown, properties)
 
 
-def _format_link(writer: DocxWriter, text: Text, setting: RunSetting) -> str:
+def _format_link(writer: DocxWriter, text: Text, shown: str, setting: RunSetting) -> str:
     if text.is_number and text.ref in writer.anchors:
         # What is only written later has no number yet: `docx_writer` fills it in.
         return format_field(f"REF {name_label_bookmark(text.ref or '')} \\h", mark_label(text.ref or ""))
@@ -100,7 +129,7 @@ def _format_link(writer: DocxWriter, text: Text, setting: RunSetting) -> str:
     elif text.url and (relation := writer.relate_link(text.url)):
         target = f'r:id="{relation}"'
     else:
-        return _format_text(writer, text, setting)
+        return _format_text(writer, text, shown, setting)
     # `history` lets Word show the link as visited, as it does with its own (ECMA-376 17.16.22).
-    runs = _format_text(writer, text, setting, writer.styles.find_style_id("Hyperlink"))
+    runs = _format_text(writer, text, shown, setting, writer.styles.find_style_id("Hyperlink"))
     return f'<w:hyperlink {target} w:history="1">{runs}</w:hyperlink>'

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from archgen.emit.graphviz import palette
 from archgen.emit.graphviz.box_styles import LinkResolver
@@ -28,6 +28,7 @@ from archgen.emit.graphviz.drawn_legend import add_legend
 from archgen.emit.graphviz.placed_scene import Scene, ScenePart
 from archgen.emit.graphviz.styled_graph import measure_nodes
 from archgen.views.chart_shapes import BarSegment, Chart, ChartBar
+from archgen.views.short_figures import shorten_text
 
 _CHART_WIDTH = 440.0
 """As wide as a report's text, 160 mm, less the margin round a picture. In points, as all lengths here."""
@@ -63,6 +64,7 @@ class _ChartScale:
 
 def lay_out_chart(chart: Chart, resolve_link: LinkResolver) -> Scene:
     """Lay out a chart as a scene. y grows upwards: rows go down from 0."""
+    chart = _shorten_figures(chart)
     text_colours = [palette.MUTED if bar.is_outside else palette.TEXT for bar in chart.bars]
     row_texts = [
         (wrap_bar_title(bar.title, strong=bar.strong), wrap_bar_title(bar.value, strong=bar.strong))
@@ -106,6 +108,23 @@ def lay_out_chart(chart: Chart, resolve_link: LinkResolver) -> Scene:
         y -= height
     body = Scene(parts=(*_draw_grid(chart, scale, y), *parts, *_draw_limit(chart, scale, y)))
     return add_legend(_add_headline(chart, body), [*_legend_samples(chart)], chart.notes)
+
+
+def _shorten_figures(chart: Chart) -> Chart:
+    """Return a chart whose figures have three digits; its tips keep all of them."""
+    bars = [
+        replace(
+            bar,
+            value=shorten_text(bar.value),
+            segments=tuple(
+                replace(each, label=shorten_text(each.label), tooltip=each.tooltip or each.label)
+                for each in bar.segments
+            ),
+        )
+        for bar in chart.bars
+    ]
+    limit = chart.limit and (chart.limit[0], shorten_text(chart.limit[1]))
+    return replace(chart, bars=tuple(bars), limit=limit, conclusion=shorten_text(chart.conclusion))
 
 
 def _choose_scale(chart: Chart, title_width: float, value_width: float) -> _ChartScale:

@@ -12,6 +12,8 @@ import re
 import unicodedata
 from collections.abc import Sequence
 
+from archgen.views.short_figures import write_comparisons
+
 MAX_TEXT_LENGTH = 400
 """A longer text (in characters) is cut, with an ellipsis; pages and tables have all of it."""
 
@@ -26,6 +28,7 @@ _ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;",
 
 def clean_label_text(text: str, max_length: int = MAX_TEXT_LENGTH) -> str:
     """Return the text on one line, without characters that no picture can hold, cut at `max_length`."""
+    text = write_comparisons(text)
     # Of all blanks only the space is printable: most texts have nothing to clean.
     if text.isprintable() and "  " not in text:
         text = text.strip()

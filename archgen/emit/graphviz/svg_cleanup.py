@@ -12,6 +12,7 @@ import re
 from html import escape
 
 from archgen.emit.graphviz.dot_text import clean_label_text
+from archgen.emit.graphviz.glyph_outlines import shorten_glyphs
 from archgen.views.chart_shapes import Drawing
 
 _HEAD = re.compile(r"^.*?<svg ([^>]*)>", re.DOTALL)
@@ -38,7 +39,7 @@ def clean_outlines(outlines: bytes) -> bytes:
     """
     numbers: dict[bytes, bytes] = {}
     outlines = _SURFACE.sub(lambda found: numbers.setdefault(found[0], b"surface%d" % (len(numbers) + 1)), outlines)
-    return _DECIMALS.sub(rb"\1", outlines)
+    return shorten_glyphs(_DECIMALS.sub(rb"\1", outlines))
 
 
 def clean_graphviz_svg(svg: str, drawing: Drawing) -> bytes:

@@ -6,7 +6,7 @@ import re
 from functools import lru_cache
 from html import escape as _escape
 
-from archgen.views.short_figures import split_figures
+from archgen.views.short_figures import shorten_text, split_figures, write_comparisons
 
 _UNBROKEN_LENGTH = 17
 """Shorter texts hold no word that is long enough to be broken."""
@@ -14,7 +14,6 @@ _UNBROKEN_LENGTH = 17
 _FORBIDDEN_CHARACTER = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufdd0-\ufdef\ufffe\uffff]")
 _LONG_WORD = re.compile(r"[^\s<>&;]{18,}")
 _BREAK_POSITION = re.compile(r"(?<=[a-z0-9])([._/:-])(?=[A-Za-z0-9~])")
-_COMPARISON = re.compile(r"([<>])= (?=[0-9])")
 _MICROSECONDS = re.compile(r"([0-9][ \u00a0])us\b")
 _FIGURE = re.compile("[0-9] [a-zA-Z%]")
 _WEB_ADDRESS = re.compile(r"(?:https?://[^\s/]|mailto:[^\s:]+@)", re.IGNORECASE)
@@ -45,9 +44,7 @@ def escape_breakable(text: str) -> str:
 
 def write_signs(text: str) -> str:
     """Write signs before and units behind figures as people do: `<= 15 Hz` as `≤ 15 Hz`, `60 us` as `60 µs`."""
-    # Most texts have none of these: the pattern costs more than looking for them.
-    if "=" in text:
-        text = _COMPARISON.sub(lambda sign: "≤ " if sign[1] == "<" else "≥ ", text)
+    text = write_comparisons(text)
     return _MICROSECONDS.sub("\\1µs", text) if "us" in text else text
 
 
@@ -70,7 +67,7 @@ def shorten_figures(text: str) -> str:
     """Return text with its figures as `write_figures` shows them, for where no element can be: pictures and tips."""
     if not _FIGURE.search(text):
         return write_signs(text)
-    return write_signs("".join([short or part for part, short in split_figures(text)]))
+    return write_signs(shorten_text(text))
 
 
 def web_address(url: str | None) -> str | None:

@@ -26,7 +26,7 @@ MAX_TREE_PAGES = 10_000
 
 Of 42,000 pages the tree made 2.3 of 8 kB each.
 """
-UNCOUNTED_KINDS = frozenset({"rules", "timing"})
+UNCOUNTED_KINDS = frozenset({"rules", "timing", "matrices", "parts"})
 """Kinds of pages that are no elements: how many there are says nothing about the architecture."""
 NEWLINE = "\n"
 _NESTED_KIND = "components"
@@ -183,10 +183,13 @@ def build_navigation(pages: Sequence[Page], links: SiteLinks, kinds: Sequence[tu
     parents: dict[str, str] = {}
     children: dict[str, list[Page]] = {}
     kind_titles = dict(kinds)
+    parent_anchors = {page.crumbs[-1][1] for page in pages if page.crumbs}
     for page in pages:
         parent = page.crumbs[-1][1] if page.crumbs else start
         if page.anchor != start:
             parents[page.anchor] = parent if parent in anchors else start
+        if page.is_empty and page.anchor not in parent_anchors:
+            continue
         if page.anchor == start or parents[page.anchor] == start:
             kind_titles.setdefault(page.kind, page.kind.replace("_", " ").capitalize())
             children.setdefault(f"kind {page.kind}", []).append(page)

@@ -71,12 +71,17 @@ def _hatch(start: float) -> str:
     return "".join(f"M{x} {_METER_HEIGHT}l5-{_METER_HEIGHT}" for x in range(first, _METER_LENGTH - 5, 4))
 
 
-_MARK_WORDS = {"missed": "a deadline is missed", "open": "something is open", "changed": "changed"}
+_MARK_WORDS = {
+    "error": "there is an error",
+    "missed": "a deadline is missed",
+    "open": "something is open",
+    "changed": "changed",
+}
 
 
 def write_mark(mark: str) -> str:
-    """Write the mark of an entry of the tree: a ring for something open, a disc for a missed deadline, a square for what
-    has changed.
+    """Write the mark of an entry of the tree: a ring for something open, a disc for an error or a missed deadline, a square
+    for what has changed.
     """
     words = _MARK_WORDS[mark]
     return f'<span class="mark {mark}"><span class="spoken"> ({words})</span></span>'

@@ -8,7 +8,7 @@ from archgen.model.component import Component, ComponentType
 from archgen.views import inline_text
 from archgen.views.element_references import place_run
 from archgen.views.elements.annotation_facts import list_annotation_facts, list_contact_facts, make_image_blocks
-from archgen.views.elements.functional_level import first_sentence
+from archgen.views.elements.functional_level import describe_purpose
 from archgen.views.elements.instance_values import OwnValue, TypeTexts
 from archgen.views.elements.parameter_blocks import make_parameter_blocks
 from archgen.views.elements.promise_words import write_badges, write_deprecation
@@ -28,7 +28,7 @@ def make_component_type_table(lookup: Lookup, anchor: str = "table:component_typ
         (
             (type_page_link(each), *write_badges(each)),
             _make_code_cell(each.library),
-            inline_text.value_or_unknown(first_sentence(each.functionality)),
+            describe_purpose(each.functionality),
             _make_base_cell(lookup, each),
             _make_code_cell(", ".join(each.generic)),
             (Text(str(count), sort_number=str(count)),),

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from archgen.model.component import Component, Group
 from archgen.model.component_nesting import list_surrounding
-from archgen.views import inline_text, timing_words
+from archgen.views import inline_marks, inline_text, timing_words
 from archgen.views.elements import port_tables
 from archgen.views.elements.annotation_facts import list_annotation_facts, list_contact_facts, make_image_blocks
 from archgen.views.elements.parameter_blocks import make_parameter_blocks
@@ -85,7 +85,7 @@ def make_component_table(
         (
             _make_name_cell(lookup, component, inside_of),
             (link_type(lookup.architecture, component),) if component.component_type else (),
-            inline_text.value_or_unknown(first_sentence(component.functionality)),
+            describe_purpose(component.functionality),
             inline_text.value_or_unknown(component.role),
             _make_node_cell(lookup, component),
         )
@@ -119,13 +119,19 @@ def _make_name_cell(lookup: Lookup, component: Component, inside_of: str | None)
 
 
 def first_sentence(markdown: str | None) -> str | None:
-    """Return the first sentence of a Markdown text without its emphasis marks; None for no text."""
+    """Return the first sentence of a Markdown text, on one line; None for no text."""
     if not markdown:
         return None
     line = " ".join(markdown.split("\n\n")[0].split())
     # A full stop counts only before a blank or the end, so that "0.5 m" and "ROS2.x" stay whole.
     end = next((i for i, c in enumerate(line) if c in ".!?" and line[i + 1 : i + 2] in {"", " "}), len(line) - 1)
-    return line[: end + 1].replace("**", "").replace("`", "")
+    return line[: end + 1]
+
+
+def describe_purpose(markdown: str | None) -> Inlines:
+    """Return the first sentence of a Markdown text, its marked words in italics, in bold or as code."""
+    sentence = first_sentence(markdown)
+    return inline_marks.read_marks(sentence) if sentence else inline_text.UNKNOWN_INLINES
 
 
 def make_component_blocks(lookup: Lookup, component: Component) -> tuple[Block, ...]:

@@ -10,6 +10,7 @@ from archgen.frozen import replace
 from archgen.model.component import Component
 from archgen.model.component_nesting import find_component, list_members, list_surrounding
 from archgen.views.graph_shapes import Box, Cluster
+from archgen.views.inline_marks import strip_marks
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.type_names import name_component_type
@@ -62,7 +63,7 @@ def _component_tooltip(lookup: Lookup, component: Component) -> str:
     lines += [f"Type: {name_component_type(lookup.architecture, component)}"] if component.component_type else []
     lines += [f"Role: {component.role}"] if component.role else []
     lines += [f"Owner: {join_owner_titles(lookup, component.owners)}"] if component.owners else []
-    lines += [component.functionality] if component.functionality else []
+    lines += [strip_marks(component.functionality)] if component.functionality else []
     lines += _list_ports(component) if component.children else []
     return "\n".join(lines)
 

@@ -26,6 +26,7 @@ from archgen.views.graphs.graph_folding import fold_graph
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.graphs.ros_graph import draw_home_frame
 from archgen.views.lookup import Lookup
+from archgen.views.short_figures import shorten_text
 from archgen.views.timing import value_format
 from archgen.views.timing.timing_lookup import TimingLookup
 
@@ -249,5 +250,5 @@ def _rate_label(timed: TimingLookup, arcs: Sequence[Arc]) -> str:
             and output.rate != producer_rates.rate
             and output.rate.value is not None
         ):
-            words.append(value_format.display_rate(output.rate))
+            words.append(shorten_text(value_format.display_rate(output.rate)))
     return "\n".join(list(dict.fromkeys(words))[:2])

@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator
 
-from archgen.model.component import Component
+from archgen.model.component import Component, Input, Output
+from archgen.model.component_nesting import find_component
 from archgen.model.message_types import ConceptualType, flow_of
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.port_media import ROS, describe_way, key_of_channel, name_medium, name_on_medium
@@ -237,7 +238,7 @@ def _type_page(lookup: Lookup, conceptual_type: ConceptualType) -> Page:
     if producing_outputs:
         blocks += [
             Paragraph(inline_text.to_inlines(Text("Produced by", strong=True))),
-            Bullets(tuple(inline_text.port_link(architecture, output) for output in producing_outputs)),
+            Bullets(tuple(_link_port_and_owners(lookup, output) for output in producing_outputs)),
         ]
     reading_inputs = dict.fromkeys(
         c.input for output in producing_outputs for c in lookup.readers_of.get(output.id, ())
@@ -245,10 +246,19 @@ def _type_page(lookup: Lookup, conceptual_type: ConceptualType) -> Page:
     if reading_inputs:
         blocks += [
             Paragraph(inline_text.to_inlines(Text("Read by", strong=True))),
-            Bullets(tuple(inline_text.port_link(architecture, architecture.inputs[name]) for name in reading_inputs)),
+            Bullets(tuple(_link_port_and_owners(lookup, architecture.inputs[name]) for name in reading_inputs)),
         ]
     section = Section(f"type:{conceptual_type.name}", conceptual_type.name, tuple(blocks))
     return make_page(section, "types", ("Types", "page:types"), "Conceptual type")
+
+
+def _link_port_and_owners(lookup: Lookup, port: Input | Output) -> Inlines:
+    """Return a link to a port, with the partners whom a change of its type concerns."""
+    link = inline_text.port_link(lookup.architecture, port)
+    owners = find_component(lookup.architecture, port.component).owners
+    if not owners:
+        return link
+    return (*link, Text(" ("), *inline_text.owner_links(lookup.architecture, owners), Text(")"))
 
 
 def _size_cell(lookup: Lookup, conceptual_type: ConceptualType) -> Inlines:

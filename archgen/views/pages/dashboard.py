@@ -15,7 +15,6 @@ from archgen.views.lookup import Lookup
 from archgen.views.pages import page_marks
 from archgen.views.pages.report_outline import DocumentEdition
 from archgen.views.shapes import (
-    Block,
     Bullets,
     Column,
     Dashboard,
@@ -91,9 +90,8 @@ def _list_some(names: Sequence[str], singular: str, plural: str) -> str:
 def _point_figure(lookup: Lookup) -> KeyFigure:
     chains = _chains_without_finding(lookup)
     parts = [*phrase_severity_counts(lookup.findings), *([count_noun(len(chains), "chain")] if chains else [])]
-    worst = "open" if parts else "met"
-    if any(finding.severity == "error" for finding in lookup.findings):
-        worst = "missed"
+    severities = {finding.severity for finding in lookup.findings}
+    worst = "missed" if "error" in severities else "warning" if "warning" in severities else "open" if parts else "met"
     count = len(lookup.findings) + len(chains)
     return KeyFigure(
         "Open points", str(count), "", _make_note(worst, join_words(parts) or "nothing is open"), "page:findings"
@@ -157,7 +155,7 @@ def _chain_card(lookup: Lookup) -> DashboardCard | None:
     return DashboardCard("Chains of effect", (table,), 8, "worst first", link, "chains") if rows else None
 
 
-def _point_card(lookup: Lookup) -> DashboardCard:
+def _point_card(lookup: Lookup) -> DashboardCard | None:
     findings = sorted(lookup.findings, key=lambda finding: -finding.effective_severity.rank)
     points: list[Inlines] = [
         (
@@ -170,11 +168,10 @@ def _point_card(lookup: Lookup) -> DashboardCard:
         for finding in findings
     ]
     points += make_chain_points(lookup)
-    blocks: tuple[Block, ...] = (Bullets(tuple(points[:_MAX_POINTS])),)
     if not points:
-        blocks = (Paragraph(inline_text.to_inlines("Nothing is open.")),)
-    link = Text(f"All {len(points)}, by owner and rule", ref="page:findings") if points else None
-    return DashboardCard("Open points", blocks, 4, "", link, "points")
+        return None  # the figure above says so
+    link = Text(f"All {len(points)}, by owner and rule", ref="page:findings")
+    return DashboardCard("Open points", (Bullets(tuple(points[:_MAX_POINTS])),), 4, "", link, "points")
 
 
 def make_chain_points(lookup: Lookup) -> list[Inlines]:

@@ -79,7 +79,7 @@ class MessagePages:
             Column("Name", 1.9),
             Column("Kind", 0.6),
             Column("Fields", 0.5, "right"),
-            Column("Size", 0.7, "right"),
+            Column("Size", 0.9, "right"),
             Column("Types", 1.2),
             Column("Carried by", 1.9),
         )

@@ -1,17 +1,19 @@
-"""What the navigation marks: the groups and lists in which something is open, or a deadline is missed."""
+"""What the navigation marks: the groups and lists in which something is open, wrong, or a deadline is missed."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Literal
 
+from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.frozen import replace
 from archgen.timing.analysis import ChainResult
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Page
 from archgen.views.timing import chain_status
 
-Mark = Literal["open", "missed"]
+Mark = Literal["open", "missed", "error"]
+_RANKS: Mapping[Mark, int] = {"open": 0, "missed": 1, "error": 2}
 
 
 def mark_pages(lookup: Lookup, pages: Iterable[Page]) -> tuple[Page, ...]:
@@ -19,9 +21,7 @@ def mark_pages(lookup: Lookup, pages: Iterable[Page]) -> tuple[Page, ...]:
     chains = {f"chain:{result.id}": result for result in lookup.timing.chains} if lookup.timing else {}
     marks: dict[str, Mark] = {}
     for anchor, mark in _list_marks(lookup):
-        # A missed deadline is the worse of the two.
-        if mark == "missed" or anchor not in marks:
-            marks[anchor] = mark
+        marks[anchor] = max(mark, marks.get(anchor, mark), key=_RANKS.__getitem__)
     return tuple(
         replace(
             page,
@@ -38,13 +38,14 @@ def _list_marks(lookup: Lookup) -> Iterator[tuple[str, Mark]]:
     """Yield anchors with a mark; one may come several times."""
     architecture = lookup.architecture
     if lookup.findings:
-        yield "page:findings", "open"
-    for element_id in lookup.findings_of:
-        yield from ((f"group:{group}", "open") for group in _groups_of(lookup, element_id))
+        yield "page:findings", _judge_findings(lookup.findings)
+    for element_id, findings in lookup.findings_of.items():
+        mark = _judge_findings(findings)
+        yield from ((f"group:{group}", mark) for group in _groups_of(lookup, element_id))
         if element_id in architecture.requirements:
-            yield "page:requirements", "open"
+            yield "page:requirements", mark
     for result in list_troubled_chains(lookup):
-        mark: Mark = "missed" if result.verdict == "missed" else "open"
+        mark = "missed" if result.verdict == "missed" else "open"
         yield f"chain:{result.id}", mark
         yield "page:chains", mark
         # Whoever could mend it: all on the way of what is late, else those whose figures are missing.
@@ -55,6 +56,10 @@ def _list_marks(lookup: Lookup) -> Iterator[tuple[str, Mark]]:
         )
         for name in names:
             yield from ((f"group:{group}", mark) for group in _groups_of_activity(lookup, name))
+
+
+def _judge_findings(findings: Sequence[Diagnostic]) -> Mark:
+    return "error" if any(finding.severity == "error" for finding in findings) else "open"
 
 
 def list_troubled_chains(lookup: Lookup) -> list[ChainResult]:

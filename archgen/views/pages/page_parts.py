@@ -14,6 +14,8 @@ from archgen.views.shapes import Block, Bullets, Figure, Page, Paragraph, Sectio
 MAX_ROWS = 1_500
 """The rows of a table on one page: some 700 kB."""
 MAX_FIGURES = 20
+PARTS_KIND = "parts"
+"""The kind of the further pages: they are no elements, and nobody counts them."""
 
 
 def split_pages(pages: Iterable[Page]) -> Iterator[Page]:
@@ -55,7 +57,7 @@ def _make_table_page(page: Page, note: Paragraph, part: Table) -> Page:
 
 def _make_further_page(page: Page, path: str, anchor: str, title: str, blocks: tuple[Block, ...]) -> Page:
     crumbs = (*page.crumbs, (page.title, page.anchor))
-    return Page(path, anchor, title, page.kind, Section(anchor, title, blocks), crumbs, page.lead)
+    return Page(path, anchor, title, PARTS_KIND, Section(anchor, title, blocks), crumbs, page.lead)
 
 
 def _split_table(table: Table) -> Iterator[tuple[Paragraph, Table]]:

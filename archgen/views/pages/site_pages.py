@@ -347,4 +347,5 @@ class PageMaker:
         # A page without content is made all the same: the crumbs of other pages lead to it.
         placeholder = Paragraph(inline_text.to_inlines(Text("There is nothing here yet.", muted=True)))
         section = Section(f"page:{name}", title, present_blocks or (placeholder,), sections)
-        return Page(f"{name}.html", section.anchor, title, "spanning", section, (HOME_CRUMB,))
+        is_empty = not present_blocks and not sections
+        return Page(f"{name}.html", section.anchor, title, "spanning", section, (HOME_CRUMB,), is_empty=is_empty)

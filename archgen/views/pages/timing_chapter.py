@@ -40,7 +40,9 @@ def make_timing_sections(
             "timing:fused", "What is used together", _drop_missing(use_tables.make_fused_table(lookup, timing_lookup))
         ),
         Section(
-            "timing:edges", "Where rates differ", tuple(interaction_timing.make_edge_blocks(lookup, timing_lookup))
+            "timing:edges",
+            "Where a reader keeps another pace",
+            tuple(interaction_timing.make_edge_blocks(lookup, timing_lookup)),
         ),
         Section("timing:services", "Services", tuple(interaction_timing.make_service_blocks(lookup, timing_lookup))),
         Section(

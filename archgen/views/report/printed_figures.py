@@ -7,27 +7,15 @@ from collections.abc import Sequence
 from dataclasses import replace
 from decimal import Decimal
 
-from archgen.views.report import inline_marks
-from archgen.views.shapes import Block, Bullets, Column, Facts, Inlines, Markdown, Paragraph, Section, Table, Text
-from archgen.views.short_figures import QUANTITY, round_number, shorten_quantity
+from archgen.views import inline_marks
+from archgen.views.shapes import Block, Bullets, Column, Facts, Inlines, Paragraph, Section, Table, Text
+from archgen.views.short_figures import QUANTITY, round_number, shorten_quantity, write_comparisons
 
 _TIME_FACTORS = {"ns": Decimal(1), "us": Decimal(1000), "ms": Decimal(10**6), "s": Decimal(10**9)}
 _TIME_CELL = re.compile(r"(>= |<= )?([0-9]+(?:\.[0-9]+)?) (ns|us|ms|s)")
-_SIGNS = (("<= ", "≤ "), (">= ", "≥ "))
 _MIN_TIMES = 2
 _THIN = "\u202f"
 """Between a figure and its unit, which must not part."""
-_WORDS = {
-    "terms of the bound": "parts of the bound",
-    "Where rates differ": "Where a reader is slower than its source",
-    "Edges that lose samples or beat": "Topics that are read less often than published",
-    "Where the rate is from": "Source of the rate",
-    "any scheduler that never idles": "any order of execution",
-    "lose samples or beat": "are read less often than published, or in another rhythm",
-    "not decided by load alone": "open: load alone does not decide",
-}
-"""Words of the analysis that a reader of a deliverable takes for faults, or does not know."""
-_COLUMN_WORDS = {"Lost": "Not read", "Come at once": "Burst"}
 _FACT_WORDS = {"Links": "See also"}
 """On paper nothing shows that these are links to pages elsewhere, and hosts have links too."""
 
@@ -36,7 +24,6 @@ def print_section_figures(section: Section) -> Section:
     """Return a section with its figures for paper, and those below it."""
     return replace(
         section,
-        title=_replace_words(section.title),
         blocks=tuple(_print_block(block) for block in section.blocks),
         sections=tuple(print_section_figures(each) for each in section.sections),
     )
@@ -54,10 +41,8 @@ def _print_block(block: Block) -> Block:
             )
         case Table():
             return _print_table(block)
-        case Markdown():
-            return block
         case _:
-            return replace(block, caption=_replace_words(block.caption))
+            return block
 
 
 def print_inlines(inlines: Inlines) -> Inlines:
@@ -70,15 +55,7 @@ def print_inlines(inlines: Inlines) -> Inlines:
 def print_text(text: str) -> str:
     """Return text with real signs and three significant digits: `≤ 4.17 s` for `<= 4166.667 ms`."""
     text = QUANTITY.sub(lambda found: _print_quantity(found[1] or "", found[2], found[3]), text)
-    for sign, printed in _SIGNS:
-        text = text.replace(sign, printed)
-    return _replace_words(text)
-
-
-def _replace_words(text: str) -> str:
-    for words, printed in _WORDS.items():
-        text = text.replace(words, printed)
-    return text
+    return write_comparisons(text)
 
 
 def _print_quantity(sign: str, number: str, unit: str) -> str:
@@ -91,11 +68,10 @@ def _print_table(table: Table) -> Table:
     for index, column in enumerate(table.columns):
         cells = [row[index] for row in table.rows]
         unit = _choose_unit(column, cells)
-        title = _COLUMN_WORDS.get(column.title, _replace_words(column.title))
-        columns.append(replace(column, title=f"{title}, {'µs' if unit == 'us' else unit}" if unit else title))
+        columns.append(replace(column, title=f"{column.title}, {'µs' if unit == 'us' else unit}") if unit else column)
         cells_by_column.append([_convert_cell(cell, unit) if unit else print_inlines(cell) for cell in cells])
     rows = tuple(tuple(column[row] for column in cells_by_column) for row in range(len(table.rows)))
-    return replace(table, caption=_replace_words(table.caption), columns=tuple(columns), rows=rows)
+    return replace(table, columns=tuple(columns), rows=rows)
 
 
 def _choose_unit(column: Column, cells: Sequence[Inlines]) -> str:
@@ -104,11 +80,13 @@ def _choose_unit(column: Column, cells: Sequence[Inlines]) -> str:
         Decimal(found[2]) * _TIME_FACTORS[found[3]]
         for cell in cells
         for part in cell
-        if (found := _TIME_CELL.fullmatch(part.text)) and Decimal(found[2])
+        if (found := _TIME_CELL.fullmatch(part.text))
     ]
     if column.align != "right" or len(times) < _MIN_TIMES:
         return ""
-    middle = sorted(times)[(len(times) - 1) // 2]
+    # Nothing at all takes no time in any unit.
+    lengths = sorted(time for time in times if time) or [_TIME_FACTORS["ms"]]
+    middle = lengths[(len(lengths) - 1) // 2]
     return next((unit for unit in ("s", "ms", "us") if middle >= _TIME_FACTORS[unit]), "ns")
 
 
@@ -122,4 +100,4 @@ def _convert_text(part: Text, unit: str) -> Text:
         return replace(part, text=print_text(part.text))
     sign = found[1] or ""
     value = Decimal(found[2]) * _TIME_FACTORS[found[3]] / _TIME_FACTORS[unit]
-    return replace(part, text=f"{print_text(sign)}{round_number(value, sign)}")
+    return replace(part, text=write_comparisons(f"{sign}{round_number(value, sign)}"))

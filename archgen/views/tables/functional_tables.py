@@ -12,7 +12,7 @@ from archgen.model.component import Connection
 from archgen.model.component_nesting import find_component
 from archgen.model.port_media import label_of_medium
 from archgen.views import element_references, inline_text
-from archgen.views.elements.functional_level import first_sentence
+from archgen.views.elements.functional_level import describe_purpose
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Column, Inlines, Table, Text
 
@@ -25,7 +25,7 @@ def make_group_table(lookup: Lookup) -> Table | None:
             inline_text.to_inlines(inline_text.group_link(architecture, name)),
             inline_text.owner_links(architecture, architecture.groups[name].owners),
             inline_text.to_inlines(str(len(architecture.groups[name].components))),
-            inline_text.value_or_unknown(first_sentence(architecture.groups[name].description)),
+            describe_purpose(architecture.groups[name].description),
         )
         for name in lookup.shown_groups()
     )

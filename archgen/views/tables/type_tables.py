@@ -45,7 +45,7 @@ def make_type_table(lookup: Lookup) -> Table | None:
     columns = (
         Column("Conceptual type", 1.3),
         Column("ROS message", 1.9),
-        Column("Size", 0.6, "right"),
+        Column("Size", 0.9, "right"),
         Column("Outputs", 0.5, "right"),
         Column("Remarks", 1.6),
     )

@@ -82,7 +82,7 @@ def make_chain_blocks(lookup: Lookup, timing_lookup: TimingLookup, result: Chain
     return (
         Facts(tuple((key, value) for key, value in facts if value and not timing_tables.is_blank(value))),
         Figure(f"figure:{name}", name, title, chain_charts.describe_chain_verdict(result, timing_lookup)),
-        *([Table(f"table:{name}", f"{chain.title}: terms of the bound", columns, rows)] if rows else []),
+        *([Table(f"table:{name}", f"{chain.title}: parts of the bound", columns, rows)] if rows else []),
     )
 
 

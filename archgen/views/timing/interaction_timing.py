@@ -1,4 +1,4 @@
-"""Timing between activities in documents: edges that lose samples, beat or overrun queues; servers and callers."""
+"""Timing between activities in documents: edges whose readers keep another pace or overrun queues; servers and callers."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from archgen.views.timing.timing_lookup import TimingLookup
 
 
 def make_edge_blocks(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator[Block]:
-    """List the edges that lose samples or beat, the greatest loss first, and count those whose rates are unknown.
+    """List the edges whose readers keep another pace than their sources, the greatest loss first, and count those whose rates are unknown.
 
     Edges to readers on demand are left out: they want the newest sample only, so nothing is lost on the way to them.
     """
@@ -31,7 +31,9 @@ def make_edge_blocks(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator[Bl
     if not notable_edges and not unknown_count:
         return
     counted_edges = f"{inline_text.count_noun(len(shown_edges), 'edge')} whose readers are not asked on demand"
-    sentences = [f"Of {counted_edges}, {len(notable_edges) or 'none'} lose samples or beat."]
+    sentences = [
+        f"Of {counted_edges}, {len(notable_edges) or 'none'} are read less or more often than published, or in another rhythm."
+    ]
     sentences += [f"Of {unknown_count} the rates are not known."] if unknown_count else []
     if notable_edges:
         sentences.append(
@@ -45,14 +47,14 @@ def make_edge_blocks(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator[Bl
             Column("From", 1.6),
             Column("Topic", 2),
             Column("To", 1.6),
-            Column("Lost", 0.8, "right"),
+            Column("Not read", 0.8, "right"),
             Column("Times read", 0.7, "right"),
             Column("Beat", 0.8, "right"),
-            Column("Come at once", 0.8, "right"),
+            Column("Burst", 0.8, "right"),
             Column("Queue", 0.6, "right"),
         )
         rows = tuple(_edge_row(timing_lookup, edge) for edge in notable_edges)
-        table = Table("table:edges", "Edges that lose samples or beat", columns, rows, wide=True)
+        table = Table("table:edges", "Topics whose readers keep another pace", columns, rows, wide=True)
         yield drop_empty_columns(table)
 
 

@@ -6,6 +6,7 @@ from fractions import Fraction
 
 from archgen.timing import analysis
 from archgen.views.graph_shapes import PeriodStep
+from archgen.views.short_figures import shorten_text
 from archgen.views.timing import value_format
 
 _PERIOD_STEPS: tuple[tuple[int, PeriodStep], ...] = (
@@ -68,10 +69,10 @@ def format_short_rate(pace: analysis.EventPace | None) -> str:
 
 def format_box_lines(pace: analysis.EventPace | None) -> tuple[str, ...]:
     """Format a rate for a box: rate and period, then the behaviour unless it is periodic."""
-    rate_text = _format_short_figure(pace, " · ")
+    rate_text = shorten_text(_format_short_figure(pace, " · "))
     # A long figure would widen the box: rate and period then get a line each.
     if len(rate_text) > _BOX_LINE_LENGTH:
-        rate_text = _format_short_figure(pace, "\n")
+        rate_text = rate_text.replace(" · ", "\n")
     return tuple(word for word in (*rate_text.split("\n"), _behaviour_word(pace)) if word) or ("?",)
 
 

@@ -17,7 +17,7 @@ from archgen.views.timing.timing_lookup import TimingLookup
 TIER_WORDS = {
     "declared": "declared, assumed to hold",
     "dedicated": "own core assumed",
-    "host": "any scheduler that never idles",
+    "host": "any order of execution",
     "priorities": "by fixed priorities",
     "non_preemptive": "by priorities, without preemption",
     "fifo": "first in, first out",
@@ -33,14 +33,14 @@ _SHORT_TIER_WORDS = {
     **TIER_WORDS,
     "declared": "declared",
     "dedicated": "own core",
-    "host": "any scheduler",
+    "host": "any order",
     "priorities": "priorities",
 }
 """Shorter words for the table of all activities, where a longer line in each row makes the table a page longer."""
 _VERDICT_WORDS = {
     "schedulable": "in time",
     "overload": "overloaded",
-    "undecided": "not decided by load alone",
+    "undecided": "open: load alone does not decide",
     "unknown": "unknown",
 }
 LOAD_STATES: Mapping[str, Status] = {
@@ -121,7 +121,7 @@ def make_activity_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | 
         Column("Behaviour", 0.8),
         Column("Rate", 0.8, "right"),
         Column("Longest gap", 0.8, "right"),
-        Column("Where the rate is from", 1.7),
+        Column("Source of the rate", 1.7),
         Column("Response", 0.9, "right"),
         Column("How it was found", 1.3),
     )
@@ -249,13 +249,12 @@ def make_traffic_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | N
 
 
 def make_bandwidth_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | None:
-    """List topics with their message size and traffic."""
-    topic_names = [
-        name
-        for name in timing_lookup.analysis.topics
-        if name in lookup.architecture.topics and _is_topic_shown(lookup, name)
-    ]
+    """List topics with their message size and traffic, the most that is delivered first, what is unknown last."""
     topic_loads = timing_lookup.analysis.topics
+    topic_names = sorted(
+        (name for name in topic_loads if name in lookup.architecture.topics and _is_topic_shown(lookup, name)),
+        key=lambda name: -(topic_loads[name].delivered.value or 0),
+    )
     rows = tuple(
         (
             inline_text.to_inlines(inline_text.topic_link(name)),

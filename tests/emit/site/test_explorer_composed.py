@@ -341,3 +341,14 @@ def test_no_arrow_turns_back_on_its_way_past_frames(visit: OpenPage, tmp_path: P
         return steps.some((step) => Math.sign(step) !== Math.sign(steps[0]));
       })""")
     assert turned == []
+
+
+def test_a_small_architecture_is_open_at_first_and_stays_closed_when_somebody_closed_it(visit: OpenPage) -> None:
+    page = visit()
+    assert titles(page) == sorted(GROUP)
+    assert address(page) == {}
+    page.get_by_role("button", name="Close all").click()
+    expect(page.locator(".stage .box")).to_have_count(1)
+    assert address(page) == {"level": "components"}
+    page.go_back()
+    expect(page.locator(".stage .box")).to_have_count(len(GROUP))

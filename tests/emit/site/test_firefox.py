@@ -56,7 +56,7 @@ def test_search_filters_and_explorer_work_in_firefox(tmp_path: Path) -> None:
             f"{SHOWN_ROWS} === 1 && document.querySelector('main input[type=search]').value === 'fall d'"
         )
 
-        firefox.open_page((site / "explorer.html").as_uri())
+        firefox.open_page((site / "explorer.html").as_uri() + "#level=components")  # closed
         firefox.wait_until("[...document.querySelectorAll('button')].some(each => each.textContent === 'Open all')")
         firefox.ask("[...document.querySelectorAll('button')].find(each => each.textContent === 'Open all').click()")
         firefox.wait_until("location.hash.includes('open=') && document.body.textContent.includes('Fall Detector')")

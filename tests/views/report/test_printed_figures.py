@@ -59,3 +59,13 @@ def test_code_stays_as_it_is_written() -> None:
     (printed,) = print_section_figures(Section("s", "S", (table,))).blocks
     assert isinstance(printed, Table)
     assert printed.rows[0][0][0].text == "wait <= 10.004 ms"
+
+
+def test_times_that_are_nothing_have_the_unit_of_their_column() -> None:
+    rows = tuple(((Text(cell),),) for cell in ("0 ms", "20 ms", "0 ms"))
+    (printed,) = print_section_figures(
+        Section("s", "S", (Table("t", "T", (Column("Link", 1, "right"),), rows),))
+    ).blocks
+    assert isinstance(printed, Table)
+    assert printed.columns[0].title == "Link, ms"
+    assert [row[0][0].text for row in printed.rows] == ["0", "20", "0"]

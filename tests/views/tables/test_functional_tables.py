@@ -9,6 +9,8 @@ import pytest
 from archgen import pipeline
 from archgen.diagnostics.diagnostic import Severity
 from archgen.pipeline import CheckedProject
+from archgen.views import inline_marks
+from archgen.views.elements.functional_level import describe_purpose
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.shapes import Table
 from archgen.views.tables import finding_tables, functional_tables
@@ -97,3 +99,15 @@ def test_a_rule_with_a_state_of_its_own_shows_it(checked: CheckedProject) -> Non
 def test_findings_are_counted_in_words(checked: CheckedProject) -> None:
     assert finding_tables.describe_severities(checked.findings) == "4 warnings and 3 notes"
     assert finding_tables.describe_severities([]) == "nothing"
+
+
+def test_a_purpose_is_the_first_sentence_with_its_marked_words_set() -> None:
+    runs = describe_purpose("Takes *no* for an answer\nin `act`. It waits 0.5 s.")
+    assert [(run.text, run.emphasis, run.code) for run in runs] == [
+        ("Takes ", False, False),
+        ("no", True, False),
+        (" for an answer in ", False, False),
+        ("act", False, True),
+        (".", False, False),
+    ]
+    assert inline_marks.strip_marks("Takes *no* for **an** `answer`") == "Takes no for an answer"

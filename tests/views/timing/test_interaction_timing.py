@@ -69,14 +69,14 @@ def read(blocks: Iterable[Block]) -> list[object]:
     return found
 
 
-def test_edges_that_lose_samples_or_beat(view: Lookup) -> None:
+def test_edges_whose_readers_keep_another_pace(view: Lookup) -> None:
     assert view.timing is not None
     lead, *rows = read(interaction_timing.make_edge_blocks(view, view.timing))
     assert str(lead).startswith(
-        "Of 3 edges whose readers are not asked on demand, 2 lose samples or beat. Of 1 the rates are not known."
+        "Of 3 edges whose readers are not asked on demand, 2 are read less or more often than published, or in another rhythm. Of 1 the rates are not known."
     )
     assert rows == [
-        ["From", "Topic", "To", "Lost", "Times read", "Beat"],
+        ["From", "Topic", "To", "Not read", "Times read", "Beat"],
         ["camera", "/sensing/camera/image", "viewer", "33.3 %", "", "100 ms"],
         ["camera", "/sensing/camera/image", "logger", "", "1.3", "100 ms"],
     ]
@@ -86,7 +86,7 @@ def test_of_a_part_only_the_edges_that_touch_it(view: Lookup) -> None:
     assert view.timing is not None
     part = make_lookup(view.architecture, scope=DocumentScope(nodes=frozenset({"button"})), timing_lookup=view.timing)
     assert read(interaction_timing.make_edge_blocks(part, view.timing)) == [
-        "Of 1 edge whose readers are not asked on demand, none lose samples or beat. Of 1 the rates are not known."
+        "Of 1 edge whose readers are not asked on demand, none are read less or more often than published, or in another rhythm. Of 1 the rates are not known."
     ]
 
 

@@ -16,7 +16,7 @@
   const stage = element("div", { className: "stage", tabIndex: -1 }, map);
   let scene = null, bounds = null, level = null, choice = null, pickedArrow = null, drawnLevel = "", fitView = "", fitWidth = 0;
 
-  const store = archgenExplorer.makeState((problems) => render(problems ?? []));
+  const store = archgenExplorer.makeState((problems) => render(problems ?? []), begin);
   const { state } = store;
   const actions = { state, colours, level: () => level, change: store.change, step, save, say: (text) => sayOnce(text), toggleAll, toggle, openHome, showAll, focus: focusOn,
     pick, pickBox, pickArrow, pickedName: () => (choice.picked?.kind === "host" ? "" : choice.picked?.id ?? "") };
@@ -38,6 +38,15 @@
   stage.append(legend.box, legend.notes, element("div", { className: "corner floats" }, minimap.svg, zoomTools));
   document.querySelector("main").append(element("div", { className: "explorer" }, tools.bar,
     element("div", { className: "desk" }, stage, list.root, panel.panel), status, keys.dialog));
+
+  // Without an address: what is readable with its groups open needs no click to show what is inside.
+  const MANY_BOXES = 30, NARROW = 720; // px
+  function begin(first) {
+    if (!model.components.length) first.level = "nodes";
+    const { homes, children } = levelOf(first.level);
+    const count = homes.reduce((sum, home) => sum + children.get(home).length, 0);
+    if (count <= MANY_BOXES && innerWidth > NARROW) first.open = ["*"];
+  }
 
   // --- from the address to the screen ---------------------------------------------------------------------------
   function render(problems = []) {
@@ -235,7 +244,6 @@
   new ResizeObserver(() => minimap.follow(camera.view)).observe(stage);
   function start() {
     const hints = store.read();
-    if (!location.hash && !model.components.length) state.level = "nodes";
     render(hints);
   }
   // Widths of texts are those of the font that is drawn; where it does not come, those of the next best.

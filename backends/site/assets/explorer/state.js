@@ -1,7 +1,7 @@
 // What the reader has chosen, and how it stands in the address: `#level=components&open=human_state&sel=2%2Bfall_detector%2B1`.
 // A step that Back should undo makes an entry in the history; moving and zooming only change the last one.
 "use strict";
-archgenExplorer.makeState = function (onChange) {
+archgenExplorer.makeState = function (onChange, begin) {
   const LEVELS = ["groups", "components", "nodes", "hosts"];
   const VIEW_DELAY = 250; // ms without moving before the place is written into the address
   const initial = () => ({ level: "components", open: [], sel: "", pick: "", colour: "group", only: [], full: false, list: false, at: null });
@@ -11,9 +11,10 @@ archgenExplorer.makeState = function (onChange) {
   function read() {
     const given = new URLSearchParams(location.hash.slice(1));
     Object.assign(state, initial());
+    if (!location.hash) begin(state);
     const level = given.get("level");
     if (LEVELS.includes(level)) state.level = level;
-    state.open = (given.get("open") ?? "").split(" ").filter(Boolean);
+    if (location.hash) state.open = (given.get("open") ?? "").split(" ").filter(Boolean);
     state.sel = given.get("sel") ?? "";
     state.pick = given.get("pick") ?? "";
     state.colour = given.get("colour") ?? "group";

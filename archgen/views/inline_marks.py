@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
+from archgen.views.inline_text import share_text
 from archgen.views.shapes import Inlines, Text
 
 # Marks stand around words, never inside of one: `2*3*4` and `*` alone are no emphasis.
@@ -14,6 +15,16 @@ _MARK = re.compile(r"(?<![\w*`])(?:\*\*(?=\S)([^*`]+?)(?<=\S)\*\*|\*(?=\S)([^*`]
 def render_marks(inlines: Inlines) -> Inlines:
     """Return runs of text with marked words set in bold, in italics or as code."""
     return tuple(run for part in inlines for run in _split_marks(part))
+
+
+def read_marks(markdown: str) -> Inlines:
+    """Return a line of Markdown as runs of text."""
+    return render_marks((share_text(markdown),))
+
+
+def strip_marks(markdown: str) -> str:
+    """Return a line of Markdown as text alone, for where nothing can be set in italics."""
+    return "".join([run.text for run in read_marks(markdown)])
 
 
 def _split_marks(part: Text) -> list[Text]:
