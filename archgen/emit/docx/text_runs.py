@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -49,7 +50,7 @@ class RunSetting:
             parts = [(pieces[run][place], inlines[run].code) for run, place in word]
             if _FIGURE.match("".join(part for part, _ in parts)):
                 continue
-            width = sum(measure_code(part) if is_code else measure_word(part) for part, is_code in parts)
+            width = math.fsum(measure_code(part) if is_code else measure_word(part) for part, is_code in parts)
             if width * self.size > self.width:
                 for run, place in word:
                     pieces[run][place] = self._break_name(pieces[run][place], is_last=(run, place) == word[-1])
