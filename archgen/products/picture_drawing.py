@@ -26,11 +26,12 @@ class DrawnPictures:
 
 def draw_started_pictures(
     drawings: Sequence[Drawing],
-    formats: Sequence[str],
+    formats: Sequence[str] | Mapping[str, Sequence[str]],
     progress: DrawingProgress | None = None,
     workers: Sequence[DrawingWorker] = (),
 ) -> DrawnPictures:
-    """Draw graphs and charts, on idle `workers` where there are some; links lead to `#` and an element's anchor.
+    """Draw graphs and charts in formats for all or by their ids, on idle `workers` where there are some; links lead to
+    `#` and an element's anchor.
 
     Where the machine lacks the drawing libraries there are no pictures, but a warning.
     """

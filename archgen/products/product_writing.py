@@ -39,14 +39,11 @@ def start_products(inputs: ProductInputs, products: Sequence[Product]) -> Starte
         return StartedProducts({product.name: product.start(inputs) for product in products}, DrawnPictures())
     from archgen.emit import graphviz
 
-    formats = dict.fromkeys(name for product in shown_products for name in product.picture_formats or ())
     # Workers start before the views are made: both take long.
     with graphviz.start_early_workers(report_cache.cache_folder()) as workers, ThreadPoolExecutor(1) as executor:
-        drawings = _choose_drawings(inputs, shown_products)
+        drawings, formats = _choose_drawings(inputs, shown_products)
         # Other processes draw, and the thread waits for them.
-        drawing_future = executor.submit(
-            draw_started_pictures, drawings, tuple(formats), inputs.options.progress, workers
-        )
+        drawing_future = executor.submit(draw_started_pictures, drawings, formats, inputs.options.progress, workers)
         finishers = {product.name: product.start(inputs) for product in products}
         drawn = drawing_future.result()
     for warning in drawn.warnings:
@@ -54,14 +51,25 @@ def start_products(inputs: ProductInputs, products: Sequence[Product]) -> Starte
     return StartedProducts(finishers, drawn)
 
 
-def _choose_drawings(inputs: ProductInputs, products: Sequence[Product]) -> tuple[Drawing, ...]:
-    """Return the drawings that any of the products shows."""
-    drawings = {name: drawing for product in products for name, drawing in _list_shown(inputs, product).items()}
+def _choose_drawings(
+    inputs: ProductInputs, products: Sequence[Product]
+) -> tuple[tuple[Drawing, ...], Mapping[str, Sequence[str]]]:
+    """Return the drawings that any of the products shows, and by their ids the formats in which they are shown.
+
+    Most are shown by one product only. To draw a format that nobody asks for takes longer than the layout.
+    """
+    drawings: dict[str, Drawing] = {}
+    formats: dict[str, list[str]] = {}
+    for product in products:
+        shown_drawings = _list_shown(inputs, product)
+        drawings |= shown_drawings
+        for name in shown_drawings:
+            formats.setdefault(name, []).extend(product.picture_formats or ())
     patterns = dict.fromkeys(pattern for product in products for pattern in product.picture_patterns)
     if not drawings and "*" not in patterns:
         msg = f"no picture is called {' or '.join(patterns)}"
         raise file_tree.OutputError(msg, _name_pictures(inputs.views.drawings))
-    return tuple(drawings.values())
+    return tuple(drawings.values()), formats
 
 
 def _list_shown(inputs: ProductInputs, product: Product) -> dict[str, Drawing]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import pytest
@@ -9,10 +10,12 @@ import yaml
 
 from archgen.emit.file_tree import OutputError
 from archgen.pipeline import CheckedProject, check_project
-from archgen.products import full_build, product_inputs, project_outputs, workspace_product
+from archgen.products import full_build, product_inputs, product_writing, project_outputs, workspace_product
 from archgen.products.output_options import OutputOptions
+from archgen.products.picture_drawing import DrawnPictures
 from archgen.products.product_table import PRODUCTS
 from archgen.views import drawing_set
+from archgen.views.chart_shapes import Drawing
 
 
 @pytest.fixture
@@ -54,6 +57,27 @@ def test_a_large_site_has_no_picture_of_each_component(
     full_build.build_outputs(inputs, (PRODUCTS["site"], PRODUCTS["diagrams"]), tmp_path / "build")
     assert list_component_pictures(tmp_path / "build" / "site") == []
     assert (tmp_path / "build" / "diagrams" / "components" / "g.a.svg").exists()
+
+
+def test_no_picture_is_drawn_in_a_format_that_nobody_shows_it_in(
+    project: CheckedProject, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[Mapping[str, Sequence[str]]] = []
+
+    def note_formats(drawings: Sequence[Drawing], formats: Mapping[str, Sequence[str]], *_: object) -> DrawnPictures:
+        assert [each.id for each in drawings] == list(formats)
+        asked.append(formats)
+        return DrawnPictures()
+
+    monkeypatch.setattr(product_writing, "draw_started_pictures", note_formats)
+    inputs = product_inputs.ProductInputs(project, OutputOptions(show_history=False))
+    product_writing.start_products(inputs, (PRODUCTS["site"], PRODUCTS["report"]))
+    site_names, report_names = set(inputs.site_drawings), set(PRODUCTS["report"].list_drawings(inputs))
+    assert site_names - report_names
+    assert site_names & report_names
+    for name, formats in asked[0].items():
+        expected = {"svg"} if name in site_names else set()
+        assert set(formats) == expected | ({"svg_outlines", "png"} if name in report_names else set()), name
 
 
 @pytest.mark.parametrize(("wish", "most"), [(True, 1), (None, 2)])

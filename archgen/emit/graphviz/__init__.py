@@ -10,7 +10,7 @@ from __future__ import annotations
 import contextlib
 import os
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
@@ -42,7 +42,7 @@ PICTURE_FORMATS: Final = ("svg", "svg_outlines", "png", "pdf", "dot")
 
 def draw_pictures(  # noqa: PLR0913 - what to draw, and how, each by its name
     drawings: Sequence[Drawing],
-    formats: Sequence[str],
+    formats: Sequence[str] | Mapping[str, Sequence[str]],
     *,
     resolve_link: Callable[[str], str | None],
     cache: Path | None = None,
@@ -51,27 +51,32 @@ def draw_pictures(  # noqa: PLR0913 - what to draw, and how, each by its name
     ready_workers: Sequence[DrawingWorker] = (),
     keeps_workers: bool = False,
 ) -> dict[str, Picture]:
-    """Draw graphs and charts in some formats. Return the pictures by the graphs' ids.
+    """Draw graphs and charts in some formats: the same for all, or by the graphs' ids. Return the pictures by those ids.
 
     `resolve_link` returns the address for a ref, or None where its target is not part of the output. `cache` is a
     folder that archgen may fill; `ready_workers` comes from `start_early_workers`, or (`keeps_workers`) goes on for the
     next call. Raise MissingGraphviz where nothing can be drawn and not all pictures are cached.
     """
     cache = cache if cache and _is_usable(cache) else None
-    wanted_formats = tuple(form for form in PICTURE_FORMATS if form in formats)
+    wanted_formats = [
+        _order_formats(formats[each.id] if isinstance(formats, Mapping) else formats) for each in drawings
+    ]
     # Addresses are resolved here: a function cannot be sent to a worker process, and the cache's key needs them.
     hidden = [hide_texts(graph, dict(_link_addresses(graph, resolve_link))) for graph in drawings]
     keys = [store.picture_key(each.describe_visible()) for each in hidden]
     pictures = {
-        at: hit for at, name in enumerate(keys) if cache and (hit := store.load_picture(cache, name, wanted_formats))
+        at: hit
+        for at, name in enumerate(keys)
+        if cache and (hit := store.load_picture(cache, name, wanted_formats[at]))
     }
     missing = [at for at in range(len(drawings)) if at not in pictures]
     if missing:
         memory = LayoutMemory(cache, stamp_writers()) if cache else NO_MEMORY
-        drawn_formats = tuple(form for form in wanted_formats if form != "dot")  # that one every picture has
+        # Every picture has its source in any case.
+        drawn_formats = [tuple(form for form in wanted_formats[at] if form != "dot") for at in missing]
         tasks = [
-            DrawingTask(drawing, dict(links), drawn_formats, memory=memory)
-            for drawing, links in (hidden[at].mark_drawing() for at in missing)
+            DrawingTask(drawing, dict(links), drawn_formats[number], memory=memory)
+            for number, (drawing, links) in enumerate(hidden[at].mark_drawing() for at in missing)
         ]
 
         def keep_picture(index: int, picture: Picture) -> None:
@@ -80,7 +85,7 @@ def draw_pictures(  # noqa: PLR0913 - what to draw, and how, each by its name
             if cache and picture.warning is None:
                 # Stored as soon as it is drawn, in the worker's thread: while other pictures are still laid out.
                 with contextlib.suppress(OSError):  # a full disk costs only the time that this would have saved
-                    store.store_picture(cache, keys[missing[index]], picture, drawn_formats)
+                    store.store_picture(cache, keys[missing[index]], picture, drawn_formats[index])
 
         drawn = _draw_tasks(
             tasks,
@@ -92,8 +97,14 @@ def draw_pictures(  # noqa: PLR0913 - what to draw, and how, each by its name
         pictures.update(zip(missing, drawn, strict=True))
         if cache:
             store.prune_pictures(cache, len(drawings))
-    with_dot = "dot" in wanted_formats
-    return {graph.id: hidden[at].restore_texts(pictures[at], with_dot=with_dot) for at, graph in enumerate(drawings)}
+    return {
+        graph.id: hidden[at].restore_texts(pictures[at], with_dot="dot" in wanted_formats[at])
+        for at, graph in enumerate(drawings)
+    }
+
+
+def _order_formats(formats: Sequence[str]) -> tuple[str, ...]:
+    return tuple(form for form in PICTURE_FORMATS if form in formats)
 
 
 @contextmanager

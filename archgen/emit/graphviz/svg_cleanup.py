@@ -39,7 +39,8 @@ def clean_outlines(outlines: bytes) -> bytes:
     """
     numbers: dict[bytes, bytes] = {}
     outlines = _SURFACE.sub(lambda found: numbers.setdefault(found[0], b"surface%d" % (len(numbers) + 1)), outlines)
-    return shorten_glyphs(_DECIMALS.sub(rb"\1", outlines))
+    # Split at the digits that go, and joined: a replacement with a group in it is put together in Python, at seven times the time.
+    return shorten_glyphs(b"".join(_DECIMALS.split(outlines)))
 
 
 def clean_graphviz_svg(svg: str, drawing: Drawing) -> bytes:

@@ -187,6 +187,19 @@ def test_the_second_time_comes_from_the_cache(tmp_path: Path, monkeypatch: pytes
     assert (some.png, some.svg) == (first["overview"].png, None)
 
 
+def test_each_picture_may_have_formats_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    other = replace(TINY, id="other")
+    formats = {"tiny": ("svg",), "other": ("png", "svg_outlines")}
+    made = draw_pictures((TINY, other), formats, resolve_link=lambda _: None, cache=tmp_path)
+    drawn = {
+        name: {form for form in ("svg", "svg_outlines", "png", "pdf") if getattr(picture, form)}
+        for name, picture in made.items()
+    }
+    assert drawn == {name: set(each) for name, each in formats.items()}
+    monkeypatch.setattr("archgen.emit.graphviz.draw_all", no_workers)
+    assert draw_pictures((other, TINY), formats, resolve_link=lambda _: None, cache=tmp_path) == made
+
+
 @pytest.mark.parametrize(
     "change",
     [replace(TINY, title="Other"), replace(TINY, boxes=TINY.boxes[:1], arrows=())],
