@@ -3,6 +3,8 @@
 PYTHON ?= python3
 BIN := .venv/bin
 TESTS ?= tests
+# One more than there are cores: a fifth of the time, tests wait for processes that they started and for browsers.
+WORKERS ?= $(shell expr $$(getconf _NPROCESSORS_ONLN) + 1)
 
 .PHONY: demo test test-all properties check lint format bench mutants golden pages clean
 .DEFAULT_GOAL := help
@@ -25,15 +27,15 @@ demo: .make/run
 	@echo "Open archgen-out/example_ramcip/site/index.html and archgen-out/example_ramcip/report.docx"
 
 test: .make/test
-	$(BIN)/python -m pytest -n auto --dist worksteal $(TESTS)
+	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal $(TESTS)
 
 # The rest comes after, not among them: what builds or takes long would push others over their time limits. `-rs` says what was
 # not tried here, such as a Python that is not installed.
 test-all: test .make/ros
-	$(BIN)/python -m pytest -m "slow or build or ros" -rs -n auto --dist worksteal $(TESTS)
+	$(BIN)/python -m pytest -m "slow or build or ros" -rs -n $(WORKERS) --dist worksteal $(TESTS)
 
 properties: .make/test
-	ARCHGEN_DRAW_ANEW=1 $(BIN)/python -m pytest -m hypothesis -n auto --dist worksteal $(TESTS)
+	ARCHGEN_DRAW_ANEW=1 $(BIN)/python -m pytest -m hypothesis -n $(WORKERS) --dist worksteal $(TESTS)
 
 check: lint test
 
