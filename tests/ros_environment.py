@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import fcntl
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -60,3 +62,16 @@ def run_program(command: list[str]) -> None:
     """Run a program; what it says is shown where it fails."""
     done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - our own commands
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def interrupt_node(node: subprocess.Popen[bytes]) -> int:
+    """Interrupt a node in Python until it ends, and return its status.
+
+    rclpy may miss one: a process was seen to wait for messages all the same, and ended by the next.
+    """
+    for _ in range(6):
+        node.send_signal(signal.SIGINT)
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            return node.wait(20)
+    node.kill()
+    return node.wait()

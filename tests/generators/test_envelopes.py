@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -17,7 +16,7 @@ from archgen.views.generation.message_envelopes import is_envelope
 from archgen.views.generation.node_programs import make_view
 from tests.generators.test_ros2_python import AMENT_FLAKE8
 from tests.ros_2_kilted import build_interfaces, kilted_environment, make_kilted_python
-from tests.ros_environment import NEWEST_PYTHON
+from tests.ros_environment import NEWEST_PYTHON, interrupt_node
 from tests.running import archgen_here
 
 ROBOT = """\
@@ -161,8 +160,7 @@ def test_foreign_senders_are_refused_on_ros_2(tmp_path: Path) -> None:
         sending = [python, "-c", STRANGER, str(log)]
         done = subprocess.run(sending, env=environment, capture_output=True, text=True, check=False)  # noqa: S603
     finally:
-        node.send_signal(signal.SIGINT)
-        status = node.wait(60)
+        status = interrupt_node(node)
     said = log.read_text(encoding="utf-8")
     assert done.returncode == 0, done.stderr + said
     assert json.loads(done.stdout.splitlines()[-1]) == [[4.0], ["/arm/left"]], said

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import json
 import re
-import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -18,7 +17,7 @@ from archgen import pipeline
 from archgen.views.generation.generation_context import GenerationContext
 from archgen.views.generation.node_programs import make_view
 from tests.hostile import TEXTS
-from tests.ros_environment import NEWEST_PYTHON, make_ros_python, ros_environment
+from tests.ros_environment import NEWEST_PYTHON, interrupt_node, make_ros_python, ros_environment
 from tests.running import ROOT, archgen_here
 
 # What ament_flake8 of Jazzy has in its configuration.
@@ -238,9 +237,7 @@ def test_the_graph_is_what_the_model_says(ros_python: Path, tmp_path: Path) -> N
         done = subprocess.run(judge, env=environment, capture_output=True, text=True, check=False)  # noqa: S603
         observed = json.loads(done.stdout.splitlines()[-1])
     finally:
-        for process in processes:
-            process.send_signal(signal.SIGINT)
-        statuses = [process.wait(60) for process in processes]
+        statuses = [interrupt_node(process) for process in processes]
     assert statuses == [0] * len(processes)
     assert set(observed["graph"]) == set(expected)
     for name, uses in observed["graph"].items():
