@@ -30,14 +30,17 @@ _BARE_KEYS = frozenset(
 )
 """Keys whose values are numbers or booleans; everything else outside of parameters is text."""
 _PLAIN_NUMBER = re.compile(r"0|-?[1-9][0-9]{0,14}")
-_RAW_KEYS = frozenset({"parameters", "calls"})
-"""Keys below which values keep the kind that they were written in; `hints` is another."""
+_RAW_KEYS = frozenset({"parameters", "calls", "hints"})
+"""Keys below which values keep the kind that they were written in."""
 _KEYS_OF_IDS = frozenset(
     {"groups", "components", "component_types", "inputs", "outputs", "nodes", "hosts", "containers", "resources"}
     | {"links", "frames", "chains", "views", "policies", "partners", "requirements", "use_cases", "types", "libraries"}
-    | {"publishes", "subscribes", "serves", "operations", "performance", "properties", "glossary", "urls"}
+    | {"publishes", "subscribes", "serves", "operations", "performance", "properties", "glossary", "urls", "variants"}
+    | {"abbreviations", "accepted", "actors", "callback_groups", "constants", "definitions", "environment", "fields"}
+    | {"request", "response", "feedback", "parameter_commands", "parameter_texts", "pictures", "remaps", "rules"}
+    | {"scheduling", "texts", "uses"}
 )
-"""Keys of mappings whose own keys are ids or names."""
+"""Keys of mappings whose own keys are ids or names: what is called `port` or `hints` there is no key of the language."""
 
 
 @dataclass(slots=True)
@@ -252,8 +255,8 @@ def _write_plain(text: object) -> object:
 
 
 def _holds_raw_values(entry: MappingEntry, path: DataPath) -> bool:
-    if entry.key == "hints":
-        return not _is_id(path)
+    if _is_id(path):
+        return False
     return entry.key in _RAW_KEYS or (entry.key in _BARE_KEYS and not isinstance(entry.value, MappingNode))
 
 
