@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Mapping
+from dataclasses import fields
 from typing import TYPE_CHECKING, Protocol
 
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.diagnostics.suggestions import did_you_mean
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator
 
     from archgen.diagnostics.source_span import Span
     from archgen.model.architecture import Architecture
@@ -141,31 +143,15 @@ def find_first_lines(architecture: Architecture) -> Mapping[str, LineSet]:
     """Return the lines where each element begins, by the id that findings name; elements of several kinds may share one
     id.
     """
-    model = architecture
     lines_by_id: dict[str, set[tuple[str, int]]] = defaultdict(set)
-    element_maps = (
-        *(
-            model.partners,
-            model.use_cases,
-            model.requirements,
-            model.groups,
-            model.components,
-            model.inputs,
-            model.outputs,
-            model.types,
-            model.nodes,
-        ),
-        *(model.hosts, model.containers, model.resources, model.links, model.chains, model.views, model.policies),
-        model.frames,
-        model.variants,
-    )
-    for elements in element_maps:
-        for key, element in elements.items():
-            lines_by_id[key].add((element.at.file, element.at.line))
+    # Every mapping of elements with a place: one that a later kind brings is among them.
+    for model_field in fields(architecture):
+        elements = getattr(architecture, model_field.name)
+        for key, element in elements.items() if isinstance(elements, Mapping) else ():
+            if (place := getattr(element, "at", None)) is not None:
+                lines_by_id[key].add((place.file, place.line))
     # A type that nobody declared has the lines of its ports: in `image: {type: Image}` its own may be another one.
-    typed_ports = [(port.type, port.at) for port in model.inputs.values()] + [
-        (port.type, port.at) for port in model.outputs.values()
-    ]
+    typed_ports = [(port.type, port.at) for port in (*architecture.inputs.values(), *architecture.outputs.values())]
     for name, span in typed_ports:
         if name is not None:
             lines_by_id[name].add((span.file, span.line))

@@ -137,3 +137,23 @@ def test_outputs_depend_on_all_files_that_were_read(tmp_path: Path) -> None:
     report = packed_project.data["report"]
     assert isinstance(report, dict)
     assert report["texts"] == {"intro.md": "Hello\n"}
+
+
+def test_a_comment_at_the_first_line_of_whatever_element_silences(tmp_path: Path) -> None:
+    text = """\
+archgen: 1
+project: {id: rover, title: Rover}
+groups:
+  g:
+    components:
+      arm:  # archgen: ignore[missing-file] drawn later
+        components: {joint: {is: hand}}
+        image: arm.svg
+component_types:
+  hand:  # archgen: ignore[missing-file] drawn later
+    outputs: {x: std_msgs/msg/Bool}
+    image: hand.svg
+"""
+    judged = judge(tmp_path, text)
+    assert {"missing-file", "unused-ignore"}.isdisjoint(each.rule for each in judged.findings), told(judged.findings)
+    assert [each.rule for each in judged.silenced_findings] == ["missing-file", "missing-file"]
