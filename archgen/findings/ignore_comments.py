@@ -151,7 +151,9 @@ def find_first_lines(architecture: Architecture) -> Mapping[str, LineSet]:
             if (place := getattr(element, "at", None)) is not None:
                 lines_by_id[key].add((place.file, place.line))
     # A type that nobody declared has the lines of its ports: in `image: {type: Image}` its own may be another one.
-    typed_ports = [(port.type, port.at) for port in (*architecture.inputs.values(), *architecture.outputs.values())]
+    typed_ports = [(port.type, port.at) for port in architecture.inputs.values()] + [
+        (port.type, port.at) for port in architecture.outputs.values()
+    ]
     for name, span in typed_ports:
         if name is not None:
             lines_by_id[name].add((span.file, span.line))

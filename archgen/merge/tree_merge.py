@@ -29,7 +29,11 @@ _GATHERING_KEYS = frozenset(
     | {"parent", "verified_by"}
 )
 """Keys whose items stand by themselves, in any order: both sides may add to such a list, or begin it."""
-UNORDERED_KEYS = _GATHERING_KEYS | {"connects", "from", "implements", "kind", "owner", "to"}
+UNORDERED_KEYS = (
+    _GATHERING_KEYS
+    | {"after", "all", "connects", "cores", "drop", "from", "implements", "kind", "owner", "start", "to", "topic"}
+    | {"trigger"}
+)
 """Keys whose lists say the same in any order: what both sides add to one is no conflict."""
 _MAX_COMPARED = 2_000
 """Items of a list that is compared item by item: that takes time that grows with the square at worst."""
@@ -39,8 +43,8 @@ _CHOICES_KEY = "choices"
 """What a declared parameter may be: in any order."""
 _CHAIN_SECTION = "chains"
 """Its keys are ids of chains, and a list is the short form of `through`, in which order counts."""
-_PORT_SECTION = "inputs"
-"""Its keys are ids of inputs, and a list is the short form of `from`."""
+_SECTIONS_OF_SETS = frozenset({"inputs", "subscribes", "callback_groups"})
+"""Their keys are ids, and a list below one says the same in any order: sources, topics, members."""
 
 _FIELD_KEYS = frozenset({"fields", "request", "response", "feedback"})
 """Keys of a type below which order counts: fields stand in a message as they are written."""
@@ -107,7 +111,7 @@ def _is_unordered(path: tuple[str, ...]) -> bool:
         # Behind the name of a parameter: one that is itself called `choices` is data.
         return section == _FREE_SECTION and len(names) > 1
     # What stands below `parameters` is the nodes' own data, whatever its keys are called.
-    is_named = bool(path) and (path[-1] in UNORDERED_KEYS or path[-2:-1] == (_PORT_SECTION,))
+    is_named = bool(path) and (path[-1] in UNORDERED_KEYS or (len(path) > 1 and path[-2] in _SECTIONS_OF_SETS))
     return is_named and _FREE_SECTION not in path and _DATA_KEY not in path[:-1] and path[:-1] != (_CHAIN_SECTION,)
 
 
