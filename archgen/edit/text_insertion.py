@@ -13,7 +13,8 @@ from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, Yaml
 
 _LINE_PATTERN = re.compile(r"[^\r\n]*(?:\r\n|\n|\r)|[^\r\n]+\Z")
 _EMPTY_VALUE = re.compile(r"[\"']?\s*:[ \t]*(?:#.*)?\Z")
-_UNTIL_COMMA = re.compile(r"(?:\s|#[^\r\n]*)*,")
+# A comment is taken to the end of its line and never given back: a comma in it separates nothing.
+_UNTIL_COMMA = re.compile(r"(?:\s++|#[^\r\n]*+)*+,")
 _DEFAULT_INDENT = 2
 
 

@@ -16,7 +16,10 @@ if TYPE_CHECKING:
 # These patterns run over whole files, and none of them crosses the end of a line.
 _IGNORE_COMMENT = re.compile(r"#[ \t]*archgen:[ \t]*ignore\b[ \t]*(?:\[([^\]\r\n]*)\])?([^\r\n]*)")
 _COMMENT = re.compile(r"(?:\A|(?<=[ \t\r\n]))#[^\r\n]*")
-_CONFLICT_MARKER = re.compile(r"^(<{7}|\|{7}|={7}|>{7})(?:[ \t]+([^\r\n]*?))?[ \t]*\r?$", re.MULTILINE)
+# Words and the blanks before each, never taken back: a line of blanks takes time that grows with its length alone.
+_CONFLICT_MARKER = re.compile(
+    r"^(<{7}|\|{7}|={7}|>{7})(?:[ \t]++((?:[ \t]*+[^ \t\r\n]++)*+))?+[ \t]*+\r?$", re.MULTILINE
+)
 _HASH_BEFORE_TEXT = re.compile(r"#(?<=[ \t]#)[^\s]")
 _SWALLOWED_TEXT = re.compile(r"[ \t]+#(?!\s*archgen:)[^\s][^\r\n]*")
 # After an empty value only `#12` and colours such as `#ff8800` count: those are values that somebody forgot to quote.

@@ -51,6 +51,14 @@ def test_windows_line_ends_and_no_last_one() -> None:
     [
         ("groups: {g: {components: {a: A}}}\n", "groups: {g: {components: {a: A, x: {title: X}}}}\n"),
         ("groups: {g: {components: {a: A,}}}\n", "groups: {g: {components: {a: A, x: {title: X}}}}\n"),
+        (
+            "groups: {g: {components: {\n  a: A  # one, two\n  }}}\n",
+            "groups: {g: {components: {\n  a: A,\n  x: {title: X}  # one, two\n  }}}\n",
+        ),
+        (
+            f"groups: {{g: {{components: {{\n  a: A  {'#' * 2_000}\n  }}}}}}\n",
+            f"groups: {{g: {{components: {{\n  a: A,\n  x: {{title: X}}  {'#' * 2_000}\n  }}}}}}\n",
+        ),
         ("groups: {g: {components: {}}} # c\n", "groups: {g: {components: {x: {title: X}}}} # c\n"),
         ("groups: {g: {title: G}}\n", "groups: {g: {title: G, components: {x: {title: X}}}}\n"),
         (

@@ -7,6 +7,7 @@ import pytest
 from archgen.diagnostics.source_span import Span
 from archgen.syntax import yaml_comments
 from archgen.syntax.yaml_comments import LineStarts
+from tests.quiet_seconds import measure_quiet_seconds
 
 
 @pytest.mark.parametrize(
@@ -42,6 +43,15 @@ def test_inside_of_quoted_text_it_is_no_comment() -> None:
             "<<<<<<<\n|||||||\n=======\n>>>>>>>\r\n",
             [
                 "1:1 Git could not merge `this side` with `the other side` here (3:1 the other side begins here; 4:1 and ends here)"
+            ],
+        ),
+        (
+            "<<<<<<< one  side\t \na\n======= \nb\n>>>>>>>   \n",
+            [
+                (
+                    "1:1 Git could not merge `one  side` with `the other side` here"
+                    " (3:1 the other side begins here; 5:1 and ends here)"
+                )
             ],
         ),
         ("Title\n=======\n", []),
@@ -88,3 +98,9 @@ def test_offsets_become_lines_and_columns_whatever_ends_a_line() -> None:
     starts = LineStarts("a\r\nbc\rd\ne")
     assert starts.span_between("f", 4, 6) == Span("f", 2, 2, 3, 1)
     assert starts.span_between("f", 8, 9) == Span("f", 4, 1, 4, 2)
+
+
+@pytest.mark.parametrize("end", ["b", "b \t", "", "\r\r"])
+def test_a_mark_with_many_blanks_takes_time_that_grows_with_its_length(end: str) -> None:
+    text = f"<<<<<<< a{' ' * 400_000}{end}\n"
+    assert measure_quiet_seconds(lambda: list(yaml_comments.find_merge_conflicts("f", text))) < 1

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from archgen.importers.launch.launch_values import LaunchValue, Substitution, join_values
+from archgen.importers.launch.launch_values import LaunchValue, Substitution, UnknownValue, join_values
 
 _MAX_DEPTH = 20
 _KINDS = {
@@ -21,6 +21,11 @@ _KINDS = {
     "equals": "equals",
     "not-equals": "differs",
 }
+_COMPARISONS = frozenset({"equals", "differs"})
+_LEAST_WORDS = {word: 2 if kind in _COMPARISONS else 1 for word, kind in _KINDS.items()}
+"""How many words each substitution needs, by its own word."""
+_OWN_KINDS = frozenset({"join", "path", "share", "prefix", "differs", "text_of", "typed", "context"})
+"""Kinds of substitutions that no launch file spells out."""
 _ESCAPE = re.compile(r"\\(.)", re.DOTALL)
 _MANY_WORDS = frozenset({"eval", "command"})
 
@@ -99,13 +104,14 @@ def _read_substitution(text: str, folder: str, *, is_ros_1: bool, depth: int) ->
         read_substituted_text(_strip_quotes(each), folder, is_ros_1=is_ros_1, depth=depth)
         for each in _split_words(rest)
     ]
+    if word in _OWN_KINDS or len(words) < _LEAST_WORDS.get(word, 0) or (kind in _COMPARISONS and len(words) > 2):  # noqa: PLR2004 - it compares two
+        # Not what any launch file of ROS says: nobody knows what would be filled in.
+        return UnknownValue(f"$({text.strip()})")
     if word == "optenv":
         return Substitution("env", (words[0] if words else "", join_values(words[1:]) if words[1:] else ""))
     if word == "find-exec" and len(words) == 1:
         return words[0]
-    if kind is None or not words or (kind in {"equals", "differs"} and len(words) != 2):  # noqa: PLR2004 - it compares two
-        return Substitution(word or "$", tuple(words))
-    return Substitution(kind, tuple(words))
+    return Substitution(kind or word or "$", tuple(words))
 
 
 def _split_words(text: str) -> list[str]:

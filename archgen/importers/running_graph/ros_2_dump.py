@@ -19,7 +19,7 @@ _SECTIONS = {
     "Action Servers:": "serves",
     "Action Clients:": "calls",
 }
-_USE = re.compile(r"\s+(/\S+): +(\S+(?:, *\S+)*)")
+_USE = re.compile(r"\s+(/\S+): +([^\s,]++(?:, *[^\s,]++)*+)")
 _LISTED = re.compile(r"(?: \* )?(/\S+) \[([^\]]+)\](?: \d+ (?:publishers?|subscribers?))?")
 _ASKED = re.compile(r"ros2 (topic|service|action) (?:info|type)\b(?:.*\s)?(/\S+)(?:\s.*)?")
 _ANSWER = re.compile(r"(?:Type: )?(\w+/(?:msg|srv|action)/\w+)")

@@ -609,3 +609,40 @@ def test_nothing_outside_of_the_folder_is_read(tmp_path: Path) -> None:
     (inner / "b.launch.xml").symlink_to(tmp_path / "secret.launch.xml")
     path.write_text('<launch><include file="$(dirname)/b.launch.xml"/></launch>')
     assert nodes_of(read_launch([path])) == {}
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        *(
+            "$(var )",
+            "$(arg )",
+            "$(env )",
+            "$(find-pkg-share )",
+            "$(find )",
+            "$(optenv )",
+            "$(not )",
+            "$(and )",
+            "$(or )",
+        ),
+        *(
+            "$(equals )",
+            "$(equals a)",
+            "$(not-equals a)",
+            "$(equals a b c)",
+            "$(eval )",
+            "$(command )",
+            "$()",
+            "$(typed )",
+        ),
+        *("$(typed a)", "$(path )", "$(text_of )", "$(share )", "$(join )"),
+    ],
+)
+@pytest.mark.parametrize("ending", ["launch", "launch.xml"])
+def test_a_substitution_without_its_words_is_left_out_with_its_line(tmp_path: Path, text: str, ending: str) -> None:
+    lines = f'<launch>\n<node pkg="a" type="b" exec="b" name="one" if="{text}"/>\n<node pkg="a" type="b" exec="b" name="two" output="{text}" ns="{text}"/>\n'
+    file = tmp_path / f"robot.{ending}"
+    file.write_text(f'{lines}<node pkg="a" type="b" exec="b" name="three"/>\n</launch>\n', encoding="utf-8")
+    imported = read_launch([file])
+    assert "three" in nodes_of(imported)
+    assert any(note.span.line in {2, 3} for note in imported.notes), messages_of(imported)

@@ -464,3 +464,12 @@ def test_the_distribution_is_one_that_there_is(tmp_path: Path, written: str, dis
     file = tmp_path / "robot.txt"
     file.write_text(ROS_1.replace("noetic", written), encoding="utf-8")
     assert read_ros_1_graph([file]).distro == distro
+
+
+def test_a_long_list_of_types_that_ends_in_something_else_is_read_at_once(tmp_path: Path) -> None:
+    file = tmp_path / "robot.txt"
+    types = ",".join(["a/msg/A"] * 5_000)
+    file.write_text(f"$ ros2 node info /n\n/n\n  Publishers:\n    /t: {types} b\n    /u: a/msg/B\n", encoding="utf-8")
+    imported = read_ros_2_graph([file])
+    topics = [use for sections in imported.slices.values() for use in sections.get("nodes", {}).values()]
+    assert "/u" in str(topics)
