@@ -19,7 +19,9 @@ _UNIT_SPELLINGS = {
 }  # fmt: skip
 
 
-_EXAMPLE_UNIT = {"duration": "ms", "frequency": "Hz", "size": "kB", "bandwidth": "Mbit/s"}
+_LIKELY_UNITS = {"duration": ("s", "ms"), "frequency": ("Hz",), "size": ("B", "kB"), "bandwidth": ("bit/s", "Mbit/s")}
+"""What a number alone may be meant in. ROS writes durations in seconds, and most people theirs in milliseconds: only who
+wrote the number knows, and a thousandth of a time is met by every deadline."""
 
 
 def find_dimension(schema_part: dict[str, Any]) -> str | None:
@@ -45,7 +47,9 @@ def describe_wrong_quantity(name: str, text: str, dimension: str, schema_part: d
         return f"{name} cannot be negative", explanation
     number = number.replace(",", ".")
     if not unit:
-        return f"`{clip_text(text)}` has no unit", f"write `{number} {_EXAMPLE_UNIT[dimension]}`; {explanation}"
+        choices = " or ".join(f"`{number} {likely}`" for likely in _LIKELY_UNITS[dimension])
+        likely_help = f"write {choices}, whichever is meant" if " or " in choices else f"write {choices}"
+        return f"`{clip_text(text)}` has no unit", f"{likely_help}; {explanation}"
     if unit in quantity.UNIT_FACTORS[dimension]:
         if max(map(len, number.split("."))) > quantity.MAX_DIGITS:
             return f"{name} has too many digits", f"at most {quantity.MAX_DIGITS} are read before and after the point"

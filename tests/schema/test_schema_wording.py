@@ -52,7 +52,7 @@ def test_keys_and_types(text: str, said: str | None) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("period: 20", "`20` has no unit | write `20 ms`"),
+        ("period: 20", "`20` has no unit | write `20 s` or `20 ms`, whichever is meant"),
         ("period: -20 ms", "`period` cannot be negative"),
         ("period: 20 msec", "`period` has no unit `msec` | write `20 ms`; case counts"),
         ("period: 20 MS", "`period` has no unit `MS` | write `20 ms`; case counts"),

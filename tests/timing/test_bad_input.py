@@ -46,7 +46,7 @@ def found(rest: str) -> list[str]:
         ("wcet: -5 ms", 20, f"wrong-value: `wcet` cannot be negative {UNITS}"),
         ("wcet: 3 Hz", 20, f"wrong-value: `wcet` has no unit `Hz` {UNITS}"),
         ("jitter: 200 kB", 22, f"wrong-value: `jitter` has no unit `kB` {UNITS}"),
-        ("response: 5", 24, f"wrong-value: `5` has no unit (write `5 ms`; {UNITS[1:]}"),
+        ("response: 5", 24, f"wrong-value: `5` has no unit (write `5 s` or `5 ms`, whichever is meant; {UNITS[1:]}"),
         ("bcet: 1e3 ms", 20, f"wrong-value: `bcet` cannot be `1e3 ms` {UNITS}"),
         ("wcet: 12345678901234567890 ms", 20, f"wrong-value: `wcet` has too many digits {DIGITS}"),
         ("throttle: 0.12345678901234567890 s", 24, f"wrong-value: `throttle` has too many digits {DIGITS}"),
