@@ -5,10 +5,10 @@ from __future__ import annotations
 import os
 import sys
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn, TextIO
+from typing import TYPE_CHECKING, NoReturn, TextIO, TypeVar
 
 import click
 
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from archgen.products.output_options import OutputOptions
     from archgen.products.trusted_backends import TrustedRevision
     from archgen.views.pages.report_outline import DetailLevel
+
+FormatName = TypeVar("FormatName", bound=str)
 
 
 def check_or_exit(project: Path | None, version_cache: VersionCache | None = None) -> CheckedProject:
@@ -202,6 +204,26 @@ def print_warning(text: str) -> None:
     from archgen.diagnostics.safe_text import make_visible
 
     click.echo(f"warning: {make_visible(text)}", err=True)
+
+
+def choose_format(
+    format_name: FormatName | None, output: Path | None, formats: Mapping[str, FormatName], default: FormatName
+) -> FormatName:
+    """Return the format that was asked for, else that of the file's ending; the default where nothing is said.
+
+    `formats` are the formats by their endings (`.docx`). Raise UsageError where another ending names none of them: a Word
+    file that is called report.odt opens nowhere.
+    """
+    from archgen.diagnostics.safe_text import make_visible
+
+    ending = output.suffix.lower() if output is not None else ""
+    if format_name or not ending:
+        return format_name or default
+    if ending not in formats:
+        *others, last = formats
+        msg = f"the ending of `{output}` names no format: end it in {', '.join(others)} or {last}, or give --format"
+        raise click.UsageError(make_visible(msg))
+    return formats[ending]
 
 
 def print_written(path: Path, detail: str = "") -> None:

@@ -193,7 +193,13 @@ def _write_output(document: str | bytes, output: Path | None) -> None:
 @click.option(
     "--breaking", is_flag=True, help="Show only what breaks another partner; end with 1 where the project forbids it."
 )
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="The file to write.  [default: standard output]")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    callback=shared_options.take_dash,
+    help="The file to write.  [default: standard output]",
+)
 @click.option(
     "--variant",
     "variants",

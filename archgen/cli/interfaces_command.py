@@ -29,6 +29,7 @@ _AGREEMENT_FORMATS = ("markdown", "html", "docx")
     "-o",
     "--output",
     type=click.Path(path_type=Path),
+    callback=shared_options.take_dash,
     help="The file to write; its ending (.docx, .md, .html) says the format.  [default: Markdown to the terminal, else "
     "archgen-out/interfaces/ in the project]",
 )
@@ -85,7 +86,7 @@ def command(  # noqa: PLR0913 - one for each option
     if since and signed:
         msg = "--signed marks what changed as --since does: give one of them"
         raise click.UsageError(msg)
-    form = _choose_format(form, output)
+    form = command_support.choose_format(form, output, agreement_documents.FORMAT_BY_ENDING, "markdown")
     if issue_date is not None:
         issue_date = _check_date(issue_date)
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
@@ -159,19 +160,6 @@ def _refuse_unsound(checked_project: CheckedProject, when: str) -> None:
         message = f"cannot be judged: the architecture cannot be read whole {when} ({reason})"
         click.echo(make_visible(message), err=True)
         sys.exit(1)
-
-
-def _choose_format(format_name: AgreementFormat | None, output: Path | None) -> AgreementFormat:
-    """Return the format that was asked for, else that of the file's ending; Markdown if neither says it."""
-    from archgen.products.agreement_documents import FORMAT_BY_ENDING
-
-    if format_name or output is None:
-        return format_name or "markdown"
-    format_of_ending = FORMAT_BY_ENDING.get(output.suffix.lower())
-    if format_of_ending is None:
-        msg = f"the ending of `{output.name}` names no format: end it in .docx, .md or .html, or give --format"
-        raise click.UsageError(msg)
-    return format_of_ending
 
 
 def _read_earlier(revision: str, option: str, checked_project: CheckedProject, project: Path | None) -> ProjectVersion:

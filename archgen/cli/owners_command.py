@@ -25,7 +25,13 @@ _TEXT_WIDTH = 96
 @shared_options.project_argument
 @shared_options.variant_option
 @click.option("--format", "form", type=click.Choice(["text", "codeowners"]), default="text", show_default=True)
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="The file to write.  [default: the terminal]")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    callback=shared_options.take_dash,
+    help="The file to write.  [default: the terminal]",
+)
 @shared_options.keep_going_option
 def command(project: Path | None, form: str, output: Path | None, *, keep_going: bool) -> None:
     """Show which partner of PROJECT owns which elements and files, and what nobody owns.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import click
@@ -12,7 +13,7 @@ from archgen.cli import command_support, shared_options
 @click.command("pack")
 @shared_options.project_argument
 @shared_options.variant_option
-@shared_options.output_option("The file", "packed.yaml")
+@shared_options.output_option("The file, or `-` for standard output,", "packed.yaml", takes_dash=True)
 @click.option(
     "--resolved",
     is_flag=True,
@@ -25,22 +26,27 @@ def command(project: Path | None, output: Path | None, select: str | None, *, re
 
     With --resolved it is a record for other programs instead (`resolved.yaml`); --select then names a part of it.
     """
-    from archgen.products import project_outputs
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.products import product_writing, project_outputs
     from archgen.products.output_options import OutputOptions
 
     if select and not resolved:
         msg = "--select goes with --resolved: a packed project is whole"
         raise click.UsageError(msg)
+    if output is not None and output != Path("-") and output.suffix not in {"", ".yaml", ".yml"}:
+        msg = f"what is packed is YAML: end `{output.name}` in .yaml"
+        raise click.UsageError(make_visible(msg))
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
-    target = output or checked_project.output_folder / ("resolved.yaml" if resolved else "packed.yaml")
     with command_support.explain_write_errors():
         if resolved:
-            project_outputs.write_resolved(
-                checked_project,
-                OutputOptions(command_support.select_or_exit(checked_project, select), select or ""),
-                target,
-            )
+            selection = command_support.select_or_exit(checked_project, select)
+            content = project_outputs.render_resolved(checked_project, OutputOptions(selection, select or ""))
         else:
-            project_outputs.write_packed(checked_project, target)
-    command_support.print_written(target)
+            content = project_outputs.render_packed(checked_project)
+        if output == Path("-"):
+            sys.stdout.buffer.write(content)
+        else:
+            target = output or checked_project.output_folder / ("resolved.yaml" if resolved else "packed.yaml")
+            product_writing.write_product_file(checked_project, target, content)
+            command_support.print_written(target)
     command_support.exit_by_findings(checked_project)

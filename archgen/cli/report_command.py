@@ -12,12 +12,19 @@ from archgen.cli import command_support, shared_options
 if TYPE_CHECKING:
     from archgen.views.pages.report_outline import DetailLevel
 
+_FORMAT_BY_ENDING = {".docx": "docx", ".pdf": "pdf", ".xlsx": "xlsx"}
+
 
 @click.command("report")
 @shared_options.project_argument
 @shared_options.variant_option
 @shared_options.output_option("The file", "report.docx")
-@click.option("--format", "form", type=click.Choice(["docx", "pdf", "xlsx"]), default="docx", show_default=True)
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(["docx", "pdf", "xlsx"]),
+    help="The format, where the file's ending does not say it.  [default: docx]",
+)
 @click.option(
     "--template",
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
@@ -36,7 +43,7 @@ def command(  # noqa: PLR0913 - one for each option
     *,
     project: Path | None,
     output: Path | None,
-    form: str,
+    form: str | None,
     template: Path | None,
     select: str | None,
     level: DetailLevel | None,
@@ -51,6 +58,7 @@ def command(  # noqa: PLR0913 - one for each option
     from archgen.frozen import replace
     from archgen.products import project_outputs
 
+    form = command_support.choose_format(form, output, _FORMAT_BY_ENDING, "docx")
     if template is not None and form == "xlsx":
         msg = "a workbook takes no template: `--template` goes with docx and pdf"
         raise click.UsageError(msg)

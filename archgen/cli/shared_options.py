@@ -152,11 +152,27 @@ def complete_products(_context: click.Context, _parameter: click.Parameter, inco
     return [f"{head}{comma}{name}" for name in names if name.startswith(last_name)]
 
 
-def output_option(target: str, default: str) -> Callable[[CommandFunction], CommandFunction]:
-    """Make the option `-o` of a verb that writes."""
+def take_dash(_context: click.Context, _parameter: click.Parameter, output: Path | None) -> Path | None:
+    """Return no file for `-`, of a verb that writes to standard output where no file is named."""
+    return None if output == Path("-") else output
+
+
+def _refuse_dash(context: click.Context, _parameter: click.Parameter, output: Path | None) -> Path | None:
+    """Refuse `-`: a folder or a Word file goes to no standard output, and nobody means one that is called so."""
+    if output == Path("-"):
+        msg = f"`archgen {context.info_name}` cannot write to standard output: name a file or a folder"
+        raise click.UsageError(msg)
+    return output
+
+
+def output_option(
+    target: str, default: str, *, takes_dash: bool = False
+) -> Callable[[CommandFunction], CommandFunction]:
+    """Make the option `-o` of a verb that writes. With `takes_dash` the verb writes to standard output for `-`."""
     return click.option(
         "-o",
         "--output",
         type=click.Path(path_type=Path),
+        callback=None if takes_dash else _refuse_dash,
         help=f"{target} to write; folders on the way are made.  [default: archgen-out/{default} in the project]",
     )

@@ -91,13 +91,25 @@ def write_packed(checked_project: CheckedProject, target: Path) -> None:
     write_product(ProductInputs(checked_project, OutputOptions()), PACKED, target)
 
 
+def render_packed(checked_project: CheckedProject) -> bytes:
+    """Return the packed project."""
+    inputs = ProductInputs(checked_project, OutputOptions())
+    content = make_content(inputs, start_products(inputs, (PACKED,)), PACKED).content
+    return content if isinstance(content, bytes) else b""
+
+
 def write_resolved(checked_project: CheckedProject, options: OutputOptions, target: Path) -> None:
     """Write the resolved model as YAML for other programs."""
+    write_product_file(checked_project, target, render_resolved(checked_project, options))
+
+
+def render_resolved(checked_project: CheckedProject, options: OutputOptions) -> bytes:
+    """Return the resolved model as YAML."""
     from archgen.syntax import yaml_writer
     from archgen.views.records import resolved_record
 
     data = resolved_record.make_record(make_scoped_lookup(checked_project, options))
-    write_product_file(checked_project, target, yaml_writer.write_yaml(data).encode())
+    return yaml_writer.write_yaml(data).encode()
 
 
 def render_exported(checked_project: CheckedProject, options: OutputOptions, backend_name: str) -> bytes:

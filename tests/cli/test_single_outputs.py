@@ -6,11 +6,12 @@ import json
 import zipfile
 from pathlib import Path
 
+import click
 import pytest
 import yaml
 from click.testing import CliRunner
 
-from archgen.cli import completion_command, pack_command, report_command
+from archgen.cli import completion_command, diff_command, owners_command, pack_command, report_command
 
 
 def _call(command: object, *words: str | Path) -> tuple[int, str]:
@@ -51,3 +52,47 @@ def test_a_packed_project_is_one_file_and_the_resolved_one_is_data(first: Path, 
     status, printed = _call(pack_command.command, first, "--select", "camera")
     assert status == 2
     assert "--select goes with --resolved" in printed
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("-o", "r.doc"), "the ending of `r.doc` names no format: end it in .docx, .pdf or .xlsx, or give --format"),
+        (("-o", "-"), "cannot write to standard output: name a file or a folder"),
+    ],
+)
+def test_the_ending_of_a_report_says_its_format(first: Path, words: tuple[str, ...], said: str) -> None:
+    status, printed = _call(report_command.command, first, *words)
+    assert status == 2
+    assert said in " ".join(printed.split())
+
+
+def test_a_report_is_a_workbook_where_its_ending_says_so(first: Path, tmp_path: Path) -> None:
+    assert _call(report_command.command, first, "--no-history", "-o", tmp_path / "r.XLSX")[0] == 0
+    with zipfile.ZipFile(tmp_path / "r.XLSX") as workbook:
+        assert "xl/workbook.xml" in workbook.namelist()
+
+
+def test_a_packed_project_goes_to_standard_output_for_a_dash(
+    first: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert _call(pack_command.command, first, "-o", "packed.yaml")[0] == 0
+    done = CliRunner().invoke(pack_command.command, [str(first), "-o", "-"])
+    assert (done.exit_code, done.stdout_bytes) == (0, (tmp_path / "packed.yaml").read_bytes())
+    done = CliRunner().invoke(pack_command.command, [str(first), "--resolved", "-o", "-"])
+    assert "edges" in yaml.safe_load(done.stdout_bytes)
+    assert [each.name for each in tmp_path.glob("-*")] == []
+    status, printed = _call(pack_command.command, first, "-o", "x.json")
+    assert (status, "what is packed is YAML: end `x.json` in .yaml" in printed) == (2, True)
+
+
+@pytest.mark.parametrize("command", [diff_command.command, owners_command.command])
+def test_a_dash_is_standard_output_also_where_that_is_the_default(
+    command: click.Command, first: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    words = [str(first)] * 2 if command.name == "diff" else [str(first)]
+    done = CliRunner().invoke(command, [*words, "-o", "-"])
+    assert (done.exit_code, "wrote" in done.stdout) == (0, False)
+    assert not list(tmp_path.glob("-*"))

@@ -66,7 +66,7 @@ def test_wrong_usage(run: Run, first: Path, words: tuple[str, ...], said: str) -
 
 def test_a_folder_is_no_file_to_write(run: Run, first: Path, tmp_path: Path) -> None:
     ran = run("pack", first, "-o", tmp_path)
-    assert ran.status == 2
+    assert ran.status == 2, ran.out
     assert ran.err == f"Error: {tmp_path} is not a regular file; give the name of a file with `-o`\n"
 
 
