@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from fractions import Fraction
 from types import SimpleNamespace
-from typing import cast
+from typing import Any, cast
 
 import pytest
 
@@ -17,10 +17,11 @@ from archgen.timing.chains.chain_bounds import bound_chain, find_data_age
 from archgen.timing.chains.cost_network import CostNetwork
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.run_analysis import analyse_system
+from archgen.timing.system.timing_system import Activity, Executor, ResourceUse, SharedResource
 from tests.property_sizes import mark_further_samples
 from tests.simulation.systems import arc, event, system, timed
 from tests.timing.exceeded import bounded
-from tests.timing.random_uses import random_use_system, random_walks
+from tests.timing.random_uses import random_crowded_system, random_use_system, random_walks
 
 Held = tuple[str, Fraction | None, TimingValue]
 
@@ -37,6 +38,58 @@ def test_no_simulation_exceeds_a_bound(first: int) -> None:
         assert [pair for pair in pairs if pair[1] > pair[2]] == [], seed
         held_count += len(pairs)
     assert held_count > 250
+
+
+@pytest.mark.parametrize("first", mark_further_samples(range(0, 300, 30)))
+def test_no_simulation_exceeds_a_bound_beside_a_crowded_container_that_waits(first: int) -> None:
+    held_count = 0
+    for seed in range(first, first + 30):
+        of = random_crowded_system(seed)
+        analysis = analyse_system(of)
+        seen = simulate_system(of, 1, 4)
+        pairs = [
+            (what, response, bound)
+            for what, response, value in _activity_pairs(analysis, seen)
+            if response is not None and (bound := bounded(value)) is not None
+        ]
+        assert [pair for pair in pairs if pair[1] > pair[2]] == [], seed
+        held_count += len(pairs)
+    assert held_count > 150
+
+
+def test_several_threads_of_a_container_that_waits_keep_several_cores_busy() -> None:
+    values: dict[str, Any] = {"period": 100, "host": "pc"}
+    members = {"a": 20, "b": 20, "c": 1}
+    activities = [
+        Activity(
+            name,
+            name,
+            None,
+            "periodic",
+            wcet=wcet,
+            bcet=wcet,
+            callback_group=name,
+            container="box",
+            executor="box",
+            uses={"gpu": ResourceUse(1, 1)} if name == "c" else {},
+            **values,
+        )
+        for name, wcet in members.items()
+    ]
+    alone = Activity("x", "x", None, "periodic", wcet=1, bcet=1, callback_group="x", executor="x", **values)
+    of = system(
+        [*activities, alone],
+        [],
+        {"pc": 2},
+        resources={"gpu": SharedResource("gpu", "pc", None)},
+        executors={"box": Executor("box", 2, "pc"), "x": Executor("x", 1, "pc")},
+        threads={"box": 2},
+        bandwidths={},
+    )
+    bound = analyse_system(of).responses["x"].worst.value
+    assert simulate_system(of, 1, 20).activities["x"].worst_response == 21_000_000
+    assert bound is not None
+    assert 21_000_000 <= bound <= 22_000_000
 
 
 @pytest.mark.parametrize("seed", [667, 681, 1191])

@@ -52,10 +52,11 @@ def part_waiting_units(system: TimingSystem, resource: ProcessingResource) -> It
     is_waiting = any(
         system.activities[name].uses for unit in (*resource.units, *resource.foreign_units) for name in unit
     )
-    waiting_units = tuple(_find_waiting_units(system, resource)) if is_waiting else ()
-    if not waiting_units or resource.missing:
+    waiting_threads = tuple(_find_waiting_threads(system, resource)) if is_waiting else ()
+    if not waiting_threads or resource.missing:
         yield resource
         return
+    waiting_units = tuple(unit for units in waiting_threads for unit in units)
     waiting_ids = {name for unit in waiting_units for name in unit}
     other_units = tuple(unit for unit in resource.units if unit[0] not in waiting_ids)
     if other_units:
@@ -66,29 +67,32 @@ def part_waiting_units(system: TimingSystem, resource: ProcessingResource) -> It
             roaming_units=(*resource.roaming_units, *waiting_units),
             neighbour_units=waiting_units,
         )
-    for unit in waiting_units:
-        neighbours = (*other_units, *(other_unit for other_unit in waiting_units if other_unit != unit))
+    for units in waiting_threads:
+        neighbours = (*other_units, *(unit for unit in waiting_units if unit not in units))
         yield replace(
             resource,
-            units=(unit,),
+            # Among one another they wait for threads as if there was one: all of their work lies in one busy window.
+            units=(tuple(name for unit in units for name in unit),),
             foreign_units=(*resource.foreign_units, *neighbours),
             neighbour_units=neighbours,
             waits=True,
         )
 
 
-def _find_waiting_units(system: TimingSystem, resource: ProcessingResource) -> Iterable[ThreadUnit]:
-    """Yield the units that wait for resources; those of a process with too few threads wait for one another."""
+def _find_waiting_threads(system: TimingSystem, resource: ProcessingResource) -> Iterable[tuple[ThreadUnit, ...]]:
+    """Yield the units that wait for resources, each alone, and together those of a process with too few threads, which
+    wait for one another. To all others they stay as many: several of its threads run at once.
+    """
     all_members = [system.activities[name] for unit in (*resource.units, *resource.foreign_units) for name in unit]
     crowded_pools = find_crowded_pools(system, all_members)
     waiting_pools = {
         crowded_pools[activity.id] for activity in all_members if activity.uses and activity.id in crowded_pools
     }
-    crowds: dict[ThreadPool, list[str]] = {}
+    crowds: dict[ThreadPool, list[ThreadUnit]] = {}
     for unit in resource.units:
         pool = crowded_pools.get(unit[0])
         if pool is not None and pool in waiting_pools:
-            crowds.setdefault(pool, []).extend(unit)
+            crowds.setdefault(pool, []).append(unit)
         elif any(system.activities[name].uses for name in unit):
-            yield unit
-    yield from (tuple(names) for names in crowds.values())
+            yield (unit,)
+    yield from (tuple(units) for units in crowds.values())
