@@ -75,6 +75,8 @@ def test_the_summary_names_the_chain_that_is_late(run: Run, project: Path) -> No
     ran = run("timing", project)
     assert ran.status == 0
     assert "  avoid  97 ms  deadline 90 ms  MISSED  7 ms above it  seen in `archgen simulate --seed" in ran.out
+    assert "7 ms longer than its deadline of 90 ms allows; a simulated run was late." in " ".join(ran.out.split())
+    assert "nothing shows that it ever does" not in " ".join(ran.out.split())
     assert "  avoid  --set scan.timing.period=43ms  then at most 90 ms\n" in ran.out
     assert "  ends   97 ms  no deadline" in ran.out
 

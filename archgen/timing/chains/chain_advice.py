@@ -76,10 +76,9 @@ def _describe_lateness(analysis: Analysis, result: ChainResult, deadline: Fracti
         known = f"What is known of it adds up to {_write(bound)}" if bound else "Nothing is known of how long it takes"
         return f"{known}, and figures are missing: nobody can say whether it meets {deadline_text}."
     if bound is not None and bound > deadline:
-        return (
-            f"It may take up to {_write(bound)}, {_write(bound - deadline)} longer than {deadline_text} allows; "
-            "nothing shows that it ever does."
-        )
+        # Missed although its best case is in time: a simulated run was too late.
+        evidence = "a simulated run was late" if result.verdict == "missed" else "nothing shows that it ever does"
+        return f"It may take up to {_write(bound)}, {_write(bound - deadline)} longer than {deadline_text} allows; {evidence}."
     return f"Nobody can say how long it takes at most, and so not whether it meets {deadline_text}: no bound was found."
 
 
