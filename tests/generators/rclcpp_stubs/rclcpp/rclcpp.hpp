@@ -17,6 +17,8 @@
 #include "rcl_interfaces/msg/set_parameters_result.hpp"
 
 #define RCLCPP_DEBUG(logger, ...) rclcpp::take_words(logger, __VA_ARGS__)
+#define RCLCPP_WARN(logger, ...) rclcpp::take_words(logger, __VA_ARGS__)
+#define RCLCPP_WARN_ONCE(logger, ...) rclcpp::take_words(logger, __VA_ARGS__)
 #define RCLCPP_INFO(logger, ...) rclcpp::take_words(logger, __VA_ARGS__)
 #define RCLCPP_ERROR(logger, ...) rclcpp::take_words(logger, __VA_ARGS__)
 

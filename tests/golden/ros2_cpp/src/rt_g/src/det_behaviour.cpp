@@ -29,12 +29,16 @@ void DetBehaviour::serve_plan(
   const std_srvs::srv::Trigger::Request & /*request*/,
   std_srvs::srv::Trigger::Response & /*response*/)
 {
+  RCLCPP_WARN_ONCE(
+    node_.get_logger(), "serve_plan is not written yet: its answers say nothing");
 }
 
 void DetBehaviour::execute_go(
   std::shared_ptr<rclcpp_action::ServerGoalHandle<test_msgs::action::Fibonacci>> goal)
 {
-  goal->succeed(std::make_shared<test_msgs::action::Fibonacci::Result>());
+  RCLCPP_WARN(
+    node_.get_logger(), "execute_go is not written yet: its goals are aborted");
+  goal->abort(std::make_shared<test_msgs::action::Fibonacci::Result>());
 }
 
 }  // namespace rt_g
