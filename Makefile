@@ -6,7 +6,7 @@ TESTS ?= tests
 # One more than there are cores: a fifth of the time, tests wait for processes that they started and for browsers.
 WORKERS ?= $(shell expr $$(getconf _NPROCESSORS_ONLN) + 1)
 
-.PHONY: demo test test-all properties check lint format bench mutants golden pages clean
+.PHONY: demo test test-all properties check lint format bench mutants golden language pages clean
 .DEFAULT_GOAL := help
 
 .PHONY: help
@@ -19,6 +19,7 @@ help:
 	@echo "make mutants   change one condition at a time, and see which changes no test notices"
 	@echo "make bench     measure speed and scale"
 	@echo "make golden    renew the expected outputs of example_ramcip"
+	@echo "make language  renew what follows from the description of the language in language/"
 	@echo "make pages     renew what is generated: rule pages, interface data, the page of the ROS library"
 
 demo: .make/run
@@ -59,6 +60,10 @@ mutants: .make/test
 
 golden: .make/test
 	$(BIN)/python -m pytest tests/test_golden.py --update-golden
+
+# From the description in language/: the schema of files and the tables of archgen/language/.
+language: .make/run
+	$(BIN)/python tools/make_language.py
 
 pages: .make/test
 	$(BIN)/python tools/make_rule_pages.py

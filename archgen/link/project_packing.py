@@ -14,33 +14,18 @@ from dataclasses import field
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass
+from archgen.language.key_paths import OWN_DATA, SLICE, find_inner_part
+from archgen.language.language_tables import BARE_PARTS, DATA_PARTS
 from archgen.link.library_merging import keep_used_libraries
 from archgen.link.slice_merging import list_supported_elements
 from archgen.model.architecture import Architecture
 from archgen.model.message_types import ConceptualType
-from archgen.syntax.yaml_tree import IgnoreComment, MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
+from archgen.syntax.yaml_tree import IgnoreComment, MappingNode, ScalarNode, SequenceNode, YamlNode
 
 DataPath = tuple[str | int, ...]
-_BARE_KEYS = frozenset(
-    {
-        *("archgen", "optional", "conditional", "cores", "threads", "depth", "every", "priority", "core", "measured"),
-        *("reentrant", "large_paper", "static", "abstract", "whole", "respawn", "once", "port"),
-        *("range", "required"),
-    },
-)
-"""Keys whose values are numbers or booleans; everything else outside of parameters is text."""
+_PROPERTIES = "properties"
+"""The part of facts of people's own at any element."""
 _PLAIN_NUMBER = re.compile(r"0|-?[1-9][0-9]{0,14}")
-_RAW_KEYS = frozenset({"parameters", "calls", "hints"})
-"""Keys below which values keep the kind that they were written in."""
-_KEYS_OF_IDS = frozenset(
-    {"groups", "components", "component_types", "inputs", "outputs", "nodes", "hosts", "containers", "resources"}
-    | {"links", "frames", "chains", "views", "policies", "partners", "requirements", "use_cases", "types", "libraries"}
-    | {"publishes", "subscribes", "serves", "operations", "performance", "properties", "glossary", "urls", "variants"}
-    | {"abbreviations", "accepted", "actors", "callback_groups", "constants", "definitions", "environment", "fields"}
-    | {"request", "response", "feedback", "parameter_commands", "parameter_texts", "pictures", "remaps", "rules"}
-    | {"scheduling", "texts", "uses"}
-)
-"""Keys of mappings whose own keys are ids or names: what is called `port` or `hints` there is no key of the language."""
 
 
 @dataclass(slots=True)
@@ -120,7 +105,7 @@ def pack_project(  # noqa: PLR0913, PLR0917 - all that a packed file is made of
     """
     placer = _CommentPlacer(ignores, silenced_findings)
     root = keep_used_libraries(root, (architecture, *variant_architectures))
-    project_data = _pack_mapping(root, (), placer, is_raw=False)
+    project_data = _pack_mapping(root, (), placer, SLICE, is_raw=False)
     packed_project = PackedProject(comments=placer.place_comments())
     project_identity = {"id": architecture.project.id, "title": architecture.project.title}
     _declare_elements(project_data, root, architecture)
@@ -202,35 +187,24 @@ def _pack_type(shipped_type: ConceptualType) -> dict[str, object]:
     return data | ({"size": str(shipped_type.size)} if shipped_type.size else {})
 
 
-def _pack_value(
-    node: YamlNode,
-    path: DataPath,
-    placer: _CommentPlacer,
-    *,
-    is_raw: bool,
-) -> object:
+def _pack_value(node: YamlNode, path: DataPath, placer: _CommentPlacer, part: str, *, is_raw: bool) -> object:
+    """Pack what stands at a path, where the language has a part. `is_raw` below a part that holds other programs' data."""
+    is_raw = is_raw or part in DATA_PARTS
     if isinstance(node, MappingNode):
-        return _pack_mapping(node, path, placer, is_raw=is_raw)
+        return _pack_mapping(node, path, placer, part, is_raw=is_raw)
     if isinstance(node, SequenceNode):
         items = []
         for number, item in enumerate(node.items):
             placer.visit_value((*path, number), item.span)
-            items.append(_pack_value(item, (*path, number), placer, is_raw=is_raw))
+            item_part = find_inner_part(part, number)
+            items.append(_pack_value(item, (*path, number), placer, item_part, is_raw=is_raw))
         return items
-    return _pack_scalar(node, is_raw=is_raw)
-
-
-def _pack_scalar(scalar: ScalarNode, *, is_raw: bool) -> object:
     # As text `1.10` stays `1.10`; as a number it would become 1.1.
-    return scalar.value if is_raw else scalar.text
+    return node.value if is_raw or part in BARE_PARTS else node.text
 
 
 def _pack_mapping(
-    mapping: MappingNode,
-    path: DataPath,
-    placer: _CommentPlacer,
-    *,
-    is_raw: bool,
+    mapping: MappingNode, path: DataPath, placer: _CommentPlacer, part: str, *, is_raw: bool
 ) -> dict[str, object]:
     data: dict[str, object] = {}
     # An entry before what is in it: of several values on one line the outermost gets the comment.
@@ -240,8 +214,9 @@ def _pack_mapping(
         placer.visit_value(
             entry_path, entry.key_span, *([entry.value.span] if isinstance(entry.value, ScalarNode) else [])
         )
-        value = _pack_value(entry.value, entry_path, placer, is_raw=is_raw or _holds_raw_values(entry, path))
-        if entry.key == "properties" and path and not is_raw and isinstance(value, dict) and not _is_id(path):
+        entry_part = OWN_DATA if is_raw else find_inner_part(part, entry.key)
+        value = _pack_value(entry.value, entry_path, placer, entry_part, is_raw=is_raw)
+        if entry_part == _PROPERTIES and isinstance(value, dict):
             value = {name: _write_plain(text) for name, text in value.items()}
         data[entry.key] = value
     return data
@@ -252,20 +227,3 @@ def _write_plain(text: object) -> object:
     if isinstance(text, str) and _PLAIN_NUMBER.fullmatch(text):
         return int(text)
     return {"true": True, "false": False}.get(text, text) if isinstance(text, str) else text
-
-
-def _holds_raw_values(entry: MappingEntry, path: DataPath) -> bool:
-    if _is_id(path):
-        return False
-    return entry.key in _RAW_KEYS or (entry.key in _BARE_KEYS and not isinstance(entry.value, MappingNode))
-
-
-def _is_id(path: DataPath) -> bool:
-    """Whether a key in the mapping at a path is the id of an element: inputs may be called `hints`."""
-    keys = iter(path)
-    has_ids = False
-    for key in keys:
-        has_ids = key in _KEYS_OF_IDS
-        if has_ids and next(keys, None) is not None:
-            has_ids = False
-    return has_ids

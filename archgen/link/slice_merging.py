@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity, diagnose_repetition
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.diagnostics.suggestions import did_you_mean
+from archgen.language.language_tables import SUPPORTING_KEYS
 from archgen.link.missing_keys import find_incomplete
 from archgen.schema import element_of_path
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, SequenceNode
@@ -17,10 +18,7 @@ if TYPE_CHECKING:
     from archgen.syntax.yaml_tree import YamlDocument, YamlNode
 
 KeyPath = tuple[str, ...]
-_SUPPORTING_KEYS = frozenset(
-    {"timing", "requirements", "tags", "urls", "layout", "owner", "parameters", "node"}
-    | {"properties", "hints", "status", "contact", "image"}
-)
+_SUPPORTING_KEYS = frozenset((*SUPPORTING_KEYS["component"], "components"))
 """Keys that supporting files add to components which other files declare: they alone declare nothing."""
 _INSTANCE_KEYS = frozenset({"is", "same_as"})
 
@@ -169,7 +167,7 @@ def declares_itself(body: YamlNode) -> bool:
     """Whether a component's body declares it: it has more than supporting keys, or a component inside that declares itself."""
     if not isinstance(body, MappingNode):
         return True
-    own_keys = body.entries.keys() - _SUPPORTING_KEYS - {"components"}
+    own_keys = body.entries.keys() - _SUPPORTING_KEYS
     return (bool(own_keys) and body.declares) or any(declares_itself(inner.value) for inner in _components_of(body))
 
 

@@ -10,42 +10,12 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
+from archgen.language.key_paths import find_list_order
 from archgen.merge.sequence_merge import MergedRun, merge_sequences
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, YamlNode
 
-_GATHERING_KEYS = frozenset(
-    {
-        "backends",
-        "interfaces",
-        "open",
-        "passes",
-        "requirements",
-        "reviewers",
-        "shared_topics",
-        "sources",
-        "tags",
-        "use_cases",
-    }
-    | {"parent", "verified_by"}
-)
-"""Keys whose items stand by themselves, in any order: both sides may add to such a list, or begin it."""
-UNORDERED_KEYS = (
-    _GATHERING_KEYS
-    | {"after", "all", "connects", "cores", "drop", "from", "implements", "kind", "owner", "start", "to", "topic"}
-    | {"trigger"}
-)
-"""Keys whose lists say the same in any order: what both sides add to one is no conflict."""
 _MAX_COMPARED = 2_000
 """Items of a list that is compared item by item: that takes time that grows with the square at worst."""
-_FREE_SECTION = "parameters"
-_DATA_KEY = "hints"
-_CHOICES_KEY = "choices"
-"""What a declared parameter may be: in any order."""
-_CHAIN_SECTION = "chains"
-"""Its keys are ids of chains, and a list is the short form of `through`, in which order counts."""
-_SECTIONS_OF_SETS = frozenset({"inputs", "subscribes", "callback_groups"})
-"""Their keys are ids, and a list below one says the same in any order: sources, topics, members."""
-
 _FIELD_KEYS = frozenset({"fields", "request", "response", "feedback"})
 """Keys of a type below which order counts: fields stand in a message as they are written."""
 FIELD_ORDER = "(order)"
@@ -102,25 +72,8 @@ def read_merged_value(node: YamlNode, path: tuple[str, ...] = ()) -> MergedValue
             items.append((FIELD_ORDER, ItemList(tuple(ScalarValue("str", entry.key) for entry in node))))
         return MappingValue(tuple(sorted(items, key=lambda item: item[0])))
     list_items = tuple(read_merged_value(item, path) for item in node.items)
-    return ItemSet(tuple(sorted(list_items, key=repr))) if _is_unordered(path) else ItemList(list_items)
-
-
-def _is_unordered(path: tuple[str, ...]) -> bool:
-    if path[:1] in {("groups",), ("component_types",)} and path[-1] == _CHOICES_KEY:
-        section, *names = _list_keys_of_component(path)
-        # Behind the name of a parameter: one that is itself called `choices` is data.
-        return section == _FREE_SECTION and len(names) > 1
-    # What stands below `parameters` is the nodes' own data, whatever its keys are called.
-    is_named = bool(path) and (path[-1] in UNORDERED_KEYS or (len(path) > 1 and path[-2] in _SECTIONS_OF_SETS))
-    return is_named and _FREE_SECTION not in path and _DATA_KEY not in path[:-1] and path[:-1] != (_CHAIN_SECTION,)
-
-
-def _list_keys_of_component(path: tuple[str, ...]) -> tuple[str, ...]:
-    """Return what follows the innermost component on a path through a group or a component type."""
-    keys = path[2:]
-    while keys[:1] == ("components",) and len(keys) > 2:  # noqa: PLR2004 - components, id, and what is said of it
-        keys = keys[2:]
-    return keys
+    is_ordered = find_list_order(path) == "counts"
+    return ItemList(list_items) if is_ordered else ItemSet(tuple(sorted(list_items, key=repr)))
 
 
 def merge_values(
@@ -137,7 +90,7 @@ def merge_values(
     # What both sides add under one id is merged, too: a section, or a component that both begin to describe.
     is_begun = base is None or base == _EMPTY_ENTRY
     old_value = EMPTY_MAPPING if is_begun and isinstance(ours, MappingValue) else base
-    if is_begun and path and path[-1] in _GATHERING_KEYS:
+    if is_begun and find_list_order(path) == "gathered":
         old_value = ItemSet(())
     # A scalar in the place of such a list is a list of one.
     if isinstance(base, ScalarValue) and isinstance(ours, ItemSet) and base != _EMPTY_ENTRY:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import json
-from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from pathlib import Path
 
@@ -16,7 +15,6 @@ from hypothesis import strategies as st
 
 from archgen.analyses.size_counts import measure_progress, measure_size
 from archgen.checking.checked_packing import pack_checked_project
-from archgen.link import project_packing
 from archgen.pipeline import CheckedProject, check_project
 from archgen.schema.language_schema import load_schema
 from archgen.syntax.yaml_writer import write_yaml
@@ -566,30 +564,3 @@ glossary: {calls: 0x10}
         checked.architecture.use_cases,
         checked.architecture.glossary,
     )
-
-
-def _is_mapping_by_name(body: Mapping[str, object], definitions: Mapping[str, Mapping[str, object]]) -> bool:
-    """Whether what a part of the schema describes has names of the user's as keys."""
-    if isinstance(reference := body.get("$ref"), str):
-        return _is_mapping_by_name(definitions[reference.rpartition("/")[2]], definitions)
-    is_open = isinstance(body.get("additionalProperties"), dict) or "patternProperties" in body
-    return is_open or ("propertyNames" in body and "properties" not in body)
-
-
-def _list_mappings_by_name(part: object, definitions: Mapping[str, Mapping[str, object]]) -> Iterator[str]:
-    if isinstance(part, dict):
-        for key, body in (part.get("properties") or {}).items():
-            if isinstance(body, dict) and _is_mapping_by_name(body, definitions):
-                yield key
-        for body in part.values():
-            yield from _list_mappings_by_name(body, definitions)
-    elif isinstance(part, list):
-        for body in part:
-            yield from _list_mappings_by_name(body, definitions)
-
-
-def test_packing_knows_every_mapping_whose_keys_are_names() -> None:
-    schema = json.loads((ROOT / "schemas" / "archgen.schema.json").read_text(encoding="utf-8"))
-    mappings = set(_list_mappings_by_name(schema, schema["$defs"]))
-    # Below the raw keys every value keeps its kind, whatever it is called.
-    assert mappings - project_packing._RAW_KEYS == project_packing._KEYS_OF_IDS  # noqa: SLF001 - the table itself is tried

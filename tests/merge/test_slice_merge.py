@@ -54,7 +54,11 @@ def merge(base: str, ours: str, theirs: str) -> str | UnmergedSlice:
         ),
         pytest.param("n: {}\n", "n: {a: 1}\n", "n: {b: 2}\n", "n: {a: 1, b: 2}\n", id="both fill empty braces"),
         pytest.param(
-            "a: {tags: [x, y]}\n", "a: {tags: [x, z]}\n", "a: {tags: [w, x, y]}\n", "a: {tags: [w, x, z]}\n", id="tags"
+            "review: {passes: [x, y]}\n",
+            "review: {passes: [x, z]}\n",
+            "review: {passes: [w, x, y]}\n",
+            "review: {passes: [w, x, z]}\n",
+            id="passes",
         ),
         pytest.param("", "a: 1\n", "b: 2\n", "a: 1\nb: 2\n", id="both begin a file"),
         pytest.param("g: 1", "g: 1\nb: 2", "g: 1\nc: 3", "g: 1\nb: 2\nc: 3\n", id="no line end at the end"),
@@ -65,11 +69,11 @@ def merge(base: str, ours: str, theirs: str) -> str | UnmergedSlice:
             "a:\n  p: 1\n  q: 2\n", "a:\n  q: 2\n", "a:\n  p: 1\n  q: 3\n", "a:\n  q: 3\n", id="removed beside changed"
         ),
         pytest.param(
-            "a: {x: 1}\n",
-            "a: {x: 1, tags: [p]}\n",
-            "a: {x: 1, tags: [q]}\n",
-            "a: {x: 1, tags: [p, q]}\n",
-            id="new tags",
+            "review: {main: m}\n",
+            "review: {main: m, passes: [p]}\n",
+            "review: {main: m, passes: [q]}\n",
+            "review: {main: m, passes: [p, q]}\n",
+            id="new passes",
         ),
         pytest.param(
             "sources:\n  - a.yaml\n",
@@ -181,8 +185,8 @@ def test_a_small_change_is_carried_into_a_reformatted_text(
 
 
 LISTED = """\
-c:
-  requirements:
+review:
+  passes:
     - R-1
     - R-2   # since March
     - "No dust, ever"
@@ -210,9 +214,9 @@ def test_a_change_of_a_few_lines_is_carried_into_a_text_indented_anew(
 
 
 def test_an_item_is_added_to_a_list_that_now_stands_in_brackets() -> None:
-    base = "requirements:\n  - R-1\n  - R-2\n"
-    ours, theirs = 'requirements: [R-1, R-2, "a b"]\n', base + "  - R-3\n"
-    assert merge(base, ours, theirs) == 'requirements: [R-1, R-2, "a b", R-3]\n'
+    base = "sources:\n  - R-1\n  - R-2\n"
+    ours, theirs = 'sources: [R-1, R-2, "a b"]\n', base + "  - R-3\n"
+    assert merge(base, ours, theirs) == 'sources: [R-1, R-2, "a b", R-3]\n'
 
 
 @pytest.mark.parametrize(

@@ -17,99 +17,14 @@ from archgen.emit.data.schema_explanations import (
     explain_part,
     list_types,
 )
+from archgen.language.language_tables import OFFERS, SECTION_KINDS
 from archgen.views.offered_names import OfferedName, OfferedNames, keep_plain_names
-
-_OFFERS: Mapping[str, tuple[str, ...]] = {
-    "call_use.message": ("call_messages",),
-    "chain": ("waypoints",),
-    "chain.requirements": ("requirements",),
-    "chain.through": ("waypoints",),
-    "chapters": ("chapters",),
-    "component_requirements": ("requirements",),
-    "component_type_item": ("component_type_names",),
-    "component_type_name": ("component_type_names",),
-    "container": ("hosts",),
-    "container.host": ("hosts",),
-    "field": ("types",),
-    "field_type": ("types",),
-    "forbid.from": ("selectors",),
-    "forbid.to": ("selectors",),
-    "frame": ("frames",),
-    "frame.by": ("implemented",),
-    "frame.parent": ("frames",),
-    "group_components": ("implemented",),
-    "input": ("sources",),
-    "input.frame": ("frames",),
-    "input.from": ("sources",),
-    "input.medium": ("media",),
-    "link": ("hosts", "implemented"),
-    "link.connects": ("hosts", "implemented"),
-    "link.protocol": ("media",),
-    "message_part": ("types",),
-    "node": ("implemented",),
-    "node.container": ("containers",),
-    "node.host": ("hosts",),
-    "node.implements": ("implemented",),
-    "operation": ("types",),
-    "operation.request": ("types",),
-    "operation.response": ("types",),
-    "output": ("types",),
-    "output.frame": ("frames",),
-    "output.medium": ("media",),
-    "owners": ("partners",),
-    "port_list": ("inputs",),
-    "project.middleware": ("media",),
-    "promise.frame": ("frames",),
-    "resource": ("hosts",),
-    "resource.host": ("hosts",),
-    "requirement.parent": ("requirements",),
-    "requirement.use_cases": ("use_cases",),
-    "requirement.verified_by": ("use_cases", "chains"),
-    "require.inputs_from": ("selectors",),
-    "require.of": ("selectors",),
-    "ros.distro": ("distros",),
-    "start": ("startable",),
-    "start.after": ("startable",),
-    "start.by": ("startable",),
-    "step.from": ("step_ends",),
-    "step.to": ("step_ends",),
-    "tags": ("tags",),
-    "topic_names": ("topics",),
-    "topic_use": ("topics",),
-    "topic_use.message": ("topic_messages",),
-    "trigger": ("inputs",),
-    "type": ("topic_messages", "call_messages"),
-    "type_input.medium": ("media",),
-    "type.frame": ("frames",),
-    "type.message": ("topic_messages", "call_messages"),
-    "type_name": ("types",),
-    "variant.of": ("variants",),
-    "variant.without": ("selectors",),
-    "view": ("selectors",),
-    "view.show": ("selectors",),
-}
-"""Which names fit where: a definition of the language's schema, or a property of one."""
 
 _LISTED_KINDS = frozenset({"inputs", "waypoints"})
 """Names that are offered in lists only: nobody writes a chain of one element."""
 
-_SECTIONS = (
-    *(
-        "partners",
-        "use_cases",
-        "requirements",
-        "component_types",
-        "groups",
-        "nodes",
-        "types",
-        "hosts",
-        "containers",
-        "links",
-        "chains",
-    ),
-    *("resources", "frames", "views", "policies", "variants"),
-)
-"""Sections whose ids are offered as keys: a second file may add to an element of the first."""
+_OTHER_SECTIONS = frozenset({"properties", "libraries"})
+"""Sections whose ids no other file adds to: properties are offered at elements, a library is one line."""
 
 
 _BUILT_IN_NAMES = frozenset(
@@ -129,10 +44,10 @@ def make_editor_schema(language_schema: bytes, names: OfferedNames, rule_summari
     definitions: dict[str, SchemaPart] = schema["$defs"]
     _add_rules(definitions["rules"], rule_summaries)
     list_items = dict[str, SchemaPart]()
-    for place, kinds in _OFFERS.items():
+    for place, kinds in OFFERS.items():
         _offer_names(_inline_part(definitions, place), kinds, names, list_items)
     definitions |= list_items
-    for section in _SECTIONS:
+    for section in (section for section in SECTION_KINDS if section not in _OTHER_SECTIONS):
         _offer_keys(definitions[section], names[section])
     _offer_keys(definitions["timing_uses"], names["resources"])
     _offer_keys(definitions["properties"], names["properties"])
@@ -144,7 +59,7 @@ def make_editor_schema(language_schema: bytes, names: OfferedNames, rule_summari
         explain_part(part, keeps_examples=any(part is definitions[name] for name in OFFERED_EXAMPLES))
         if part is not schema:
             allow_empty(part)
-    for kind in sorted({kind for kinds in _OFFERS.values() for kind in kinds} - _LISTED_KINDS):
+    for kind in sorted({kind for kinds in OFFERS.values() for kind in kinds} - _LISTED_KINDS):
         definitions[f"offered_{kind}"] = _list_words(names[kind])
     return schema
 

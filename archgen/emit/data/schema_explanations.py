@@ -34,7 +34,7 @@ over one name would list all of them."""
 def explain_part(part: SchemaPart, *, keeps_examples: bool) -> None:
     """Move the examples into the explanation, where they explain and are not offered as values."""
     examples = part.pop("examples", []) if not keeps_examples else []
-    examples += [snippet["body"] for snippet in part.pop("defaultSnippets", [])]
+    examples = [*examples, *(snippet["body"] for snippet in part.pop("defaultSnippets", []))]
     if "offers" in part:
         part["defaultSnippets"] = part.pop("offers")
     if "description" not in part:
