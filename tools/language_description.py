@@ -43,7 +43,22 @@ _SCHEMA_MEMBERS = {
 _OTHER_WORDS = frozenset(
     {
         *("as", "type", "keys", "schema", "open", "example", "examples", "snippet", "snippets"),
-        *("word", "id", "like", "without", "offers", "order", "bare", "data", "supporting", "declares", "also_entries"),
+        *(
+            "word",
+            "id",
+            "like",
+            "without",
+            "offers",
+            "order",
+            "bare",
+            "data",
+            "supporting",
+            "declares",
+            "also_entries",
+            "short",
+            "listed",
+            "named_by_id",
+        ),
     }
 )
 """The words of a part that the schema does not show as they are; `language/README.md` says what each means."""

@@ -22,7 +22,7 @@ from typing import Literal
 
 '''
 _WIDTH = 120
-_FACTS = ("order", "bare", "data", "offers")
+_FACTS = ("order", "listed", "bare", "data", "offers")
 """Words by which a key says more of its value than its type."""
 _TEXTLESS_KINDS = frozenset({"integer", "boolean", "number"})
 
@@ -40,6 +40,11 @@ def make_tables(description: Description) -> str:
         kind: tuple(sorted(name for name, key in description.keys_of(kind).items() if key["declares"] is False))
         for kind, part in description.kinds.items()
         if part.get("supporting")
+    }
+    declaring = {
+        kind: names
+        for kind in description.kinds
+        if (names := tuple(name for name, key in description.keys_of(kind).items() if key.get("declares") is True))
     }
     tables = "\n".join(
         [
@@ -70,6 +75,26 @@ def make_tables(description: Description) -> str:
                 "Which names of a project fit at a part.",
             ),
             _format_table("SECTION_KINDS", sections, "Sections whose keys are ids of elements: the kind of these."),
+            _format_names(
+                "LISTED_PARTS",
+                (name for name, part in parts.items() if part.get("listed")),
+                "Lists in whose place a scalar is a list of one.",
+            ),
+            _format_table(
+                "SHORT_KEYS",
+                {kind: _as_tuple(part["short"]) for kind, part in description.kinds.items() if "short" in part},
+                "The keys that a scalar or a list in the place of an element stands for.",
+            ),
+            _format_table(
+                "PLAIN_SECTIONS",
+                {kind: section for section, kind in sections.items() if description.kinds[kind].get("named_by_id")},
+                "Kinds of elements that are named by their id alone, not by a path, and their sections.",
+            ),
+            _format_table(
+                "DECLARING_KEYS",
+                declaring,
+                "Keys of which a new element has one, where any other key only adds to one.",
+            ),
             _format_table("SUPPORTING_KEYS", supporting, "Keys that say something of an element that others declare."),
         ]
     )

@@ -443,6 +443,37 @@ SECTION_KINDS: Mapping[str, str] = {
     "chains": "chain", "views": "view", "policies": "policy", "variants": "variant",
 }
 """Sections whose keys are ids of elements: the kind of these."""
+LISTED_PARTS: frozenset[str] = frozenset({
+    "chain.through", "command", "declared_of", "input.from", "key_paths", "link.connects", "link_ends",
+    "node.implements", "node_kinds", "references", "requirement.parent", "requirement.verified_by",
+    "requirement_parents", "review.backends", "review.passes", "start.after", "topic_names", "variant.of",
+    "variant_ids", "verifications", "way",
+})
+"""Lists in whose place a scalar is a list of one."""
+SHORT_KEYS: Mapping[str, tuple[str, ...]] = {
+    "partner": ("title",), "variant": ("title",), "library": ("path",), "use_case": ("title",), "actor": ("title",),
+    "requirement": ("title",), "property_declaration": ("title",), "view": ("show",), "group": ("title",),
+    "component": ("title",), "component_type": ("title",), "input": ("from",), "output": ("type",),
+    "type_input": ("type",), "indicator": (), "operation": ("response",), "type": ("message",), "field": ("type",),
+    "constant": (), "frame": ("parent",), "node": ("implements",), "topic_use": ("topic",), "call_use": ("name",),
+    "qos": ("profile",), "host": ("title",), "container": ("host",), "resource": ("host",), "link": ("connects",),
+    "start": ("after",), "start_ready": ("wait",), "policy": (), "latency": ("best", "worst"), "chain": ("through",),
+}
+"""The keys that a scalar or a list in the place of an element stands for."""
+PLAIN_SECTIONS: Mapping[str, str] = {
+    "partner": "partners", "use_case": "use_cases", "requirement": "requirements", "host": "hosts",
+    "container": "containers", "resource": "resources", "chain": "chains",
+}
+"""Kinds of elements that are named by their id alone, not by a path, and their sections."""
+DECLARING_KEYS: Mapping[str, tuple[str, ...]] = {
+    "view": ("show",),
+    "component": ("title", "functionality", "description", "is", "same_as", "role", "performance", "inputs", "outputs", "open", "operations", "from", "autoconnect", "containers", "frames"),
+    "component_type": ("title", "functionality", "description", "role", "performance", "outputs", "operations", "autoconnect", "containers", "frames"),
+    "component_node": ("kind", "command"), "node": ("implements", "kind", "command", "internal"),
+    "container": ("host",), "resource": ("host",), "link": ("connects",), "policy": ("forbid", "require"),
+    "chain": ("through",),
+}
+"""Keys of which a new element has one, where any other key only adds to one."""
 SUPPORTING_KEYS: Mapping[str, tuple[str, ...]] = {
     "component": ("contact", "hints", "image", "layout", "node", "owner", "parameters", "properties", "requirements", "status", "tags", "timing", "urls"),
 }

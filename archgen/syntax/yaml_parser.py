@@ -29,6 +29,7 @@ MAX_EXPANDED = 100_000
 """How many of them may come from aliases: nested aliases multiply, ten lines can stand for billions of values."""
 MAX_DEPTH = 64
 """How deep values may nest, which also bounds every recursion over a tree. The language needs 9, parameters more."""
+_TOO_DEEP = f"values are nested deeper than {MAX_DEPTH}"
 _LINE_BREAKS = "\x85\u2028\u2029"
 """Line breaks for libyaml but not for YAML 1.2 or editors: hidden from it, else all later line numbers would be off."""
 
@@ -122,6 +123,11 @@ def _run_walk(walk: _TreeWalk, restore: dict[int, int]) -> None:
     try:
         _build_tree(walk, _make_parser(walk.text), restore)
     except yaml.MarkedYAMLError as error:
+        # libyaml looks ahead: of very many brackets it refuses the thousandth before it tells of the first.
+        if "nesting depth" in (error.problem or "") and error.problem_mark:
+            line, column = error.problem_mark.line + 1, error.problem_mark.column + 1
+            walk.report_error(_TOO_DEEP, None, Span(walk.file, line, column, line, column + 1), "too-large")
+            return
         problem_mark, context_mark = error.problem_mark or error.context_mark, error.context_mark
         problem = yaml_errors.ParserProblem(
             error.problem or "",
@@ -216,7 +222,7 @@ def _build_tree(walk: _TreeWalk, parser: Any, restore: dict[int, int]) -> None: 
                 )
                 return
             if len(stack) >= MAX_DEPTH:
-                report_error(f"values are nested deeper than {MAX_DEPTH}", None, span, "too-large")
+                report_error(_TOO_DEEP, None, span, "too-large")
                 return
             value_count += 1
             anchor = event.anchor
