@@ -58,6 +58,7 @@ _OTHER_WORDS = frozenset(
             "short",
             "listed",
             "named_by_id",
+            "element",
         ),
     }
 )
@@ -104,6 +105,11 @@ class Description:
             own["says"] = own["says"].replace("KIND", self.word_of(kind))
         return {"title": name.replace("_", " ").capitalize(), **own}
 
+    def kinds_with(self, part: str) -> list[str]:
+        """Return the kinds of elements with a key at which a part stands; not those that say a part of another element."""
+        kinds = (kind for kind, body in self.kinds.items() if body.get("element", True))
+        return [kind for kind in kinds if any(key.get("type") == part for key in self.keys_of(kind).values())]
+
     def word_of(self, kind: str) -> str:
         """Return what sentences call an element of a kind."""
         return str(self.kinds[kind].get("word", kind.replace("_", " ")))
@@ -129,10 +135,20 @@ def load_description(folder: Path = FOLDER) -> Description:
                 raise DescriptionError(message)
             kinds[kind] = part
     description = Description(_read_file(folder / "common.yaml"), _read_file(folder / "types.yaml"), kinds)
+    for part in description.types.values():
+        _list_named_kinds(part, description)
     if twice := description.types.keys() & kinds.keys():
         message = f"a kind and a type at once: {', '.join(sorted(twice))}"
         raise DescriptionError(message)
     return description
+
+
+def _list_named_kinds(part: Part, description: Description) -> None:
+    """Write out `values: {kinds_with: PART}`, at the part or at the items of a list."""
+    if isinstance(part.get("values"), dict):
+        part["values"] = description.kinds_with(part["values"]["kinds_with"])
+    if isinstance(part.get("items"), dict):
+        _list_named_kinds(part["items"], description)
 
 
 def _read_file(path: Path) -> Part:

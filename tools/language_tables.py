@@ -43,8 +43,9 @@ def make_tables(description: Description) -> str:
     }
     declaring = {
         kind: names
-        for kind in description.kinds
-        if (names := tuple(name for name, key in description.keys_of(kind).items() if key.get("declares") is True))
+        for kind, part in description.kinds.items()
+        if not part.keys() & {"supporting", "like"}
+        and (names := tuple(name for name, key in description.keys_of(kind).items() if key.get("declares")))
     }
     tables = "\n".join(
         [
@@ -94,6 +95,11 @@ def make_tables(description: Description) -> str:
                 "DECLARING_KEYS",
                 declaring,
                 "Keys of which a new element has one, where any other key only adds to one.",
+            ),
+            _format_tuple(
+                "ANNOTATED_KINDS",
+                description.kinds_with("properties"),
+                "Kinds of elements that may have properties and hints.",
             ),
             _format_table("SUPPORTING_KEYS", supporting, "Keys that say something of an element that others declare."),
         ]
@@ -156,6 +162,11 @@ def _format_literal(name: str, values: Iterable[str]) -> str:
 
 def _format_names(name: str, values: Iterable[str], says: str) -> str:
     lines = [f"{name}: frozenset[str] = frozenset({{", *_wrap([f'"{value}"' for value in sorted(values)], "    "), "})"]
+    return "\n".join([*lines, f'"""{says}"""'])
+
+
+def _format_tuple(name: str, values: Iterable[str], says: str) -> str:
+    lines = [f"{name}: tuple[str, ...] = (", *_wrap([f'"{value}"' for value in values], "    "), ")"]
     return "\n".join([*lines, f'"""{says}"""'])
 
 

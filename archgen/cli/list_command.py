@@ -12,31 +12,31 @@ import click
 from archgen.cli import command_support, shared_options
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.text_columns import find_width
+from archgen.language.language_tables import SECTION_KINDS
 
 if TYPE_CHECKING:
     from archgen.pipeline import CheckedProject
 
-LISTABLE_KINDS = (
+_FURTHER_KINDS = (
     "components",
-    "nodes",
-    "groups",
     "connections",
     "edges",
     "topics",
-    "types",
-    "requirements",
-    "use_cases",
     "steps",
-    "chains",
     "parameters",
     "operations",
-    "hosts",
-    "frames",
     "start_up",
-    "component_types",
-    "variants",
     "backends",
 )
+"""What can be listed and is no section of elements."""
+_UNLISTED_SECTIONS = frozenset({"libraries"})
+"""What they hold is listed as `component_types`."""
+LISTABLE_KINDS = tuple(sorted({*_FURTHER_KINDS, *SECTION_KINDS} - _UNLISTED_SECTIONS))
+_SELECTED_KINDS = frozenset(
+    {*_FURTHER_KINDS, "nodes", "groups", "types", "requirements", "use_cases", "chains", "hosts", "frames", "variants"}
+    - {"backends"}
+)
+"""Kinds of which a selector names some."""
 
 
 @click.command("list")
@@ -65,7 +65,7 @@ def command(selector: tuple[str, ...], sort: str, library: str | None, form: str
     checked_project = command_support.check_or_exit(project)
     command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
     selector_text = " ".join(selector)
-    if sort in {"backends", "component_types"} and selector_text:
+    if selector_text and sort not in _SELECTED_KINDS:
         msg = f"a selector names elements: `--of {sort}` takes none"
         raise click.UsageError(msg)
     if library is not None and sort != "component_types":

@@ -466,14 +466,15 @@ PLAIN_SECTIONS: Mapping[str, str] = {
 }
 """Kinds of elements that are named by their id alone, not by a path, and their sections."""
 DECLARING_KEYS: Mapping[str, tuple[str, ...]] = {
-    "view": ("show",),
-    "component": ("title", "functionality", "description", "is", "same_as", "role", "performance", "inputs", "outputs", "open", "operations", "from", "autoconnect", "containers", "frames"),
-    "component_type": ("title", "functionality", "description", "role", "performance", "outputs", "operations", "autoconnect", "containers", "frames"),
-    "component_node": ("kind", "command"), "node": ("implements", "kind", "command", "internal"),
-    "container": ("host",), "resource": ("host",), "link": ("connects",), "policy": ("forbid", "require"),
-    "chain": ("through",),
+    "view": ("show",), "node": ("implements", "kind", "command", "internal"), "container": ("host",),
+    "resource": ("host",), "link": ("connects",), "policy": ("forbid", "require"), "chain": ("through",),
 }
 """Keys of which a new element has one, where any other key only adds to one."""
+ANNOTATED_KINDS: tuple[str, ...] = (
+    "partner", "use_case", "requirement", "view", "group", "component", "component_type", "input", "output", "type",
+    "frame", "node", "host", "container", "resource", "link", "policy", "chain",
+)
+"""Kinds of elements that may have properties and hints."""
 SUPPORTING_KEYS: Mapping[str, tuple[str, ...]] = {
     "component": ("contact", "hints", "image", "layout", "node", "owner", "parameters", "properties", "requirements", "status", "tags", "timing", "urls"),
 }

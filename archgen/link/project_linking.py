@@ -21,7 +21,7 @@ from archgen.link.element_outline import ElementOutline, diagnose_undeclared_inp
 from archgen.link.link_memory import LinkMemory
 from archgen.link.merged_timing import TimingMerger, find_shared_components
 from archgen.link.parameter_flattening import flatten_parameters
-from archgen.link.reference_resolution import PLAIN_SECTIONS, ReferenceResolver
+from archgen.link.reference_resolution import SECTIONS_OF_PLAIN_NAMES, ReferenceResolver
 from archgen.model.architecture import Architecture
 from archgen.model.known_interfaces import Interfaces
 from archgen.syntax.yaml_tree import MappingNode
@@ -152,7 +152,7 @@ def make_resolver(  # noqa: PLR0913, PLR0917 - what a resolver knows
     }
     plain_spans = {
         kind: {entry.key: entry.key_span for entry in mapping_values.get_mapping(root, section)}
-        for kind, section in PLAIN_SECTIONS.items()
+        for kind, section in SECTIONS_OF_PLAIN_NAMES.items()
     }
     make_index = memory.index_paths if memory else None
     all_names = memory.recall_names(spans, plain_spans) if memory else None

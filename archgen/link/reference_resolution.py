@@ -11,22 +11,15 @@ from typing import NamedTuple
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import AskedName, Diagnostic, Label
 from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.language.language_tables import PLAIN_SECTIONS
 from archgen.link import mapping_values
 from archgen.link.path_guesses import PathGuesser, list_possible_kinds
 from archgen.link.unknown_references import diagnose_unknown_reference
 from archgen.model.path_resolver import NO_MATCH, ElementRef, PathIndex, PathMatch, PathResolver
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
-PLAIN_SECTIONS = {
-    "partner": "partners",
-    "host": "hosts",
-    "container": "containers",
-    "resource": "resources",
-    "use case": "use_cases",
-    "requirement": "requirements",
-    "chain": "chains",
-}
-"""The sections that declare what is named by its id alone."""
+SECTIONS_OF_PLAIN_NAMES = {kind.replace("_", " "): section for kind, section in PLAIN_SECTIONS.items()}
+"""The sections that declare what is named by its id alone, by the word of their kind."""
 _NO_NODES: Mapping[str, Collection[str]] = MappingProxyType({})
 NameList = tuple[tuple[str, tuple[str, ...]], ...]
 """All names of a version, by kind: in two versions with the same ones each reference means the same."""
@@ -174,7 +167,7 @@ class ReferenceResolver:
             if self.answers is not None:
                 self.answers.append(Answer(reference.text, (kind,)))
             return reference.text
-        if self.is_lost(reference.text) or PLAIN_SECTIONS[kind] in self.lost_keys:
+        if self.is_lost(reference.text) or SECTIONS_OF_PLAIN_NAMES[kind] in self.lost_keys:
             return None
         guess = self.guesser.guess_name(reference.text, known_spans)
         diagnostic = diagnose_unknown_reference(
@@ -186,7 +179,7 @@ class ReferenceResolver:
             known_names=tuple(known_spans),
             asked_name=AskedName(kind),
         )
-        help_line = diagnostic.help or f"declare it in the section `{PLAIN_SECTIONS[kind]}`"
+        help_line = diagnostic.help or f"declare it in the section `{SECTIONS_OF_PLAIN_NAMES[kind]}`"
         self.diagnostics.append(replace(diagnostic, help=help_line))
         return None
 

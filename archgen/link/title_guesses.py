@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from itertools import chain
 from typing import NamedTuple
@@ -10,6 +10,7 @@ from typing import NamedTuple
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.diagnostics.suggestions import find_closest
+from archgen.language.language_tables import PLAIN_SECTIONS
 from archgen.model.architecture import Architecture
 
 _MAX_COMPARISONS = 300_000
@@ -51,19 +52,12 @@ def add_title_guesses(
 
 def _index_titles(architecture: Architecture, kind: str) -> dict[str, _TitledElement]:
     """Return the elements of a kind by title, in one case, and by id. Of several with one title the first counts."""
-    tables: Mapping[str, Iterable[Iterable[object]]] = {
-        # Components first: most references are to them.
-        "part": (architecture.components.values(), architecture.groups.values()),
-        "partner": (architecture.partners.values(),),
-        "host": (architecture.hosts.values(),),
-        "container": (architecture.containers.values(),),
-        "resource": (architecture.resources.values(),),
-        "use case": (architecture.use_cases.values(),),
-        "requirement": (architecture.requirements.values(),),
-        "chain": (architecture.chains.values(),),
-    }
+    # Components first: most references are to them.
+    parts = (architecture.components.values(), architecture.groups.values())
+    plain = PLAIN_SECTIONS.get(kind.replace(" ", "_"))
+    tables: Iterable[Iterable[object]] = (getattr(architecture, plain).values(),) if plain else parts
     index: dict[str, _TitledElement] = {}
-    for element in chain.from_iterable(tables[kind]):
+    for element in chain.from_iterable(tables):
         titled_element = _TitledElement(element.id, element.at)  # type: ignore[attr-defined]
         index.setdefault(element.title.casefold(), titled_element)  # type: ignore[attr-defined]
         index.setdefault(element.id, titled_element)  # type: ignore[attr-defined]

@@ -6,14 +6,12 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple, Protocol
 
 from archgen.diagnostics.source_span import Span
+from archgen.language.language_tables import ANNOTATED_KINDS, SECTION_KINDS
 from archgen.model.architecture import Architecture
 from archgen.model.element_annotations import ElementAnnotations, PropertyDeclaration
 
-KINDS = (
-    *("partner", "use_case", "requirement", "component_type", "group", "component", "output", "input", "type", "node"),
-    *("host", "container", "resource", "link", "frame", "chain", "policy", "view"),
-)
-"""The kinds of elements, as `of` of a declared property names them."""
+_LISTED_APART = frozenset({"component_types", "nodes", "types"})
+"""Sections of which some elements were not written here."""
 
 
 class Annotated(Protocol):
@@ -49,22 +47,10 @@ class AnnotatedElement(NamedTuple):
 
 def list_annotated_elements(architecture: Architecture) -> Iterator[AnnotatedElement]:
     """Yield every element that was written; components and ports of instances included, types of libraries not."""
-    plain_sections: Mapping[str, Mapping[str, Annotated]] = {
-        "partner": architecture.partners,
-        "use_case": architecture.use_cases,
-        "requirement": architecture.requirements,
-        "group": architecture.groups,
-        "host": architecture.hosts,
-        "container": architecture.containers,
-        "resource": architecture.resources,
-        "link": architecture.links,
-        "frame": architecture.frames,
-        "chain": architecture.chains,
-        "policy": architecture.policies,
-        "view": architecture.views,
-    }
-    for kind, elements in plain_sections.items():
-        yield from (AnnotatedElement(kind, id_, element) for id_, element in elements.items())
+    for section, kind in SECTION_KINDS.items():
+        if kind in ANNOTATED_KINDS and section not in _LISTED_APART:
+            elements: Mapping[str, Annotated] = getattr(architecture, section)
+            yield from (AnnotatedElement(kind, id_, element) for id_, element in elements.items())
     for each in architecture.component_types.values():
         if each.library is None:
             yield AnnotatedElement("component_type", each.id, each, is_expected=not each.is_abstract)

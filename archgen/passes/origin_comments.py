@@ -13,28 +13,16 @@ from archgen.diagnostics.element_origins import Origin, TreePath
 from archgen.diagnostics.safe_text import make_visible
 from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.frozen import replace
+from archgen.language.language_tables import SECTION_KINDS
 from archgen.model.made_elements import ElementPlace, MadeElement
 from archgen.passes.project_tree import list_paths
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
 
 ORIGIN_MARK = "# archgen: "
 _COMMENT = re.compile(r"# archgen: (?:made\[([a-z0-9_., ]{1,2000})\] )?from ([^#\r\n]{1,300})")
-_SECTIONS_OF_ELEMENTS = frozenset(
-    {
-        "groups",
-        "component_types",
-        "nodes",
-        "types",
-        "hosts",
-        "containers",
-        "links",
-        "frames",
-        "chains",
-        "views",
-        "policies",
-    }
-    | {"requirements", "use_cases", "partners", "resources"}
-)
+_UNMADE_SECTIONS = frozenset({"libraries", "properties", "variants"})
+"""Sections of which no pass makes anything."""
+_SECTIONS_OF_ELEMENTS = SECTION_KINDS.keys() - _UNMADE_SECTIONS
 _MAX_OUTER_LINES = 100_000
 MadePlace = tuple[Span, str]
 """The place that a made value carries, and its key where something else has this place, too; else nothing."""

@@ -9,6 +9,8 @@ from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass
+from archgen.language.key_paths import SLICE
+from archgen.language.language_tables import KEYS, SECTION_KINDS
 from archgen.project.project_search import PROJECT_FILE
 from archgen.project.reading_state import ReadingState
 from archgen.project.shipped_library import SHIPPED_PATH, choose_distro, list_shipping_distros, read_shipped_document
@@ -18,7 +20,8 @@ from archgen.syntax.project_files import FileRefusal, ProjectFiles
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlDocument
 
 LIBRARY_SECTIONS = ("component_types", "types")
-_SETTINGS = frozenset({"archgen", "project", "sources", "rules", "layout", "report", "review", "site", "partners"})
+_MEANINGS = frozenset({"ros", "glossary"})
+_SETTINGS = KEYS[SLICE].keys() - SECTION_KINDS.keys() - _MEANINGS | {"partners"}
 """Sections of a library that is checked as a project of its own. They say nothing about who uses it."""
 
 

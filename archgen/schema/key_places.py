@@ -6,6 +6,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from archgen.diagnostics.suggestions import find_closest
+from archgen.language.language_tables import SECTION_KINDS
 from archgen.schema.language_schema import load_schema, resolve_part
 from archgen.schema.schema_wording import add_article
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
@@ -52,23 +53,9 @@ _PORT_HOMES = ("type", "topic_use", "timing", "node")
 """The order at an input or an output: its message is that of its type, its topic and QoS are the node's."""
 _NAMED_ELEMENTS = {"node": "nodes", "nodes": "nodes", "type": "types", "host": "hosts", "chain": "chains"}
 """Words for an element where an element of another kind is written, and their sections."""
-_ELEMENT_SECTIONS = {
-    "groups": "group",
-    "nodes": "node",
-    "types": "type",
-    "hosts": "host",
-    "containers": "container",
-    "resources": "resource",
-    "links": "link",
-    "chains": "chain",
-    "views": "view",
-    "policies": "policy",
-    "partners": "partner",
-    "requirements": "requirement",
-    "frames": "frame",
-    "variants": "variant",
-    "use_cases": "use_case",
-}
+_ALIKE_SECTIONS = frozenset({"component_types", "libraries", "properties"})
+"""Sections whose elements have no keys by which they could be told from components, or from data."""
+_ELEMENT_SECTIONS = {section: kind for section, kind in SECTION_KINDS.items() if section not in _ALIKE_SECTIONS}
 
 
 def find_key_home(key: str, path: KeyPath, kind: str) -> str | None:

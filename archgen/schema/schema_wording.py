@@ -13,6 +13,7 @@ from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import AskedName, Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.diagnostics.suggestions import did_you_mean, did_you_shorten
+from archgen.language.language_tables import SECTION_KINDS
 from archgen.schema import list_wording
 from archgen.schema.language_schema import load_schema, resolve_part
 from archgen.schema.quantity_wording import clip_text, describe_wrong_quantity, find_dimension
@@ -29,10 +30,7 @@ _BOOLEAN_WORDS = {
     "n": "false",
     "0": "false",
 }
-SECTIONS_BY_ID = frozenset(
-    {"groups", "nodes", "types", "requirements", "use_cases", "partners", "hosts", "containers", "links", "chains"}
-    | {"resources", "views", "policies", "component_types", "frames", "libraries", "properties", "variants"}
-)
+SECTIONS_BY_ID = frozenset(SECTION_KINDS)
 """The top-level sections that hold elements by id."""
 _UNQUOTED_VALUE = re.compile(r"-?[0-9]+|true|false", re.IGNORECASE)
 _TYPE_PHRASES = {"array": "a list", "object": "a mapping", "integer": "a whole number", "boolean": "`true` or `false`"}

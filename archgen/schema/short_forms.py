@@ -12,13 +12,15 @@ from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, diagnose_repetition
 from archgen.frozen import dataclass
+from archgen.language.key_paths import SLICE
+from archgen.language.language_tables import DATA_PARTS, ENTRIES, KEYS, LISTED_PARTS, SHORT_KEYS
 from archgen.model.generic_names import write_generic_name
 from archgen.schema import component_sugar
 from archgen.schema.parameter_forms import expand_parameters
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator
 
     from archgen.syntax.yaml_tree import YamlDocument, YamlNode
 
@@ -34,97 +36,42 @@ class ElementForm:
 
     short_keys: tuple[str, ...] = ()
     list_keys: frozenset[str] = frozenset()
-    keyed_forms: Mapping[str, ElementForm] = field(default_factory=dict)
-    part_forms: Mapping[str, ElementForm] = field(default_factory=dict)
+    keyed_forms: dict[str, ElementForm] = field(default_factory=dict)
+    part_forms: dict[str, ElementForm] = field(default_factory=dict)
     raw_keys: frozenset[str] = frozenset()
 
 
 _PLAIN_FORM = ElementForm()
-_TITLED_FORM = ElementForm(("title",))
-_TOPIC_FORM = ElementForm(("topic",), frozenset({"topic"}), part_forms={"qos": ElementForm(("profile",))})
-_CALL_FORM = ElementForm(("name",))
-_USE_FORMS = {"publishes": _TOPIC_FORM, "subscribes": _TOPIC_FORM, "serves": _CALL_FORM, "calls": _CALL_FORM}
-_CONTAINER_FORM = ElementForm(("host",), raw_keys=frozenset({"parameters"}))
-_FRAME_FORM = ElementForm(("parent",))
-_START_FORM = ElementForm(("after",), frozenset({"after"}), part_forms={"ready": ElementForm(("wait",))})
-_COMPONENT_NODE_FORM = ElementForm(
-    list_keys=frozenset({"kind", "command"}),
-    keyed_forms=_USE_FORMS,
-    part_forms={"start": _START_FORM},
-    raw_keys=frozenset({"parameters"}),
-)
-
-_COMPONENT_PARTS = {
-    "inputs": ElementForm(("from",), frozenset({"from"})),
-    "outputs": ElementForm(("type",), frozenset({"from"})),
-    "performance": _PLAIN_FORM,
-    "containers": _CONTAINER_FORM,
-    "operations": ElementForm(("response",)),
-    "frames": _FRAME_FORM,
-}
-_COMPONENT_FORM = ElementForm(
-    ("title",),
-    frozenset({"from"}),
-    keyed_forms=_COMPONENT_PARTS,
-    part_forms={"node": _COMPONENT_NODE_FORM},
-    # Written out by `expand_parameters`; the rest is data.
-    raw_keys=frozenset({"parameters"}),
-)
-_COMPONENT_PARTS["components"] = _COMPONENT_FORM  # components hold components, to any depth
-_COMPONENT_TYPE_FORM = ElementForm(
-    ("title",),
-    keyed_forms={**_COMPONENT_PARTS, "inputs": ElementForm(("type",))},
-    part_forms={"node": _COMPONENT_NODE_FORM},
-    raw_keys=frozenset({"parameters"}),
-)
-_NODE_FORM = ElementForm(
-    ("implements",),
-    frozenset({"implements", "kind", "command"}),
-    keyed_forms=_USE_FORMS,
-    part_forms={"internal": ElementForm(keyed_forms=_USE_FORMS), "start": _START_FORM},
-    raw_keys=frozenset({"parameters"}),
-)
-# One latency is both the best and the worst: a constant.
-_LINK_FORM = ElementForm(("connects",), frozenset({"connects"}), part_forms={"latency": ElementForm(("best", "worst"))})
-_FIELD_FORM = ElementForm(("type",))
-_TYPE_FORM = ElementForm(
-    ("message",),
-    keyed_forms={
-        **dict.fromkeys(("fields", "request", "response", "feedback"), _FIELD_FORM),
-        "constants": _PLAIN_FORM,
-    },
-)
-_ROOT_FORM = ElementForm(
-    keyed_forms={
-        "partners": _TITLED_FORM,
-        "use_cases": ElementForm(("title",), keyed_forms={"actors": _TITLED_FORM}),
-        "requirements": ElementForm(("title",), frozenset({"parent", "verified_by"})),
-        "component_types": _COMPONENT_TYPE_FORM,
-        "groups": ElementForm(("title",), keyed_forms={"components": _COMPONENT_FORM}),
-        "nodes": _NODE_FORM,
-        "types": _TYPE_FORM,
-        "libraries": ElementForm(("path",), keyed_forms={"component_types": _COMPONENT_TYPE_FORM, "types": _TYPE_FORM}),
-        "hosts": _TITLED_FORM,
-        "containers": _CONTAINER_FORM,
-        "resources": ElementForm(("host",)),
-        "links": _LINK_FORM,
-        "frames": _FRAME_FORM,
-        "chains": ElementForm(("through",), frozenset({"through"})),
-        "views": ElementForm(("show",)),
-        "policies": _PLAIN_FORM,
-        "variants": ElementForm(("title",), frozenset({"of", "drop"}), raw_keys=frozenset({"changes"})),
-        "properties": ElementForm(("title",), frozenset({"of"})),
-    },
-    part_forms={
-        "review": ElementForm(list_keys=frozenset({"backends", "passes"}), raw_keys=frozenset({"accepted"})),
-        "ros": ElementForm(raw_keys=frozenset({"parameters"})),
-    },
-)
+_UNREAD_PARTS = frozenset({"variant_changes", "review.accepted"})
+"""Parts that are normalised by themselves: sections once more, and lists of what was accepted."""
 
 
-COMPONENT_FORM, COMPONENT_TYPE_FORM, DATA_TYPE_FORM = _COMPONENT_FORM, _COMPONENT_TYPE_FORM, _TYPE_FORM
-"""What components, component types and conceptual types look like, for those who write them."""
-GROUP_FORM = _ROOT_FORM.keyed_forms["groups"]
+def _leaves_as_written(part: str) -> bool:
+    return part in DATA_PARTS or ENTRIES.get(part) in DATA_PARTS or part in _UNREAD_PARTS
+
+
+_FORMS: dict[str, ElementForm] = {}
+
+
+def find_form(kind: str) -> ElementForm:
+    """Return what elements of a kind look like."""
+    if kind in _FORMS:
+        return _FORMS[kind]
+    form = ElementForm(
+        SHORT_KEYS.get(kind, ()),
+        frozenset(key for key, part in KEYS[kind].items() if part in LISTED_PARTS),
+        raw_keys=frozenset(key for key, part in KEYS[kind].items() if _leaves_as_written(part)),
+    )
+    # Components hold components: a form that holds itself is found here while its keys are looked at.
+    _FORMS[kind] = form
+    for key, part in KEYS[kind].items():
+        if key in form.raw_keys:
+            continue
+        if (entry := ENTRIES.get(part, "")) in SHORT_KEYS:
+            form.keyed_forms[key] = find_form(entry)
+        elif part in KEYS and (part_form := find_form(part)) != _PLAIN_FORM:
+            form.part_forms[key] = part_form
+    return form
 
 
 def normalise_document(document: YamlDocument) -> tuple[Diagnostic, ...]:
@@ -140,7 +87,7 @@ def normalise_document(document: YamlDocument) -> tuple[Diagnostic, ...]:
         for diagnostic in _collect_overall(component)
     )
     parameter_diagnostics = tuple(expand_parameters(document.root))
-    _normalise_mapping(document.root, _ROOT_FORM)
+    _normalise_mapping(document.root, find_form(SLICE))
     _drop_empty_step_keys(document.root)
     review = document.root.get("review")
     accepted = review.get("accepted") if isinstance(review, MappingNode) else None
@@ -234,7 +181,7 @@ def _normalise_below(key: str, mapping: MappingNode, form: ElementForm) -> None:
         element_form = form.keyed_forms[key]
         for entry in mapping.entries.values():
             entry.value = _normalise_element(entry.value, element_form)
-    elif key not in form.raw_keys and key != "hints":
+    elif key not in form.raw_keys:
         _normalise_mapping(mapping, _PLAIN_FORM)
 
 

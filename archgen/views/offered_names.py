@@ -9,6 +9,7 @@ from itertools import chain
 from typing import NamedTuple, Protocol
 
 from archgen.diagnostics.safe_text import make_visible
+from archgen.language.language_tables import SECTION_KINDS
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 from archgen.model.document_chapters import GENERATED_CHAPTERS
@@ -42,6 +43,10 @@ OfferedNames = Mapping[str, tuple[OfferedName, ...]]
 """Names by the kind of place where they fit: sections by their own name, references by what they may lead to."""
 
 
+_OTHERWISE_TITLED = frozenset({"component_types", "groups", "nodes", "types", "libraries", "properties"})
+"""Sections of which less or more than every element with its title is offered."""
+
+
 def list_offered_names(architecture: Architecture, library_types: Mapping[str, str] = {}) -> OfferedNames:
     """Return all names of a project by where they fit, in the order of the files.
 
@@ -54,21 +59,7 @@ def list_offered_names(architecture: Architecture, library_types: Mapping[str, s
     nodes = tuple(_list_titles({id_: node for id_, node in architecture.nodes.items() if node.written}))
     messages = sorted(architecture.interfaces.names)
     sections = {
-        name: tuple(_list_titles(getattr(architecture, name)))
-        for name in (
-            "partners",
-            "use_cases",
-            "requirements",
-            "hosts",
-            "containers",
-            "resources",
-            "links",
-            "frames",
-            "chains",
-            "views",
-            "policies",
-            "variants",
-        )
+        name: tuple(_list_titles(getattr(architecture, name))) for name in SECTION_KINDS.keys() - _OTHERWISE_TITLED
     }
     own_types = {id_: each for id_, each in architecture.component_types.items() if each.library is None}
     return sections | {

@@ -8,7 +8,8 @@ from decimal import Decimal
 import pytest
 
 from archgen.diagnostics.source_span import NO_SPAN
-from archgen.model.annotated_elements import KINDS, list_annotated_elements
+from archgen.language.language_tables import ANNOTATED_KINDS
+from archgen.model.annotated_elements import list_annotated_elements
 from archgen.model.architecture import Architecture, ProjectInfo
 from archgen.model.element_annotations import (
     PropertyDeclaration,
@@ -146,9 +147,9 @@ hosts: {pc: {properties: {ram: 8 GB, cpu: arm}}}
 
 def test_all_kinds_may_have_properties_and_the_schema_offers_them_for_of() -> None:
     # A variant is no part of the robot, but another robot.
-    assert set(KINDS) == set(SECTIONS) - {"variant"}
-    assert set(SCHEMA["$defs"]["declared_of"]["items"]["enum"]) == set(KINDS)
-    assert [kind for kind in KINDS if "properties" not in SCHEMA["$defs"][kind]["properties"]] == []
+    assert set(ANNOTATED_KINDS) == set(SECTIONS) - {"variant"}
+    assert set(SCHEMA["$defs"]["declared_of"]["items"]["enum"]) == set(ANNOTATED_KINDS)
+    assert [kind for kind in ANNOTATED_KINDS if "properties" not in SCHEMA["$defs"][kind]["properties"]] == []
 
 
 def test_what_nobody_wrote_has_none(derived: Derived) -> None:

@@ -2,24 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.suggestions import did_you_mean
+from archgen.language.language_tables import DECLARING_KEYS, SECTION_KINDS
 from archgen.link import mapping_values
 from archgen.link.slice_merging import declares_itself
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
-_DECLARING_KEYS: Mapping[str, tuple[str, ...]] = {
-    "nodes": ("implements", "command", "kind", "internal"),
-    "links": ("connects",),
-    "chains": ("through",),
-    "containers": ("host",),
-    "resources": ("host",),
-    "views": ("show",),
-    "policies": ("forbid", "require"),
-}
-"""By section, the keys of which a new element has one, the most usual first. Elements of other sections may be new with any key."""
 _INSTANCE_KEYS = frozenset({"is", "same_as"})
 
 
@@ -41,18 +32,17 @@ class ChangeTargets:
         known = mapping_values.get_mapping(self._root, section.key)
         if section.key == "groups":
             kept = {e.key: self._keep_group(known, e) for e in section.value if self._is_known_group(known, e)}
-        elif section.key in _DECLARING_KEYS:
-            kept = {e.key: e for e in section.value if self._is_sound(section.key, known, e)}
+        elif (kind := SECTION_KINDS.get(section.key, "")) in DECLARING_KEYS:
+            kept = {e.key: e for e in section.value if self._is_sound(kind, known, e)}
         else:
             return section
         return MappingEntry(section.key, section.key_span, MappingNode(kept, section.value.span))
 
-    def _is_sound(self, section: str, known_body: MappingNode, entry: MappingEntry) -> bool:
+    def _is_sound(self, kind: str, known_body: MappingNode, entry: MappingEntry) -> bool:
         body = mapping_values.get_body(entry)
         is_new = entry.key not in known_body.entries and entry.key not in self._lost_keys
-        if is_new and body.entries.keys().isdisjoint(_DECLARING_KEYS[section]):
-            needed = " or ".join(f"`{key}`" for key in _DECLARING_KEYS[section][:2])
-            kind = "policy" if section == "policies" else section.removesuffix("s")
+        if is_new and body.entries.keys().isdisjoint(DECLARING_KEYS[kind]):
+            needed = " or ".join(f"`{key}`" for key in DECLARING_KEYS[kind][:2])
             self._report(entry, kind, entry.key, list(known_body.entries), f"a new one has {needed}")
             return False
         return True

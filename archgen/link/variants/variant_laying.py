@@ -10,6 +10,7 @@ from archgen.compose.variant_overlay import MissingKey, drop_key, lay_changes
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.frozen import dataclass
+from archgen.language.language_tables import KEYS
 from archgen.link import mapping_values
 from archgen.link.link_memory import LinkMemory
 from archgen.link.missing_keys import find_incomplete
@@ -22,7 +23,7 @@ from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode
 
 _NAMING_SECTIONS = ("groups", "nodes", "component_types", "libraries", "project")
 """Sections that have a say in what the inputs of components read."""
-_KEPT_SECTIONS = frozenset({"archgen", "project", "sources", "libraries", "variants", "review"})
+_KEPT_SECTIONS = KEYS["slice"].keys() - KEYS["variant_changes"].keys()
 """Sections that no variant changes: what the project is, its files, and who judges it."""
 
 

@@ -17,9 +17,9 @@ from archgen.passes.patterns.pattern_shapes import (
 )
 from archgen.passes.patterns.view_elements import ElementKind, ViewElement, list_inside, path_of_type
 from archgen.passes.patterns.view_words import VIRTUAL_KEYS
-from archgen.schema.short_forms import COMPONENT_FORM, COMPONENT_TYPE_FORM, GROUP_FORM
+from archgen.schema.short_forms import find_form
 
-_FORMS = {"component": COMPONENT_FORM, "group": GROUP_FORM, "type": COMPONENT_TYPE_FORM}
+_FORMS = {"component": find_form("component"), "group": find_form("group"), "type": find_form("component_type")}
 
 
 def write_new_component(

@@ -26,7 +26,7 @@ from archgen.passes.patterns.pattern_shapes import (
 from archgen.passes.patterns.source_edits import write_sources
 from archgen.passes.patterns.type_layers import Layer
 from archgen.passes.patterns.view_words import VIRTUAL_KEYS
-from archgen.schema.short_forms import COMPONENT_FORM, COMPONENT_TYPE_FORM, DATA_TYPE_FORM, GROUP_FORM
+from archgen.schema.short_forms import find_form
 
 _TYPE_NAME_PATHS = frozenset((key,) for key in TYPE_NAME_KEYS)
 _PORT_SECTIONS = frozenset({"inputs", "outputs"})
@@ -70,7 +70,7 @@ class TreeEditor:
             self._add_component(key, value or {}, origin)
             return
         element = self._view.elements[key]
-        form = {"type": COMPONENT_TYPE_FORM, "group": GROUP_FORM}.get(element.kind, COMPONENT_FORM)
+        form = find_form({"type": "component_type", "group": "group"}.get(element.kind, "component"))
         expanded = expand_value(
             {k: v for k, v in (value or {}).items() if k not in VIRTUAL_KEYS and k != INNER_KEY}, form
         )
@@ -107,7 +107,7 @@ class TreeEditor:
         if kind == "drop":
             drop_data(self._view, path, value) if is_known else None
         else:
-            expanded = expand_value(value, DATA_TYPE_FORM)
+            expanded = expand_value(value, find_form("type"))
             merge_data(self._view, kind, path, expanded, path if is_known else origin)
         self._view.note_type_edit()
 

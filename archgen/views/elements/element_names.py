@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from archgen.language.language_tables import SECTION_KINDS
 from archgen.model.architecture import Architecture
 from archgen.model.node import Topic
 from archgen.model.port_media import name_on_medium
@@ -12,6 +13,10 @@ from archgen.views.lookup import Lookup
 
 _COMPONENT_KINDS = frozenset({"component", "composed"})
 _NAMED_AFTER_COMPONENTS = frozenset({"node", "frame"})
+
+
+_UNNAMED_SECTIONS = frozenset({"groups", "component_types", "nodes", "types", "properties", "libraries"})
+"""Sections whose elements stand among others above, or are settings."""
 
 
 def elements_by_kind(architecture: Architecture) -> dict[str, Mapping[str, Any]]:
@@ -29,18 +34,11 @@ def elements_by_kind(architecture: Architecture) -> dict[str, Mapping[str, Any]]
         "topic": a.topics,
         "channel": _name_channels(a),
         "type": a.types,
-        "requirement": a.requirements,
-        "use case": a.use_cases,
-        "partner": a.partners,
-        "host": a.hosts,
-        "container": a.containers,
-        "resource": a.resources,
-        "link": a.links,
-        "frame": a.frames,
-        "chain": a.chains,
-        "view": a.views,
-        "policy": a.policies,
-        "variant": a.variants,
+        **{
+            kind.replace("_", " "): getattr(a, section)
+            for section, kind in SECTION_KINDS.items()
+            if section not in _UNNAMED_SECTIONS
+        },
     }
 
 

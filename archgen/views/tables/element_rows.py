@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
+from archgen.language.language_tables import DATA_PARTS, ENTRIES, KEYS, SECTION_KINDS
 from archgen.model.annotated_elements import Annotated
 from archgen.model.component import Connection, Input, Output
 from archgen.model.node import Topic
@@ -11,20 +12,24 @@ from archgen.model.parameter_values import find_effective_parameters
 from archgen.model.port_media import name_on_medium, nature_of, uses_ros, word_of_medium
 from archgen.model.relied_outputs import find_relied_output
 from archgen.views.elements import parameter_blocks, promise_words
+from archgen.views.elements.card_parts import format_fact
 from archgen.views.elements.frame_users import index_frame_ports, list_shown_frames
 from archgen.views.lookup import Lookup
 from archgen.views.tables import functional_tables, requirement_tables, type_tables
 from archgen.views.tables.start_rows import START_COLUMNS, list_start_rows
 
 TextRow = tuple[str, ...]
-_ANNOTATED_TABLES = frozenset({"nodes", "groups", "types", "requirements", "chains", "hosts", "frames"})
+_ANNOTATED_TABLES = frozenset(section for section, kind in SECTION_KINDS.items() if "properties" in KEYS[kind])
 """Tables of elements that may have properties; that of components has composed ones, too."""
 
 
 def list_element_rows(lookup: Lookup, kind: str) -> tuple[tuple[str, ...], list[TextRow]]:
-    """Return the column names and rows for one kind of element (a key of `_TABLES_BY_KIND`)."""
-    columns, make_rows = _TABLES_BY_KIND[kind]
-    rows = list(make_rows(lookup))
+    """Return the column names and rows for one kind of element: a name of a table of its own, or a section."""
+    if kind in _TABLES_BY_KIND:
+        columns, make_rows = _TABLES_BY_KIND[kind]
+        rows = list(make_rows(lookup))
+    else:
+        columns, rows = _list_plain_rows(lookup, kind)
     for name, values in (*_list_further_columns(lookup, kind), *_list_property_columns(lookup, kind, rows)):
         # A column that no row has a word in is that of a project without composition: its table stays as it was.
         if any(values):
@@ -290,6 +295,21 @@ def _variant_rows(lookup: Lookup) -> Iterator[TextRow]:
             str(len(each.changes)),
             str(each.at),
         )
+
+
+def _list_plain_rows(lookup: Lookup, section: str) -> tuple[tuple[str, ...], list[TextRow]]:
+    """Return columns and rows of a section without a table of its own: the keys that hold words, numbers or lists of them."""
+    elements = list(getattr(lookup.architecture, section).values())
+    keys = [
+        key
+        for key, part in KEYS[SECTION_KINDS[section]].items()
+        if not {part} & (KEYS.keys() | ENTRIES.keys() | DATA_PARTS | {"prose"}) and key != "title"
+    ]
+    keys = [key for key in keys if elements and hasattr(elements[0], key)]
+    rows = [
+        (each.id, each.title, *(format_fact(getattr(each, key)) for key in keys), str(each.at)) for each in elements
+    ]
+    return ("id", "title", *keys, "place"), rows
 
 
 # The column names are the header of what `archgen list` writes, so they are visible to users.

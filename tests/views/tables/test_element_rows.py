@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from archgen import pipeline
 from archgen.views.lookup import DocumentScope, Lookup, make_lookup
 from archgen.views.tables.element_rows import list_element_rows
@@ -63,3 +65,36 @@ def test_tables_without_composition_have_the_columns_that_they_had(tmp_path: Pat
     lookup = read_project(tmp_path, PLAIN)
     assert list_element_rows(lookup, "components")[0][-1] == "place"
     assert list_element_rows(lookup, "connections")[0][-1] == "place"
+
+
+SYSTEM = """\
+archgen: 1
+partners: {lab: {title: Lab, contact: a@lab.eu, reviewers: ["@a", "@b"], properties: {trl: 5}}}
+groups: {g: {components: {a: {outputs: {x: X}}}}}
+hosts: {pc: {}, arm: {}}
+containers: {box: {host: pc, threads: 2}}
+resources: {gpu: {host: pc}}
+links: {lan: {connects: [pc, arm], bandwidth: 1 Gbit/s}}
+views: {v: {show: g, colour: owner}}
+policies: {p: {title: Never, forbid: {from: g, to: g}}}
+properties: {trl: {title: Readiness, type: integer}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("section", "row"),
+    [
+        ("partners", "id=lab title=Lab contact=a@lab.eu reviewers=@a, @b property:trl=5"),
+        ("containers", "id=box title=Box namespace=/ host=pc threads=2"),
+        ("resources", "id=gpu title=Gpu host=pc"),
+        ("links", "id=lan title=Lan connects=pc, arm bandwidth=1 Gbit/s"),
+        ("views", "id=v title=V show=g colour=owner level=functional"),
+        ("policies", "id=p title=Never"),
+        ("properties", "id=trl title=Readiness type=integer required=False"),
+    ],
+)
+def test_a_section_without_a_table_of_its_own_is_listed_by_its_keys(tmp_path: Path, section: str, row: str) -> None:
+    columns, (cells,) = list_element_rows(read_project(tmp_path, SYSTEM), section)
+    written = " ".join(f"{name}={cell}" for name, cell in zip(columns, cells, strict=True) if cell and name != "place")
+    assert written == row
+    assert cells[columns.index("place")].startswith("archgen.yaml:")

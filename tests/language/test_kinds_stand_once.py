@@ -1,0 +1,52 @@
+"""Kinds and sections are named in the description of the language: a list of them elsewhere has a reason that stands here."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+from typing import get_args
+
+from archgen.language.language_tables import KindName, SectionName
+from tests.running import ROOT
+
+NAMES = frozenset((*get_args(KindName), *get_args(SectionName), "components", "inputs", "outputs", "composed"))
+LEAST = 6
+"""So many names of kinds or sections make a list of them."""
+REASONS = {
+    "cli/list_command.py": "kinds of which a selector names some",
+    "compare/kinds/__init__.py": "the order in which kinds are recognised under other ids",
+    "edit/imported_slices.py": "the mappings by id that models of other tools bring",
+    "importers/row_records.py": "what a row of a table may be",
+    "importers/xmi/xmi_import.py": "the files that a model becomes",
+    "model/document_chapters.py": "chapters, some of which are called like sections",
+    "schema/key_places.py": "a sentence for each kind",
+    "views/changes/site_changes.py": "kinds with a page of their own",
+    "views/elements/element_card.py": "the function that makes each card",
+    "views/elements/element_names.py": "the order in which an id that several kinds share is found, and what is named otherwise",
+    "views/explorer/explorer_map.py": "tables of the explorer",
+    "views/explorer/map_shapes.py": "tables of the explorer",
+    "views/graph_shapes.py": "kinds of pictures, some of which are called like kinds of elements",
+    "views/offered_names.py": "sections of which something else than each title is offered",
+    "views/pages/report_outline.py": "chapters, some of which are called like sections",
+    "views/records/carrier_record.py": "keys of a record",
+    "views/records/resolved_record.py": "the order of a record, and what makes each part",
+}
+
+
+def _list_literals(file: Path) -> Iterator[ast.expr]:
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        items = node.elts if isinstance(node, (ast.Tuple, ast.List, ast.Set)) else []
+        items = [key for key in node.keys if key] if isinstance(node, ast.Dict) else items
+        texts = [item.value for item in items if isinstance(item, ast.Constant)]
+        names = NAMES.intersection(text for text in texts if isinstance(text, str))
+        if isinstance(node, ast.expr) and len(names) >= LEAST and len(names) * 5 >= len(texts) * 3:
+            yield node
+
+
+def test_every_list_of_kinds_has_a_reason_and_every_reason_a_list() -> None:
+    package = ROOT / "archgen"
+    files = (file for file in package.rglob("*.py") if file.parent != package / "language")
+    listing = {file.relative_to(package).as_posix() for file in files if any(_list_literals(file))}
+    assert sorted(listing - REASONS.keys()) == [], "ask archgen.language, or say why not"
+    assert sorted(REASONS.keys() - listing) == [], "no list of kinds stands there any more"
