@@ -17,7 +17,6 @@ REASONS = {
     "cli/list_command.py": "kinds of which a selector names some",
     "compare/kinds/__init__.py": "the order in which kinds are recognised under other ids",
     "edit/imported_slices.py": "the mappings by id that models of other tools bring",
-    "importers/row_records.py": "what a row of a table may be",
     "importers/xmi/xmi_import.py": "the files that a model becomes",
     "model/document_chapters.py": "chapters, some of which are called like sections",
     "schema/key_places.py": "a sentence for each kind",
@@ -29,7 +28,6 @@ REASONS = {
     "views/graph_shapes.py": "kinds of pictures, some of which are called like kinds of elements",
     "views/offered_names.py": "sections of which something else than each title is offered",
     "views/pages/report_outline.py": "chapters, some of which are called like sections",
-    "views/records/carrier_record.py": "keys of a record",
     "views/records/resolved_record.py": "the order of a record, and what makes each part",
 }
 
