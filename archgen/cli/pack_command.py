@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from archgen.cli import command_support, shared_options
+from archgen.syntax.file_patterns import YAML_ENDINGS
 
 
 @click.command("pack")
@@ -33,7 +34,7 @@ def command(project: Path | None, output: Path | None, select: str | None, *, re
     if select and not resolved:
         msg = "--select goes with --resolved: a packed project is whole"
         raise click.UsageError(msg)
-    if output is not None and output != Path("-") and output.suffix not in {"", ".yaml", ".yml"}:
+    if output is not None and output != Path("-") and output.suffix not in {"", *YAML_ENDINGS}:
         msg = f"what is packed is YAML: end `{output.name}` in .yaml"
         raise click.UsageError(make_visible(msg))
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)

@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
+from archgen.syntax.file_patterns import YAML_ENDINGS
 
 if TYPE_CHECKING:
     from archgen.pipeline import CheckedProject
     from archgen.products.trusted_backends import TrustedRevision
-
-_YAML_SUFFIXES = frozenset({".yaml", ".yml"})
 
 
 def _complete_passes(_context: click.Context, _parameter: click.Parameter, incomplete: str) -> list[str]:
@@ -70,7 +69,7 @@ def command(  # noqa: PLR0913 - one for each option
         click.echo("Nothing was written. With --keep-going it is written with its errors.", err=True)
         sys.exit(1)
     target = output or checked_project.output_folder / "transformed.yaml"
-    if target.is_dir() or target.suffix not in _YAML_SUFFIXES:
+    if target.is_dir() or target.suffix not in YAML_ENDINGS:
         target /= "archgen.yaml"
     from archgen.products import project_outputs
 

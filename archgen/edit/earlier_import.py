@@ -8,6 +8,7 @@ from typing import Any
 
 from archgen.edit import slice_update
 from archgen.frozen import dataclass
+from archgen.syntax.file_patterns import YAML_ENDINGS
 from archgen.syntax.folder_files import FolderFiles
 from archgen.syntax.project_files import read_text_file
 
@@ -54,7 +55,7 @@ def read_earlier_import(folder: Path, origin: ImportOrigin) -> dict[str, Mapping
         return {}
     files = FolderFiles(folder)
     slices: dict[str, Mapping[str, Any]] = {}
-    for path in sorted(folder.glob("*.yaml")):
+    for path in sorted(path for ending in YAML_ENDINGS for path in folder.glob(f"*{ending}")):
         text = read_text_file(files, path.name).text if path.is_file() else ""
         if origin.is_of(text):
             slices[path.name] = slice_update.read_slice_content(path.name, text).data

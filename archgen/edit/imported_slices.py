@@ -122,7 +122,7 @@ def _make_project_data(imported: ForeignImport, root: Path, slices: list[Planned
     if imported.distro:
         data["ros"] = {"distro": imported.distro}
     # Without `sources` a project is all YAML below it: what else lies there is none of its files.
-    has_others = root.is_dir() and bool(file_patterns.expand_pattern(FolderFiles(root), "**/*.yaml"))
+    has_others = root.is_dir() and bool(file_patterns.list_yaml_files(FolderFiles(root)))
     return {**data, "sources": [planned.file for planned in slices]} if has_others else data
 
 

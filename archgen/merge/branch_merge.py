@@ -16,9 +16,8 @@ from archgen.merge.slice_reading import read_normal_tree
 from archgen.merge.tree_merge import MergeConflictError, merge_values, read_merged_value
 from archgen.pipeline import CheckedProject, VersionCache
 from archgen.project import TrackedProject
+from archgen.syntax.file_patterns import YAML_ENDINGS
 from archgen.syntax.project_files import MAX_BYTES
-
-_SLICE_ENDINGS = (".yaml", ".yml")
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +118,7 @@ class BranchMerger:
         """Return the content of a file that git conflicts in, or why people have to settle it."""
         if not all(conflict.blobs[1:]):
             return b"", self._describe_absence(conflict, theirs if conflict.blobs[1] else ours)
-        if not conflict.path.endswith(_SLICE_ENDINGS):
+        if not conflict.path.endswith(YAML_ENDINGS):
             return b"", "both sides changed the same lines"
         old_content, our_content, their_content = (self._read_blob(blob) if blob else b"" for blob in conflict.blobs)
         if old_content is None or our_content is None or their_content is None:

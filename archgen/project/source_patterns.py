@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import posixpath
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
@@ -30,13 +31,14 @@ def report_missing_sources(state: ReadingState, patterns: Iterable[ScalarNode]) 
     guess_count = 0
     for pattern in patterns:
         if candidates is None:
-            yaml_files = file_patterns.expand_pattern(state.files, "**/*.yaml", skipped_folders=SKIPPED_FOLDERS)
+            yaml_files = file_patterns.list_yaml_files(state.files, skipped_folders=SKIPPED_FOLDERS)
             unread_files = [file for file in yaml_files if file not in state.seen_files]
             candidates = {*unread_files, *map(_widen_pattern, unread_files)}
-        folder_pattern = f"{pattern.text.rstrip('/')}/*.yaml"
+        folder_patterns = (f"{pattern.text.rstrip('/')}/*{ending}" for ending in file_patterns.YAML_ENDINGS)
         guess_count += len(candidates)
         near_names = candidates if guess_count <= _GUESS_BUDGET else ()
-        guess = folder_pattern if folder_pattern in candidates else find_closest(pattern.text, near_names)
+        folder_pattern = next((each for each in folder_patterns if each in candidates), None)
+        guess = folder_pattern or find_closest(pattern.text, near_names)
         meant_files = file_patterns.expand_pattern(state.files, guess) if guess else ()
         lost_keys = {key for file in meant_files for key in find_written_keys(parse_file(state, file).text)}
         if lost_keys.isdisjoint(list_sections()):
@@ -47,10 +49,35 @@ def report_missing_sources(state: ReadingState, patterns: Iterable[ScalarNode]) 
         state.diagnostics.append(_diagnose_missing_source(pattern, guess))
 
 
+def report_other_endings(state: ReadingState, patterns: Iterable[YamlNode]) -> None:
+    """Report YAML files that a pattern would match if they ended as it does: a partner writes `.yml` where others do not."""
+    for pattern in patterns:
+        if not isinstance(pattern, ScalarNode) or not pattern.text.endswith(file_patterns.YAML_ENDINGS):
+            continue
+        stem, ending = posixpath.splitext(pattern.text)
+        for other in file_patterns.YAML_ENDINGS:
+            if other == ending or not file_patterns.is_inside_project(pattern.text) or "*" not in stem:
+                continue
+            unread = [
+                file for file in file_patterns.expand_pattern(state.files, stem + other) if file not in state.seen_files
+            ]
+            if unread:
+                names = ", ".join(f"`{file}`" for file in unread)
+                state.diagnostics.append(
+                    Diagnostic(
+                        "ignored-file",
+                        f"{names} {'is' if len(unread) == 1 else 'are'} not read: `{pattern.text}` names files that end in `{ending}`",
+                        pattern.span,
+                        severity=Severity.WARNING,
+                        help=f"add `{stem}{other}`, or let {'its name' if len(unread) == 1 else 'their names'} end in `{ending}`",
+                    )
+                )
+
+
 def _widen_pattern(file: str) -> str:
     """Return the pattern of all files beside a file: `groups/*.yaml` for `groups/sensing.yaml`."""
     folder, slash, _ = file.rpartition("/")
-    return f"{folder}{slash}*.yaml"
+    return f"{folder}{slash}*{posixpath.splitext(file)[1]}"
 
 
 def _diagnose_missing_source(pattern: ScalarNode, guess: str | None = None) -> Diagnostic:
@@ -80,7 +107,7 @@ def expand_source_pattern(
         return
     matching_files = file_patterns.expand_pattern(state.files, pattern.text)
     # A folder is no file; with YAML files in it, these are what is meant.
-    if len(matching_files) == 1 and file_patterns.expand_pattern(state.files, f"{matching_files[0]}/*.yaml"):
+    if len(matching_files) == 1 and file_patterns.list_yaml_files(state.files, matching_files[0], is_deep=False):
         matching_files = ()
     if not matching_files and unmatched_patterns is not None:
         unmatched_patterns.append(pattern)

@@ -15,7 +15,12 @@ from archgen.project import baseline_reading
 from archgen.project.project_search import PROJECT_FILE
 from archgen.project.reading_state import ReadingState, parse_file
 from archgen.project.slice_parsing import Slice
-from archgen.project.source_patterns import SKIPPED_FOLDERS, expand_source_pattern, report_missing_sources
+from archgen.project.source_patterns import (
+    SKIPPED_FOLDERS,
+    expand_source_pattern,
+    report_missing_sources,
+    report_other_endings,
+)
 from archgen.schema import list_sections
 from archgen.syntax import file_patterns
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode
@@ -29,7 +34,9 @@ PASS_FOLDER = "passes/"  # noqa: S105 - not a password
 """Where a project's own passes stand; a file there whose `rules` are a list is one."""
 _MAX_SECTIONS = 100
 """The first keys of a file without sections that are looked at for misspelt ones: there are 20 sections."""
-_OTHER_FILE_KEYS = frozenset({"archgen", baseline_reading.BASELINE_KEY})
+PROJECT_KEY = "archgen"
+"""The key that marks a project: it stands in `archgen.yaml`."""
+_OTHER_FILE_KEYS = frozenset({PROJECT_KEY, baseline_reading.BASELINE_KEY})
 """Keys of files that are not slices: projects of their own (a packed one, for instance) and baselines."""
 
 
@@ -69,6 +76,7 @@ def read_sources(state: ReadingState) -> None:
         _read_agreements(state)
         # Last, when it is known which files no pattern names.
         report_missing_sources(state, unmatched_patterns)
+        report_other_endings(state, sources_entry.value.items)
 
 
 def _read_agreements(state: ReadingState) -> None:
@@ -84,8 +92,24 @@ def _read_listed_slice(state: ReadingState, file: str, *, is_named: bool) -> Non
     """Read a file that `sources` names; one that only a wildcard found is left out if it is no slice."""
     state.seen_files.add(file)
     parsed_slice = parse_file(state, file)
-    if is_named or (_OTHER_FILE_KEYS.isdisjoint(parsed_slice.sections) and not _is_pass(parsed_slice)):
+    if is_named or not (_is_other_file(state, parsed_slice) or _is_pass(parsed_slice)):
         _keep_slice(state, parsed_slice)
+
+
+def _is_other_file(state: ReadingState, parsed_slice: Slice) -> bool:
+    """Whether a file is a baseline, or says that it is a project of its own: that is told, since it may be a slip."""
+    if PROJECT_KEY in parsed_slice.sections and parsed_slice.document is not None:
+        has_name = "project" in parsed_slice.sections
+        state.diagnostics.append(
+            Diagnostic(
+                "ignored-file",
+                f"`{PROJECT_KEY}:` makes this file a project of its own: it is no part of this one",
+                parsed_slice.document.root.entries[PROJECT_KEY].key_span,
+                severity=Severity.NOTE if has_name else Severity.WARNING,
+                help=f"take the line away if it is meant as one; only {PROJECT_FILE} has it",
+            )
+        )
+    return not _OTHER_FILE_KEYS.isdisjoint(parsed_slice.sections)
 
 
 def _is_pass(parsed_slice: Slice) -> bool:
@@ -96,9 +120,9 @@ def _is_pass(parsed_slice: Slice) -> bool:
 
 
 def _read_all_slices(state: ReadingState) -> None:
-    """Read every *.yaml below that holds a section, and list those that do not in one note."""
+    """Read every YAML file below that holds a section, and list those that do not in one note."""
     known_sections, ignored_files = list_sections() - _UNMARKING_SECTIONS, list[tuple[str, str | None]]()
-    for file in file_patterns.expand_pattern(state.files, "**/*.yaml", skipped_folders=SKIPPED_FOLDERS):
+    for file in file_patterns.list_yaml_files(state.files, skipped_folders=SKIPPED_FOLDERS):
         if file in state.seen_files or state.is_library_file(file):
             continue
         state.seen_files.add(file)
@@ -117,7 +141,7 @@ def _read_all_slices(state: ReadingState) -> None:
         elif parsed_slice.document is None:
             _keep_slice(state, parsed_slice)
         elif not known_sections.isdisjoint(parsed_slice.sections) or _is_meant_as_slice(parsed_slice.document):
-            if _OTHER_FILE_KEYS.isdisjoint(parsed_slice.sections):
+            if not _is_other_file(state, parsed_slice):
                 _keep_slice(state, parsed_slice)
         elif parsed_slice.sections and not (
             _leave_out_frames(state, parsed_slice.document) or _leave_out_libraries(state, parsed_slice.document)
@@ -136,14 +160,15 @@ def _read_all_slices(state: ReadingState) -> None:
 
 
 def read_library_slices(state: ReadingState, folder: str) -> None:
-    """Read every *.yaml of a library that holds a section; what does not is nobody's mistake here."""
+    """Read every YAML file of a library that holds a section; what does not is nobody's mistake here."""
     known_sections = list_sections() - _UNMARKING_SECTIONS
-    for file in file_patterns.expand_pattern(state.files, f"{folder}/**/*.yaml", skipped_folders=SKIPPED_FOLDERS):
+    for file in file_patterns.list_yaml_files(state.files, folder, SKIPPED_FOLDERS):
         state.seen_files.add(file)
         parsed_slice = parse_file(state, file)
         # A library may have an archgen.yaml, so that it can be checked by itself; others are projects of their own.
-        is_other_project = file != f"{folder}/{PROJECT_FILE}" and "archgen" in parsed_slice.sections
-        if baseline_reading.is_baseline(parsed_slice.text) or is_other_project:
+        if baseline_reading.is_baseline(parsed_slice.text) or (
+            file != f"{folder}/{PROJECT_FILE}" and _is_other_file(state, parsed_slice)
+        ):
             continue
         if parsed_slice.document is None:
             if _looks_like_slice(parsed_slice, known_sections):

@@ -11,9 +11,11 @@ from archgen import git
 from archgen.emit import file_tree
 from archgen.git.git_call import run_git
 from archgen.project.project_loading import load_project
+from archgen.syntax.file_patterns import YAML_ENDINGS
 
 ATTRIBUTES_FILE = ".gitattributes"
-_PATTERN, _ATTRIBUTE = b"*.yaml", b"merge=archgen"
+_PATTERNS = tuple(f"*{ending}".encode() for ending in YAML_ENDINGS)
+_ATTRIBUTE = b"merge=archgen"
 _DRIVER_ARGUMENTS = "merge-driver --marker-size=%L %O %A %B %P"
 
 
@@ -42,25 +44,31 @@ def list_outer_libraries(folder: Path) -> tuple[Path, ...]:
 
 
 def add_attribute(folder: Path) -> bool:
-    """Add the line to the .gitattributes of a project or library, behind what is there. Return whether it was missing.
+    """Add the lines to the .gitattributes of a project or library, behind what is there. Return whether one was missing.
 
     Raise OutputError for a symbolic link, which git does not read, and OSError.
     """
     path = folder / ATTRIBUTES_FILE
     if path.is_symlink():
         msg = f"{path} is a symbolic link, which git does not read; nothing was written"
-        raise file_tree.OutputError(msg, f"make it a file with the line `{(_PATTERN + b' ' + _ATTRIBUTE).decode()}`")
+        lines = " and ".join(f"`{(pattern + b' ' + _ATTRIBUTE).decode()}`" for pattern in _PATTERNS)
+        raise file_tree.OutputError(msg, f"make it a file with the lines {lines}")
     content = path.read_bytes() if path.exists() else b""
-    merge_lines = [
-        words for line in content.splitlines() if (words := line.split())[:1] == [_PATTERN] and _sets_merge(words)
-    ]
-    # The last line counts: another driver behind ours would be taken instead.
-    if merge_lines and _ATTRIBUTE in merge_lines[-1]:
+    missing_patterns = [pattern for pattern in _PATTERNS if not _is_set(content, pattern)]
+    if not missing_patterns:
         return False
     line_end = b"\r\n" if b"\r\n" in content else b"\n"
     separator = b"" if not content or content.endswith(b"\n") else line_end
-    file_tree.replace_file(path, content + separator + _PATTERN + b" " + _ATTRIBUTE + line_end)
+    new_lines = b"".join(pattern + b" " + _ATTRIBUTE + line_end for pattern in missing_patterns)
+    file_tree.replace_file(path, content + separator + new_lines)
     return True
+
+
+def _is_set(content: bytes, pattern: bytes) -> bool:
+    """Whether files of a pattern are merged by archgen. The last line counts: another driver behind ours would be taken."""
+    lines = (line.split() for line in content.splitlines())
+    merge_lines = [words for words in lines if words[:1] == [pattern] and _sets_merge(words)]
+    return bool(merge_lines) and _ATTRIBUTE in merge_lines[-1]
 
 
 def _sets_merge(words: list[bytes]) -> bool:

@@ -40,7 +40,7 @@ class ProjectPlan:
 
 def has_other_yaml(folder: Path) -> bool:
     """Return whether there are YAML files below that are not slices of this project: it then has to name its own."""
-    return bool(file_patterns.expand_pattern(FolderFiles(folder), "**/*.yaml"))
+    return bool(file_patterns.list_yaml_files(FolderFiles(folder)))
 
 
 def judge_files(files: Mapping[str, bytes], name: str) -> CheckedProject:

@@ -15,6 +15,7 @@ from archgen.diagnostics.safe_text import make_visible
 from archgen.emit.text.template_filters import escape_markdown
 from archgen.start.start_answers import EXAMPLE_GROUPS, GroupAnswer, StartAnswers
 from archgen.syntax import yaml_writer
+from archgen.syntax.file_patterns import YAML_ENDINGS
 
 _PLAIN_PATH_PATTERN = re.compile(r"[A-Za-z0-9._/-]+\Z")
 """Folders without characters that have a meaning in a workflow's path filter."""
@@ -89,7 +90,7 @@ def fill_workflow(folder: str, *, publishes: bool = True) -> bytes:
     Only one of a repository `publishes`: there is one site.
     """
     # Any YAML elsewhere may be a library of the project one day.
-    paths = [f"{folder}/**", "**/*.yaml"] if _PLAIN_PATH_PATTERN.match(folder) else []
+    paths = [f"{folder}/**", *(f"**/*{ending}" for ending in YAML_ENDINGS)] if _PLAIN_PATH_PATTERN.match(folder) else []
     # A folder's name must not become an expression of GitHub; below, not a variable of GitLab.
     inert_folder = folder.replace("${{", "${{ '${{' }}")
     return fill_template(

@@ -166,7 +166,7 @@ def test_in_a_repository_the_workflow_goes_to_its_top(run: Run, tmp_path: Path) 
     assert f"The repository begins at {tmp_path}: what the forge reads stands there." in ran.out
     workflow = yaml.safe_load((tmp_path / ".github/workflows/architecture.yml").read_bytes())
     assert workflow["jobs"]["check"]["steps"][1]["with"] == {"project": "robots/one"}
-    assert workflow[True]["pull_request"] == {"paths": ["robots/one/**", "**/*.yaml"]}
+    assert workflow[True]["pull_request"] == {"paths": ["robots/one/**", "**/*.yaml", "**/*.yml"]}
     assert not (tmp_path / "robots/one/.github").exists()
 
 

@@ -36,7 +36,9 @@ def test_in_a_project_that_is_there_nothing_else_is_touched(run: Run, tmp_path: 
     before = list_texts(folder)
     ran = run("init", folder, "--merge-driver")
     assert (ran.status, ran.err) == (0, "")
-    assert list_texts(folder) == before | {".gitattributes": b"*.png binary\n*.yaml merge=archgen\n"}
+    assert list_texts(folder) == before | {
+        ".gitattributes": b"*.png binary\n*.yaml merge=archgen\n*.yml merge=archgen\n"
+    }
     assert (read_setting(folder, "driver"), read_setting(folder, "name")) == (
         DRIVER,
         "slices of archgen by what they say",
@@ -49,7 +51,7 @@ def test_in_a_project_that_is_there_nothing_else_is_touched(run: Run, tmp_path: 
     ran = run("init", folder, "--merge-driver")
     assert ran.status == 0
     assert "names the merge driver already" in ran.out
-    assert (folder / ".gitattributes").read_bytes() == b"*.png binary\n*.yaml merge=archgen\n"
+    assert (folder / ".gitattributes").read_bytes() == b"*.png binary\n*.yaml merge=archgen\n*.yml merge=archgen\n"
 
 
 def test_libraries_outside_of_the_projects_folder_get_the_line_too(run: Run, tmp_path: Path) -> None:
@@ -62,7 +64,7 @@ def test_libraries_outside_of_the_projects_folder_get_the_line_too(run: Run, tmp
         "common/.gitattributes",
         "robot/.gitattributes",
     ]
-    assert (top / "common" / ".gitattributes").read_bytes() == b"*.yaml merge=archgen\n"
+    assert (top / "common" / ".gitattributes").read_bytes() == b"*.yaml merge=archgen\n*.yml merge=archgen\n"
     ran = run("init", top / "robot", "--merge-driver")
     assert ran.out.count("names the merge driver already") == 2
 
@@ -71,7 +73,7 @@ def test_a_new_project_outside_of_a_repository_says_what_to_do(run: Run, tmp_pat
     ran = run("init", tmp_path / "robot", "--yes", "--merge-driver")
     assert ran.status == 0
     lines = (tmp_path / "robot/.gitattributes").read_text(encoding="utf-8").splitlines()
-    assert lines[-1] == "*.yaml merge=archgen"
+    assert lines[-2:] == ["*.yaml merge=archgen", "*.yml merge=archgen"]
     assert "*.yaml text eol=lf" in lines
     assert "There is no git repository yet. After `git init`, in this clone and in every other one, call\n" in ran.out
     assert f"    git config --local merge.archgen.driver '{DRIVER}'\n" in ran.out

@@ -8,19 +8,22 @@ import pytest
 
 from archgen.start.merge_driver_setup import add_attribute
 
+BOTH = "*.yaml merge=archgen\n*.yml merge=archgen\n"
+
 
 @pytest.mark.parametrize(
     ("before", "after"),
     [
-        ("", "*.yaml merge=archgen\n"),
-        ("# x", "# x\n*.yaml merge=archgen\n"),
-        ("*.md text\r\n", "*.md text\r\n*.yaml merge=archgen\r\n"),
-        ("*.yaml text merge=archgen\n*.md text\n", None),
-        ("*.yaml merge=archgen\n*.yaml eol=lf\n", None),
+        ("", BOTH),
+        ("# x", "# x\n" + BOTH),
+        ("*.md text\r\n", "*.md text\r\n*.yaml merge=archgen\r\n*.yml merge=archgen\r\n"),
+        (BOTH.replace(" merge", " text merge") + "*.md text\n", None),
+        (BOTH + "*.yaml eol=lf\n", None),
+        ("*.yaml merge=archgen\n", BOTH),
         # Of several lines the last one counts.
-        ("*.yaml merge=archgen\n*.yaml -merge\n", "*.yaml merge=archgen\n*.yaml -merge\n*.yaml merge=archgen\n"),
-        ("# *.yaml merge=archgen\n", "# *.yaml merge=archgen\n*.yaml merge=archgen\n"),
-        ("a.yaml merge=archgen\n", "a.yaml merge=archgen\n*.yaml merge=archgen\n"),
+        (BOTH + "*.yaml -merge\n", BOTH + "*.yaml -merge\n*.yaml merge=archgen\n"),
+        ("# *.yaml merge=archgen\n", "# *.yaml merge=archgen\n" + BOTH),
+        ("a.yaml merge=archgen\n", "a.yaml merge=archgen\n" + BOTH),
     ],
 )
 def test_the_line_stands_once_behind_what_is_there(tmp_path: Path, before: str, after: str | None) -> None:

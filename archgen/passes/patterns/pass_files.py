@@ -11,6 +11,7 @@ from archgen.diagnostics.suggestions import did_you_mean
 from archgen.frozen import dataclass
 from archgen.passes.patterns.pass_shapes import WRONG_PASS, PatternPass, RewriteRule
 from archgen.passes.patterns.rule_reading import RuleReader
+from archgen.syntax.file_patterns import YAML_ENDINGS
 from archgen.syntax.project_files import ProjectFiles, read_text_file
 from archgen.syntax.yaml_parser import parse_yaml
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, YamlNode, list_spans
@@ -121,7 +122,7 @@ def list_shipped_passes(known_states: tuple[str, ...] = ()) -> Iterator[ReadPass
 def list_project_passes(files: ProjectFiles, known_states: tuple[str, ...] = ()) -> Iterator[ReadPass]:
     """Yield the passes of a project, by name. A file behind a link is refused: it could lead out of the project."""
     for file in list_pass_files(files):
-        name = file.removeprefix(f"{PASS_FOLDER}/").removesuffix(".yaml")
+        name = file.removeprefix(f"{PASS_FOLDER}/").rpartition(".")[0]
         if files.is_behind_link(file):
             finding = _diagnose_pass(
                 "a pass is reached by a link; it stands in the project itself", Span.of_file(file), None
@@ -140,7 +141,9 @@ def list_pass_files(files: ProjectFiles) -> list[str]:
     """Return the paths of a project's pass files: those directly in its folder `passes`."""
     for folder, _, names in files.walk_folders(PASS_FOLDER):
         if folder in {"", "."}:
-            return sorted(f"{PASS_FOLDER}/{name}" for name in names if name.endswith(".yaml") and name.isprintable())
+            return sorted(
+                f"{PASS_FOLDER}/{name}" for name in names if name.endswith(YAML_ENDINGS) and name.isprintable()
+            )
         break
     return []
 
