@@ -203,18 +203,20 @@ def compare_named_versions(before: ProjectVersion, after: ProjectVersion) -> Com
     if comparison.changes and before.checked_project.variants and after.checked_project.variants:
         from archgen.products.variant_breaks import add_variant_breaks
 
-        comparison = add_variant_breaks(comparison, _compare_variants(before.checked_project, after.checked_project))
+        comparison = add_variant_breaks(
+            comparison, _compare_variants(comparison, before.checked_project, after.checked_project)
+        )
     return replace(comparison, cured_findings=()) if after.checked_project.structural_errors else comparison
 
 
-def _compare_variants(before: CheckedProject, after: CheckedProject) -> dict[str, Comparison]:
-    """Return what changed in each variant that both versions have, by its id; nothing where there are no partners."""
+def _compare_variants(comparison: Comparison, before: CheckedProject, after: CheckedProject) -> dict[str, Comparison]:
+    """Return what changed in each variant that both versions have, by its new id; nothing where there are no partners."""
     if not (before.architecture.partners or after.architecture.partners):
         return {}
     return {
-        name: compare_versions(make_comparison_input(before.variants[name]), make_comparison_input(variant))
-        for name, variant in after.variants.items()
-        if name in before.variants
+        new_name: compare_versions(make_comparison_input(variant), make_comparison_input(after.variants[new_name]))
+        for name, variant in before.variants.items()
+        if (new_name := comparison.matched_ids.find_new_id("variant", name) or "") in after.variants
     }
 
 

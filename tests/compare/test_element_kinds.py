@@ -591,5 +591,6 @@ def test_by_what_elements_are_recognised_under_another_id() -> None:
         "frame: name 2, title 2, ports 4, children 3, parent 2, by 2",
         "chain: name 2, title 2, through 6, deadline 1",
         "policy: name 2, title 2, forbids 5",
+        "variant: name 2, title 2, places 8, changes 2, leaves out 3, base 0.5",
         "view: name 2, title 2, show 5",
     ]

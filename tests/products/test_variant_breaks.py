@@ -55,6 +55,15 @@ def test_what_is_weakened_in_variants_only_is_told_with_their_names(tmp_path: Pa
     assert change_record(change)["because"][0]["variants"] == ["simulation", "copy"]
 
 
+def test_a_variant_that_is_renamed_in_the_same_change_is_judged_under_its_new_id(tmp_path: Path) -> None:
+    comparison = compare(
+        tmp_path, ("  simulation: {", "  in_the_lab: {"), ("of: simulation", "of: in_the_lab"), WEAKENED
+    )
+    told = [(each.kind, each.element_id, each.old_id) for each in comparison.changes if each.element_kind == "variant"]
+    assert [each for each in told if each[0] != "changed"] == [("renamed", "in_the_lab", "simulation")]
+    assert list_breaks(comparison) == [("sensing.lidar.scan", "move", ("in_the_lab", "copy"))]
+
+
 def test_a_change_of_the_project_that_breaks_somebody_in_a_variant_says_in_which(tmp_path: Path) -> None:
     comparison = compare(tmp_path, RETYPED)
     assert list_breaks(comparison) == [("sensing.radar.echo", "move", ("rainy",))]

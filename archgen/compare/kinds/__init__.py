@@ -34,7 +34,7 @@ MATCHING_ORDER = (
         "resource",
         "link",
     ),
-    *("frame", "chain", "requirement", "use_case", "view", "policy"),
+    *("frame", "chain", "requirement", "use_case", "view", "policy", "variant"),
 )
 """The kinds that are recognised under other ids, each after those that its features refer to: groups before components,
 hosts after nodes, links after hosts."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from archgen.compare.kinds.kind_spec import Effect, KeySpec, KindSpec, ReadContext
-from archgen.compare.kinds.shared_keys import DESCRIPTION, TITLE
+from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext
+from archgen.compare.kinds.shared_keys import DESCRIPTION, NAME_FEATURES, TITLE, mark_values
 from archgen.model.variant import Variant
 
 
@@ -28,7 +28,8 @@ VARIANT = KindSpec(
         # The order counts: the later wins.
         KeySpec(
             "of",
-            lambda variant, _: variant.of or None,
+            lambda variant, context: tuple(str(context.common_id("variant", each)) for each in variant.of) or None,
+            refers_to="variant",
             list_verbs=("is now built on", "is no longer built on"),
             new_verb="is built on",
         ),
@@ -39,4 +40,12 @@ VARIANT = KindSpec(
     # What a change of a variant does to the robot shows where the project is compared as it stands in the variant.
     Effect.SYSTEM,
     elements=lambda version: version.architecture.variants,
+    features=(
+        *NAME_FEATURES,
+        # Where it writes counts more than what it writes: a variant may be renamed and changed at once.
+        FeatureSpec("places", 8, lambda _, variant: mark_values(*(each.path for each in variant.changes))),
+        FeatureSpec("changes", 2, lambda _, variant: mark_values(*(f"{c.path}: {c.value}" for c in variant.changes))),
+        FeatureSpec("leaves out", 3, lambda _, variant: mark_values(variant.without, *variant.drop)),
+        FeatureSpec("base", 0.5, lambda relations, variant: relations.common_ids("variant", variant.of)),
+    ),
 )

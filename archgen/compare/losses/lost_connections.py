@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
+from archgen.compare.compared_elements import ElementKey
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
 from archgen.compare.losses.composed_places import find_component_renames, needs_other_id
 from archgen.compare.losses.loss_wording import tick_sorted_names
@@ -31,6 +32,71 @@ def find_lost_connections(context: ChangeContext) -> Iterator[PartnerLoss]:
         lead = f"takes `{context.old_id('output', output)}` from"
         for note, inputs_by_partner in inputs_by_note.items():
             yield from context.losses_of_readers(indices, inputs_by_partner, lead, note)
+
+
+def find_unmade_connections(context: ChangeContext) -> Iterator[PartnerLoss]:
+    """Find inputs that `autoconnect` had joined and that have no source now: whoever owns them wrote nothing of that.
+
+    It belongs to the change that unmade it: another output that fits, another type, or the word itself.
+    """
+    connections_before, connections_after = context.versions.connections_before, context.versions.connections_after
+    for input_id, sources in sorted(connections_before.sources_by_input.items()):
+        partner = context.owner_before("input", input_id)
+        is_unmade = not connections_after.sources_by_input.get(input_id) and connections_before.is_made(
+            input_id, sources
+        )
+        if (
+            not is_unmade
+            or partner is None
+            or not context.needs_source(input_id)
+            or _is_own_edit(context, input_id, sources)
+        ):
+            continue
+        old_names = tick_sorted_names(context.old_id("output", source) for source in sources)
+        lead, note = f"takes {old_names} from", "; `autoconnect` joined them, and does no more"
+        causes = _find_unmaking_changes(context, input_id, sources)
+        if causes:
+            yield from context.losses_of_readers(causes, {partner: [input_id]}, lead, note)
+        elif partner not in context.lasting_owners(*_find_holder(context, input_id)):
+            reason = f"{lead} {context.name_partner(partner)} ({tick_sorted_names([input_id])}){note}"
+            yield from (
+                PartnerLoss(index, partner, reason) for index in context.change_indices("connection", input_id)[:1]
+            )
+
+
+def _is_own_edit(context: ChangeContext, input_id: str, sources: Iterable[str]) -> bool:
+    """Whether the reader went, or says otherwise what it reads; what was removed is told as such."""
+    before, after = (
+        elements.get(("input", input_id))
+        for elements in (context.versions.elements_before, context.versions.elements_after)
+    )
+    if before is None or after is None or any(context.versions.is_removed("output", source) for source in sources):
+        return True
+    return any(before.values.get(key) != after.values.get(key) for key in ("type", "external"))
+
+
+def _find_holder(context: ChangeContext, port_id: str) -> ElementKey:
+    """Return the group or the composed component in which a port's component stands."""
+    holder = port_id.rpartition(".")[0].rpartition(".")[0]
+    return ("composed" if ("composed", holder) in context.versions.elements_after else "group"), holder
+
+
+def _find_unmaking_changes(context: ChangeContext, input_id: str, sources: Iterable[str]) -> list[int]:
+    """Return the changes of outputs beside an input that left open which of them it is to read, or made them unfit."""
+    changed_indices = [
+        index for source in sorted(sources) for index in context.change_indices("output", source, "type")
+    ]
+    holder = _find_holder(context, input_id)
+    source_names = {source.rpartition(".")[2] for source in sources}
+    source_types = {context.versions.elements_before["output", source].values.get("type") for source in sources}
+    for key, element in sorted(context.versions.elements_after.items()):
+        if key[0] != "output" or key in context.versions.elements_before or _find_holder(context, key[1]) != holder:
+            continue
+        if key[1].rpartition(".")[2] in source_names or element.values.get("type") in source_types:
+            component_id = key[1].rpartition(".")[0]
+            changed_indices += context.indices_by_change_kind("output", key[1], "added")
+            changed_indices += context.indices_by_change_kind("component", component_id, "added")
+    return list(dict.fromkeys(changed_indices))
 
 
 class _RenamedSource(NamedTuple):

@@ -80,3 +80,57 @@ def test_an_output_that_may_be_in_what_could_not_be_read_is_not_taken_away(lost:
     nothing = cast("Any", None)
     found = find_lost_connections(ChangeContext(nothing, nothing, MatchedIds(), titled, [removal]))
     assert [f"{loss.partner} {loss.reason}" for loss in found] == said
+
+
+WATCH = """\
+archgen: 1
+partners: {certh: {title: CERTH}, sssa: {title: SSSA}, tum: {title: TUM}}
+groups:
+  watch:
+    owner: certh
+    autoconnect: ports
+    components:
+      beacon: {outputs: {beat: {type: Charge}}}
+      listener: {owner: sssa, inputs: {beat: {type: Charge}}}
+"""
+TAKEN = "takes `watch.beacon.beat` from SSSA (`watch.listener.beat`); `autoconnect` joined them, and does no more"
+
+
+@pytest.mark.parametrize(
+    ("edits", "said"),
+    [
+        (
+            [("      listener", "      beacon2: {outputs: {beat: {type: Charge}}}\n      listener")],
+            [f"watch.beacon2 sssa: {TAKEN}"],
+        ),
+        (
+            [("      listener", "      beacon2: {owner: tum, outputs: {beat: {type: Charge}}}\n      listener")],
+            [f"watch.beacon2 sssa: {TAKEN}"],
+        ),
+        # Who adds the second one himself has to say which of them he reads.
+        ([("      listener", "      beacon2: {owner: sssa, outputs: {beat: {type: Charge}}}\n      listener")], []),
+        ([("    autoconnect: ports\n", "")], [f"watch.listener.beat sssa: {TAKEN}"]),
+        ([("    owner: certh\n    autoconnect: ports\n", "    owner: sssa\n")], [f"watch.listener.beat sssa: {TAKEN}"]),
+        # The reader's own doing.
+        ([("inputs: {beat: {type: Charge}}", "inputs: {beat: {type: Level}}")], []),
+        ([("inputs: {beat: {type: Charge}}", "inputs: {}")], []),
+        (
+            [
+                ("    autoconnect: ports\n", ""),
+                ("beat: {type: Charge}}}\n", "beat: {type: Charge, from: beacon.beat}}}\n"),
+            ],
+            [],
+        ),
+    ],
+)
+def test_a_connection_that_nobody_wrote_belongs_to_who_unmade_it(
+    compared: Compared, edits: list[tuple[str, str]], said: list[str]
+) -> None:
+    assert broken(compared, WATCH, edits) == said
+
+
+def test_a_group_of_the_readers_own_joins_what_it_likes(compared: Compared) -> None:
+    own = WATCH.replace("owner: certh\n    auto", "owner: sssa\n    auto").replace(
+        "beacon: {", "beacon: {owner: certh, "
+    )
+    assert broken(compared, own, [("    autoconnect: ports\n", "")]) == []
