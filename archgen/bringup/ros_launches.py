@@ -10,6 +10,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.deployment import Container
 from archgen.model.node import Node
 from archgen.model.parameter_values import canonical_name, find_declarations
+from archgen.model.process_threads import MANY_THREADED, find_container_threads
 from archgen.model.ros_distro import is_ros_1
 
 _FLOAT_TYPES = frozenset({"float", "float[]"})
@@ -53,17 +54,21 @@ def describe_node_launch(architecture: Architecture, node: Node, program_names: 
 
 def describe_container_launch(architecture: Architecture, container: Container) -> RosLaunch:
     """Return what ROS is told about a container: its own program, else ROS's."""
+    own_values = dict(_flatten_values("", container.parameters))
     if is_ros_1(architecture.distro):
         package, executable = container.package or "nodelet", container.executable or "nodelet"
     else:
-        default = "component_container" if container.threads in {None, 1} else "component_container_mt"
+        threads = find_container_threads(architecture, container)
+        default = "component_container" if threads == 1 else MANY_THREADED
         package, executable = container.package or "rclcpp_components", container.executable or default
+        if executable == MANY_THREADED and threads is not None:
+            own_values = {"thread_num": threads, **own_values}
     return RosLaunch(
         name=container.name or container.id,
         namespace=container.namespace,
         package=package,
         executable=executable,
-        own_values=dict(_flatten_values("", container.parameters)),
+        own_values=own_values,
     )
 
 

@@ -35,7 +35,7 @@ class Host:
 
 @dataclass(frozen=True, slots=True)
 class Container:
-    """A process that loads several nodes. `threads: 1` is a single-threaded executor; None if unknown."""
+    """A process that loads several nodes. `threads` as written: `find_container_threads` says what runs."""
 
     id: str
     title: str

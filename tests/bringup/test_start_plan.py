@@ -81,7 +81,7 @@ def test_steps_say_all_that_starts_them(derived: Derived) -> None:
         "box": (
             "container",
             "components",
-            "ros2 run rclcpp_components component_container_mt --ros-args -r __node:=box",
+            "ros2 run rclcpp_components component_container_mt --ros-args -r __node:=box -p thread_num:=4",
         ),
         "laser": ("node", "components", "ros2 run p s --ros-args -r __node:=laser"),
         "localiser": (

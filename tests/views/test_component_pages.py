@@ -262,7 +262,7 @@ def test_the_page_of_a_container_says_its_program(tmp_path: Path) -> None:
     assert read_facts(pages["container:plain"]) == {"Host": "not known yet", "Threads": "1"}
     assert read_facts(pages["container:own"]) == {
         "Host": "not known yet",
-        "Threads": "not known yet",
+        "Threads": "1 (nothing is written)",
         "ROS name": "/s/own",
         "Package": "p",
         "Executable": "e",

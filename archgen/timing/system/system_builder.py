@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Container
 from archgen.model.port_media import is_physical
+from archgen.model.process_threads import find_container_threads
 from archgen.timing.analysis import Reason
 from archgen.timing.figures.tick_unit import choose_tick_unit
 from archgen.timing.system import message_sizes
@@ -49,7 +50,7 @@ def build_system(
         external_inputs=dict(_external_inputs(architecture, activities_by_id)),
         optional_inputs=frozenset(port.id for port in architecture.inputs.values() if port.optional),
         cores={host.id: host.cores for host in architecture.hosts.values()},
-        threads={container.id: container.threads for container in architecture.containers.values()},
+        threads={each.id: find_container_threads(architecture, each) for each in architecture.containers.values()},
         executors={executor.id: executor for executor in _build_executors(architecture)},
         resources={
             resource.id: SharedResource(resource.id, resource.host, resource.scheduling)
@@ -86,9 +87,8 @@ def _build_executors(architecture: Architecture) -> Iterator[Executor]:
     """Yield the processes: each container, and each node outside of one."""
     for container in architecture.containers.values():
         executor_id = f"container {container.id}"
-        yield Executor(
-            executor_id, container.threads, _find_container_host(architecture, container), container.scheduling
-        )
+        threads = find_container_threads(architecture, container)
+        yield Executor(executor_id, threads, _find_container_host(architecture, container), container.scheduling)
     for node in architecture.nodes.values():
         if not node.container:
             # What `rclcpp::spin(node)` is: one thread.

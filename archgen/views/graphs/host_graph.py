@@ -8,6 +8,7 @@ from archgen.model.component_nesting import find_component
 from archgen.model.deployment import Host, Link
 from archgen.model.node import Node
 from archgen.model.port_media import name_medium
+from archgen.model.process_threads import find_container_threads
 from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs.graph_folding import fold_graph
 from archgen.views.graphs.legend_keys import add_legend_keys
@@ -86,7 +87,8 @@ def _list_rows(lookup: Lookup, host: Host) -> Iterator[CardRow]:
     architecture = lookup.architecture
     containers = [each for each in architecture.containers.values() if each.host == host.id]
     for container in containers:
-        threads = f" ({count_noun(container.threads, 'thread')})" if container.threads is not None else ""
+        count = find_container_threads(architecture, container)
+        threads = f" ({count_noun(count, 'thread')})" if count is not None else ""
         yield f"{container.title}{threads}", ""
         yield from _node_rows([node for node in architecture.nodes.values() if node.container == container.id])
     standalone = [node for node in _list_standalone(lookup) if node.host == host.id]

@@ -8,6 +8,7 @@ from dataclasses import replace
 from archgen.model.deployment import Container, Host
 from archgen.model.parameter import format_parameter
 from archgen.model.port_media import name_medium
+from archgen.model.process_threads import find_container_threads
 from archgen.views import inline_text, timing_words
 from archgen.views.elements.annotation_facts import list_annotation_facts
 from archgen.views.lookup import Lookup
@@ -105,6 +106,13 @@ def _list_program_facts(container: Container) -> Iterator[tuple[str, Inlines]]:
         yield "Parameters", inline_text.join_lines(lines)
 
 
+def _describe_threads(lookup: Lookup, container: Container) -> str:
+    """Return the threads of a container, and whether that is written or what it is started with."""
+    threads = find_container_threads(lookup.architecture, container)
+    text = "as many as are asked for" if threads is None else str(threads)
+    return text if container.threads is not None else f"{text} (nothing is written)"
+
+
 def _container_page(lookup: Lookup, container: Container) -> Page:
     facts = [
         (
@@ -113,7 +121,7 @@ def _container_page(lookup: Lookup, container: Container) -> Page:
         ),
         (
             "Threads",
-            inline_text.to_inlines(str(container.threads)) if container.threads else inline_text.UNKNOWN_INLINES,
+            inline_text.to_inlines(_describe_threads(lookup, container)),
         ),
         *([("Scheduling", inline_text.to_inlines(container.scheduling))] if container.scheduling else []),
         *_list_program_facts(container),

@@ -207,7 +207,7 @@ def test_words_of_the_model_stay_words_in_ros_2(tmp_path: Path) -> None:
     assert read_parameters(package, "cam") == {
         "/front/cam": {"ros__parameters": {"rate": 20.0, "a.b": 1, "a.c": True, "text": "$(eval 1) \\ 'x'"}}
     }
-    assert read_parameters(package, "box") == {"/front/box": {"ros__parameters": {"beat": 1}}}
+    assert read_parameters(package, "box") == {"/front/box": {"ros__parameters": {"thread_num": 2, "beat": 1}}}
 
 
 def read_parameters(package: Path, name: str) -> object:

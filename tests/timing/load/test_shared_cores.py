@@ -367,9 +367,14 @@ def test_who_is_as_urgent_as_some_member_of_a_crowded_container_waits_for_its_le
 @pytest.mark.parametrize(
     ("threads", "responses"),
     [
-        ("", ["1 [assuming a dedicated core] dedicated", "2 [assuming a dedicated core] dedicated"]),
+        (
+            "executable: component_container_mt",
+            ["1 [assuming a dedicated core] dedicated", "2 [assuming a dedicated core] dedicated"],
+        ),
         ("threads: 2", ["1 [assuming a dedicated core] dedicated", "2 [assuming a dedicated core] dedicated"]),
         ("threads: 1", ["3 [assuming a dedicated core for container box] executor"] * 2),
+        # What `component_container` has, which is started where nothing is written.
+        ("", ["3 [assuming a dedicated core for container box] executor"] * 2),
     ],
 )
 def test_a_thread_for_each_member_needs_no_waiting(threads: str, responses: list[str]) -> None:
@@ -381,12 +386,13 @@ def test_a_thread_for_each_member_needs_no_waiting(threads: str, responses: list
 @pytest.mark.parametrize(
     ("threads", "responses"),
     [
-        # With a thread for each member, written or not, priorities alone count: 1, 1 + 2, 1 + 2 + 3.
-        ("", ["1", "3", "6"]),
+        # With a thread for each member, priorities alone count: 1, 1 + 2, 1 + 2 + 3.
+        ("executable: component_container_isolated", ["1", "3", "6"]),
         ("threads: 3", ["1", "3", "6"]),
         # With fewer, each may wait for one that the least urgent member holds.
         ("threads: 2", ["6", "6", "6"]),
         ("threads: 1", ["6", "6", "6"]),
+        ("", ["6", "6", "6"]),
     ],
 )
 def test_members_wait_for_each_other_only_where_threads_are_fewer(threads: str, responses: list[str]) -> None:

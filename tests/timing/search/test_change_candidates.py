@@ -125,6 +125,15 @@ def test_single_changes_come_before_pairs_and_none_comes_twice() -> None:
     ]
 
 
-def test_threads_that_nobody_wrote_are_as_many_as_are_asked_for() -> None:
-    text = sketch({"a +box": _load(1), "b +box": _load(1)}, "", "hosts: {p: {cores: 1}}\ncontainers: {box: {host: p}}")
-    assert _list_texts(text, "a") == ["a.timing.priority=1"]
+@pytest.mark.parametrize(
+    ("program", "texts"),
+    [
+        ("", ["a.timing.priority=1", "box.threads=2"]),
+        # As many threads as are asked for: another one helps nobody.
+        (", executable: component_container_mt", ["a.timing.priority=1"]),
+    ],
+)
+def test_threads_that_nobody_wrote_are_those_of_the_program(program: str, texts: list[str]) -> None:
+    rest = f"hosts: {{p: {{cores: 1}}}}\ncontainers: {{box: {{host: p{program}}}}}"
+    text = sketch({"a +box": _load(1), "b +box": _load(1)}, "", rest)
+    assert _list_texts(text, "a") == texts
