@@ -64,9 +64,10 @@ def measure_chain(trace: ChainTrace, *, forwarded_only: bool = False) -> ChainSe
         return ChainSeries()
     # One more than there are: the test for ages below asks for the job after the last source.
     counted_jobs = _find_forwarded_jobs(trace) if forwarded_only else range(len(samplings) + 1)
-    carried_jobs = [
+    # In the order in which they are put out: a job that began earlier may end later where several run at once.
+    carried_jobs = sorted(
         (end, source) for job, end in enumerate(job_ends) if (source := _source_job(job, trace.source_logs)) >= 0
-    ]
+    )
     # A job that carries new data is also the first reaction to every input that was overwritten in between. The very
     # first one is left out: what came before it is not known.
     reactions = [

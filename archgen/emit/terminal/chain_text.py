@@ -42,11 +42,13 @@ def format_chain(  # noqa: PLR0913, PLR0917 - what is shown of one chain
     if age != result.bound:
         rows = [
             (
-                "largest reaction time, from the event on",
+                "largest reaction time"
+                if analysis.system.activities[result.through[0]].behaviour == "periodic"
+                else "largest reaction time, from the event on",
                 format_figure(result.bound),
                 describe_gaps(result, analysis) or "hold it against the deadline",
             ),
-            ("largest data age, until the next event's comes", format_figure(age), format_missing(age)),
+            ("largest data age, until the next one replaces it", format_figure(age), format_missing(age)),
         ]
     rows += [
         (

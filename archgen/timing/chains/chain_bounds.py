@@ -170,7 +170,8 @@ def _build_result(
         )
         return ChainResult(asked_chain.id, waypoint_ids, (), no_bound, no_bound, no_bound, no_bound, deadline, "open")
     view, path, path_bound = extreme_path
-    bound = _note_measured(network, path, _note_event_start(network, path, path_bound))
+    bound = _note_event_start(network, path, _note_reentrant_end(network, path, path_bound))
+    bound = _note_measured(network, path, bound)
     best = find_extreme_value(network, regions, "best")
     event_ages = _ages_from_events(network, regions, chain_points[0].activities)
     return ChainResult(
@@ -223,6 +224,17 @@ def _note_event_start(network: CostNetwork, path: CostedPath, bound: TimingValue
     return replace(bound, assumptions=(*bound.assumptions, assumption))
 
 
+def _note_reentrant_end(network: CostNetwork, path: CostedPath, bound: TimingValue) -> TimingValue:
+    """Note on a chain whose last element runs beside itself that what it began earlier may replace what it sent."""
+    last_id = network.arcs[path.arcs[-1]].target if path.arcs else network.names[path.start]
+    wait = network.steps.replacing_wait(network.steps.analysis.system.activities[last_id])
+    if wait is ZERO_VALUE or not is_known_bound(bound):
+        return bound
+    wait_text = figure_wording.format_duration(wait.value) if wait.value is not None else "by an unknown time"
+    assumption = f"{last_id} runs beside itself, and may send older data after newer: data age is larger ({wait_text})"
+    return replace(bound, assumptions=(*bound.assumptions, assumption))
+
+
 def _note_measured(network: CostNetwork, path: CostedPath, bound: TimingValue) -> TimingValue:
     """Note on a chain which measured execution times its bound rests on."""
     through = (network.names[path.start], *(network.arcs[arc_index].target for arc_index in path.arcs))
@@ -233,12 +245,18 @@ def _note_measured(network: CostNetwork, path: CostedPath, bound: TimingValue) -
 def find_data_age(network: CostNetwork, result: ChainResult) -> TimingValue:
     """Return the largest age of what a chain makes of a sample, until the next one replaces it.
 
-    It is the bound where the first element samples the world. Where its event is the stimulus, the next stimulus may be
-    a gap away, which comes on top.
+    It is the bound where the first element samples the world, and the last one sends in the order of its activations.
+    Where an event is the stimulus, the next one may be a gap away, which comes on top; so does the time for which what
+    a reentrant element began earlier may stand in the place of what it sent.
     """
-    if not result.terms or network.steps.analysis.system.activities[result.through[0]].behaviour == "periodic":
+    if not result.terms:
         return result.bound
-    return sum_bounds((result.bound, network.steps.arrivals.activation_gap(result.through[0])))
+    activities = network.steps.analysis.system.activities
+    waits = [network.steps.replacing_wait(activities[result.through[-1]])]
+    if activities[result.through[0]].behaviour != "periodic":
+        waits.append(network.steps.arrivals.activation_gap(result.through[0]))
+    waits = [wait for wait in waits if wait is not ZERO_VALUE]
+    return sum_bounds((result.bound, *waits)) if waits else result.bound
 
 
 def _limit_reduced_age(reduced_age: TimingValue, bound: TimingValue, event_ages: Iterable[TimingValue]) -> TimingValue:

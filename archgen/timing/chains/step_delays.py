@@ -244,10 +244,20 @@ class StepDelays:
         """
         system = self.analysis.system
         source, reader = system.activities[arc.source], system.activities[arc.target]
-        if arc.role != "data" or not is_reentrant(system, source):
+        if arc.role != "data":
             return ZERO_VALUE
         is_read_at_once = self.arrivals.fires_reader(arc) and reader.mode == "any"
         if is_read_at_once and reader.every == 1 and not reader.throttle:
+            return ZERO_VALUE
+        return self.replacing_wait(source)
+
+    def replacing_wait(self, source: Activity) -> TimingValue:
+        """Return for how long what an activity sends may be replaced by what it began earlier, and ended later.
+
+        `ZERO_VALUE` (the very object) where its outputs come in the order of their activations.
+        """
+        system = self.analysis.system
+        if not is_reentrant(system, source):
             return ZERO_VALUE
         response, gap = self.response_value(source.id), self.arrivals.activation_gap(source.id)
         if source.period and response.value is not None and response.complete:
