@@ -65,16 +65,30 @@ def make_id(name: str, prefix: str) -> str:
     return element_id
 
 
+_FEW_NUMBERS = 100
+"""Up to this number each is tried."""
+
+
 def make_unique_id(wanted_id: str, used_ids: Container[str], first_number: int = 2) -> str:
     """Return the wanted id, or if it is used already the first unused one of `wanted_2`, `wanted_3`, ...
 
-    One that is too long is cut.
+    One that is too long is cut. Behind many used numbers it is one after which no number is used, found by halves: trying
+    all of them for each of thousands of elements would take hours.
     """
-    element_id, number = wanted_id[:MAX_ID_LENGTH].strip("_"), first_number
-    while element_id in used_ids:
-        element_id = number_id(wanted_id, number)
-        number += 1
-    return element_id
+    element_id = wanted_id[:MAX_ID_LENGTH].strip("_")
+    if element_id not in used_ids:
+        return element_id
+    last_used, number, step = first_number - 1, first_number, 1
+    while number_id(wanted_id, number) in used_ids:
+        step *= 2 if number > _FEW_NUMBERS else 1
+        last_used, number = number, number + step
+    while number - last_used > 1:
+        middle = (last_used + number) // 2
+        if number_id(wanted_id, middle) in used_ids:
+            last_used = middle
+        else:
+            number = middle
+    return number_id(wanted_id, number)
 
 
 def number_id(element_id: str, number: int) -> str:

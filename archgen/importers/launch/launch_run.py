@@ -18,6 +18,7 @@ from archgen.importers.launch.server_parameters import ServerParameter, read_ser
 
 ActionLoader = Callable[[Path, "LaunchRun"], list[LaunchAction]]
 MAX_NODES = 20_000
+MAX_ACTIONS = 100_000
 MAX_INCLUDES = 500
 _MAX_DEPTH = 25
 _SETTERS = frozenset(
@@ -43,6 +44,8 @@ class LaunchRun(ScopeRun):
         self._load_actions = load_actions
         self._maker = NodeMaker(self)
         self._includes = 0
+        self._actions = 0
+        self._has_told_nodes = False
         self._handlers |= {
             "ignored": self._run_ignored,
             "description": self._run_description,
@@ -75,7 +78,12 @@ class LaunchRun(ScopeRun):
     def run_actions(self, actions: list[LaunchAction]) -> None:
         """Walk through actions in their order."""
         for action in actions:
-            self._run_conditional(action)
+            self._actions += 1
+            if self._actions <= MAX_ACTIONS:
+                self._run_conditional(action)
+            elif self._actions == MAX_ACTIONS + 1:
+                # Actions that stand in one another twice, level by level, would have no end.
+                self.add_note(action.word, f"more than {MAX_ACTIONS:,} actions are not followed", action.span)
 
     def _run_conditional(self, action: LaunchAction) -> None:
         action.is_taken = True
@@ -240,7 +248,9 @@ class LaunchRun(ScopeRun):
         if node is None:
             self.taken[action.word] -= 1
         elif len(self.nodes) >= MAX_NODES:
-            self.add_note(action.word, f"more than {MAX_NODES:,} nodes are not taken", action.span)
+            if not self._has_told_nodes:
+                self.add_note(action.word, f"more than {MAX_NODES:,} nodes are not taken", action.span)
+            self._has_told_nodes = True
         else:
             node.action = action
             self.nodes.append(node)

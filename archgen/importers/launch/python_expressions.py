@@ -153,10 +153,14 @@ class ExpressionReader(ABC):
         return list(self._read_items(node.elts, scope))
 
     def _read_items(self, nodes: list[ast.expr], scope: NameScope) -> Iterator[LaunchValue]:
+        count = len(nodes)
         for node in nodes:
             if isinstance(node, ast.Starred):
                 value = self.evaluate(node.value, scope)
-                yield from value if isinstance(value, list | tuple) else (self.quote(node),)
+                # What doubles in every line would fill the memory.
+                count += len(value) if isinstance(value, list | tuple) else 0
+                is_known = isinstance(value, list | tuple) and count <= MAX_ITEMS
+                yield from value if is_known else (self.quote(node),)
             else:
                 yield self.evaluate(node, scope)
 

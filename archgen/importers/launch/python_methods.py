@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from archgen.diagnostics.source_span import Span
 from archgen.importers.launch.launch_actions import LaunchAction
 from archgen.importers.launch.launch_values import OPEN_FILE, LaunchValue, Substitution, UnknownValue, join_values
-from archgen.importers.launch.python_operators import fill_text
+from archgen.importers.launch.python_operators import MANY_ITEMS, MAX_ITEMS, fill_text
 from archgen.importers.launch.python_statements import StatementReader
 from archgen.importers.launch.python_values import BoundMethod, CallArguments
 
@@ -101,7 +101,11 @@ class MethodReader(StatementReader):
         if name == "append":
             owner.append(self._with_conditions(value))
         elif name == "extend":
-            owner += [self._with_conditions(each) for each in value] if isinstance(value, list | tuple) else [value]
+            items = list(value) if isinstance(value, list | tuple) else [value]
+            if len(owner) + len(items) > MAX_ITEMS:
+                self.tell_lost("extend", MANY_ITEMS, node)
+            else:
+                owner += map(self._with_conditions, items)
         elif name == "insert" and len(arguments.positional) == 2 and isinstance(value, int):  # noqa: PLR2004 - place and value
             owner.insert(value, self._with_conditions(arguments.positional[1]))
         elif name == "copy":

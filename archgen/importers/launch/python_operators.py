@@ -11,6 +11,7 @@ from typing import Any
 from archgen.importers.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue, join_values
 
 MAX_ITEMS = 5_000
+MANY_ITEMS = f"the list is longer than {MAX_ITEMS:,}, which archgen does not follow"
 """How long a list may be while it is put together."""
 _MAX_NUMBER = 1e15
 _NUMBERS = (int, float)

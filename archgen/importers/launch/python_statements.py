@@ -12,7 +12,7 @@ from archgen.importers.launch.launch_values import LaunchValue, UnknownValue
 from archgen.importers.launch.python_branches import BranchRecord, Container, merge_names
 from archgen.importers.launch.python_comprehensions import ComprehensionReader
 from archgen.importers.launch.python_expressions import MAX_DEPTH, list_loop_items
-from archgen.importers.launch.python_operators import MAX_ITEMS
+from archgen.importers.launch.python_operators import MANY_ITEMS, MAX_ITEMS
 from archgen.importers.launch.python_values import CallArguments, FunctionValue, ImportedName, ModuleValue, NameScope
 
 Ending = Literal["", "return", "break", "continue", "raise"]
@@ -91,7 +91,11 @@ class StatementReader(ComprehensionReader):
             return ""
         old, new = scope.find(statement.target.id)[1], self.evaluate(statement.value, scope)
         if isinstance(old, list) and isinstance(statement.op, ast.Add):
-            old += new if isinstance(new, list | tuple) else [new]
+            items = new if isinstance(new, list | tuple) else [new]
+            if len(old) + len(items) > MAX_ITEMS:
+                self.tell_lost("+=", MANY_ITEMS, statement)
+            else:
+                old += items
         else:
             scope.values[statement.target.id] = self.combine(statement.op, old, new, statement)
         return ""

@@ -9,12 +9,11 @@ from types import MappingProxyType
 from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.import_ledger import OWN_PREFIX
 from archgen.importers.xmi.uml_index import get_id, get_kind, get_name
-from archgen.model.element_ids import is_id, make_id, make_unique_id, number_id
+from archgen.model.element_ids import is_id, make_id, make_unique_id
 from archgen.model.path_resolver import title_from_id
 
 _PARAMETER_NAME = re.compile(r"[^\s.]+(?:\.[^\s.]+)*\Z")
 MAX_TYPE_LENGTH = 200
-_MANY_NUMBERS = 50
 _NO_IDS: Mapping[str, str] = MappingProxyType({})
 
 
@@ -29,9 +28,7 @@ def choose_id(
     if own_id.startswith(OWN_PREFIX) and is_id(last_word := own_id.rpartition(".")[2]) and last_word not in taken_ids:
         return last_word
     wanted = make_id(name or get_name(element) or get_kind(element), kind)
-    # Thousands of one name: counting on from 2 for each would take time with the square of the model.
-    first_number = len(taken_ids) if number_id(wanted, _MANY_NUMBERS) in taken_ids else 2
-    return make_unique_id(wanted, taken_ids, first_number)
+    return make_unique_id(wanted, taken_ids)
 
 
 def say_title(name: str, element_id: str) -> dict[str, object]:
