@@ -91,27 +91,60 @@ def group_endpoints(
 ) -> dict[tuple[str, str, str], list[Endpoint]]:
     """Return what nodes of one program do, by use, flow, and name of the port in the program."""
     groups: dict[tuple[str, str, str], list[Endpoint]] = {}
-    for node in nodes:
-        for endpoint, key in name_endpoints(endpoints.get(node.id, ())):
-            groups.setdefault((endpoint.use, endpoint.flow, key), []).append(endpoint)
+    for endpoint, key in name_endpoints(nodes, endpoints):
+        groups.setdefault((endpoint.use, endpoint.flow, key), []).append(endpoint)
     return groups
 
 
-def name_endpoints(endpoints: Iterable[Endpoint]) -> Iterator[tuple[Endpoint, str]]:
-    """Yield each endpoint with its name in the program: that of the port, with its component's where two have it."""
-    own_names: dict[tuple[str, str, str], set[str]] = {}
+def name_endpoints(
+    nodes: Iterable[Node], endpoints: Mapping[str, Sequence[Endpoint]]
+) -> Iterator[tuple[Endpoint, str]]:
+    """Yield each endpoint of the nodes of one program with its name in the program: that of the port.
+
+    Where two ports have it, their components' names stand in front; where one port stands on several topics, what tells
+    these apart stands behind. Never their order: a line that moves in a partner's file must not give the messages of one
+    arm to the method that was written for the other.
+    """
+    ports_of_nodes = [_name_ports(endpoints.get(node.id, ())) for node in nodes]
+    words_by_place: dict[tuple[str, str, str], set[frozenset[str]]] = {}
+    for ports in ports_of_nodes:
+        for place, carried in ports.items():
+            words_by_place.setdefault(place, set()).add(frozenset(_tell_apart([each.name for each in carried])))
+    for ports in ports_of_nodes:
+        for (use, flow, name), carried in ports.items():
+            in_order = sorted(carried, key=lambda each: each.name)
+            words = _tell_apart([each.name for each in in_order])
+            # Nodes of one program on different topics share its methods: these are counted by the topics' names.
+            has_words = len(words_by_place[use, flow, name]) == 1 and len(set(words)) == len(words) > 1
+            for number, (endpoint, word) in enumerate(zip(in_order, words, strict=True), start=1):
+                ending = f"_{word}" if has_words else f"_{number}" if number > 1 else ""
+                yield endpoint, make_identifier_in("python", f"{name}{ending}")
+
+
+def _name_ports(endpoints: Iterable[Endpoint]) -> dict[tuple[str, str, str], list[Endpoint]]:
+    """Return what a node does by use, flow and name of the port, with its component's name where two ports have it."""
     listed = list(endpoints)
+    own_names: dict[tuple[str, str, str], set[str]] = {}
     for endpoint in listed:
         own_names.setdefault(_place_name(endpoint), set()).add(endpoint.port or endpoint.name)
-    seen: dict[tuple[str, str, str], int] = {}
+    ports: dict[tuple[str, str, str], list[Endpoint]] = {}
     for endpoint in listed:
         use, flow, name = _place_name(endpoint)
         if len(own_names[use, flow, name]) > 1:
             name = make_snake_name("_".join((endpoint.port or endpoint.name).replace("/", ".").split(".")[-2:]))
-        # One port may stand on several topics.
-        seen[use, flow, name] = seen.get((use, flow, name), 0) + 1
-        number = seen[use, flow, name]
-        yield endpoint, make_identifier_in("python", name if number == 1 else f"{name}_{number}")
+        ports.setdefault((use, flow, name), []).append(endpoint)
+    return ports
+
+
+def _tell_apart(topics: Sequence[str]) -> list[str]:
+    """Return for each topic what is not the same in all: `left` and `right` for `/left/state` and `/right/state`."""
+    parts = [topic.strip("/").split("/") for topic in topics]
+    shortest = min(map(len, parts), default=0)
+    start = next((i for i in range(shortest) if len({each[i] for each in parts}) > 1), shortest)
+    rest = [each[start:] for each in parts]
+    shortest = min(map(len, rest), default=0)
+    end = next((i for i in range(shortest) if len({each[-1 - i] for each in rest}) > 1), shortest)
+    return [make_snake_name("_".join(each[: len(each) - end] or each[-1:])) for each in rest]
 
 
 def _place_name(endpoint: Endpoint) -> tuple[str, str, str]:

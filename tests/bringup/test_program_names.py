@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+import pytest
+
 from archgen.bringup.program_names import ProgramNames, choose_own_name, group_endpoints, index_endpoints
 from archgen.bringup.start_plan import make_start_plan
 from archgen.model.architecture import Architecture
@@ -92,3 +94,52 @@ containers: {box: {}}
     commands = {step.id: " ".join(step.command) for step in make_start_plan(architecture).steps}
     assert commands["left"] == "ros2 run robot_g arm --ros-args -r __node:=left"
     assert commands["filter"] == "ros2 component load /box robot_g robot_g::Filter --node-name filter"
+
+
+GUARD = """\
+archgen: 1
+project: {id: farm}
+ros: {distro: jazzy}
+groups:
+  arms:
+    components:
+      left: {outputs: {state: std_msgs/Float64}}
+      right: {outputs: {state: std_msgs/Float64}}
+  safety:
+    components:
+      guard: {inputs: {arms: SOURCES}}
+      second: {is: reader, inputs: {in: [arms.left.state, arms.right.state]}}
+      third: {is: reader, inputs: {in: [arms.right.state, arms.left.state]}}
+component_types: {reader: {inputs: {in: std_msgs/Float64}}}
+"""
+BOTH = {"arms_left": "/arms/left/state", "arms_right": "/arms/right/state"}
+
+
+def name_topics(folder: Path, text: str, node: str) -> dict[str, str]:
+    """Return the topics of what the program of a node reads, by their names in it."""
+    file = folder / "farm.yaml"
+    file.write_text(text, encoding="utf-8")
+    farm = check_project(file).architecture
+    nodes = [each for each in farm.nodes.values() if each.id == node or (node == "reader" and each.id != "guard")]
+    named = group_endpoints(nodes, index_endpoints(farm))
+    return {key: each.name for (use, _, key), ends in named.items() if use == "subscribes" for each in ends}
+
+
+@pytest.mark.parametrize(
+    "sources", ["[arms.left.state, arms.right.state]", "[arms.right.state, arms.left.state]", "arms"]
+)
+def test_what_several_sources_are_called_does_not_hang_on_their_order(tmp_path: Path, sources: str) -> None:
+    text = GUARD.replace("SOURCES", sources)
+    assert name_topics(tmp_path, text, "guard") == BOTH
+    moved = text.replace("      left: {outputs: {state: std_msgs/Float64}}\n", "")
+    moved = moved.replace("  safety:", "      left: {outputs: {state: std_msgs/Float64}}\n  safety:")
+    assert name_topics(tmp_path, moved, "guard") == BOTH
+
+
+def test_one_source_has_the_name_of_its_port_alone(tmp_path: Path) -> None:
+    assert name_topics(tmp_path, GUARD.replace("SOURCES", "arms.left.state"), "guard") == {"arms": "/arms/left/state"}
+
+
+def test_nodes_of_one_program_on_the_same_topics_share_their_names(tmp_path: Path) -> None:
+    text = GUARD.replace("SOURCES", "arms")
+    assert name_topics(tmp_path, text, "reader") == {"in_left": "/arms/left/state", "in_right": "/arms/right/state"}

@@ -63,7 +63,10 @@ def test_each_node_knows_whom_it_listens_to(ros: int, passes: tuple[str, ...], t
     readers = ["/arm/left"] if shared == "left" else ["/arm/left", "/arm/right"]
     assert ports[shared, "target"]["senders"] == {reader: ["/arm/planner"] for reader in readers}
     assert ports["open", "target"]["senders"] == {"/open": ["*"]}
-    assert [ports["open", key]["senders"]["/open"] for key in ("states", "states_2")] == [["/arm/left"], ["/arm/right"]]
+    assert [ports["open", key]["senders"]["/open"] for key in ("states_left", "states_right")] == [
+        ["/arm/left"],
+        ["/arm/right"],
+    ]
 
 
 def test_only_a_text_and_a_payload_are_an_envelope() -> None:

@@ -28,10 +28,11 @@ def find_program_differences(
 ) -> Iterator[Diagnostic]:
     """Yield what the nodes of one program say differently from the first of them, one finding a node and a fact."""
     first, *others = nodes
-    first_ports = _list_ports(first, endpoints)
+    ports_by_node = _list_ports(nodes, endpoints)
+    first_ports = ports_by_node[first.id]
     for node in others:
         differences = [fact for fact, read in _NODE_FACTS.items() if read(node) != read(first)]
-        ports = _list_ports(node, endpoints)
+        ports = ports_by_node[node.id]
         differences += [
             f"QoS of `{key}`"
             for section, key in sorted(ports.keys() & first_ports.keys())
@@ -45,11 +46,13 @@ def find_program_differences(
             yield _tell_difference(program_name, first, node, f"not the same ports ({named}) as")
 
 
-def _list_ports(node: Node, endpoints: Mapping[str, Sequence[Endpoint]]) -> dict[tuple[str, str], Endpoint]:
-    return {
-        (PORT_SECTIONS[endpoint.use, endpoint.flow], key): endpoint
-        for endpoint, key in name_endpoints(endpoints.get(node.id, ()))
-    }
+def _list_ports(
+    nodes: Sequence[Node], endpoints: Mapping[str, Sequence[Endpoint]]
+) -> Mapping[str, Mapping[tuple[str, str], Endpoint]]:
+    ports: dict[str, dict[tuple[str, str], Endpoint]] = {node.id: {} for node in nodes}
+    for endpoint, key in name_endpoints(nodes, endpoints):
+        ports[endpoint.node][PORT_SECTIONS[endpoint.use, endpoint.flow], key] = endpoint
+    return ports
 
 
 def _tell_difference(program_name: str, first: Node, node: Node, words: str) -> Diagnostic:
