@@ -237,6 +237,7 @@ def _make_record(imported: ForeignImport, plan: ImportPlan | None) -> dict[str, 
                 "changed": planned.is_changed,
                 "kept": planned.kept,
                 "replaced": planned.replaced,
+                "removed": planned.removed,
             }
             for planned in (plan.slices if plan else ())
         ],
@@ -262,6 +263,7 @@ def _summarise_slices(plan: ImportPlan) -> Iterator[str]:
             yield f"{planned.file}: {'brought up to date' if planned.is_changed else 'as before'}"
             yield from (f"  not in the model, kept: {path}" for path in planned.kept)
             yield from (f"  replaced: {change}" for change in planned.replaced)
+            yield from (f"  not in the model any more, removed: {change}" for change in planned.removed)
         if planned.is_rewritten:
             yield "  written anew: comments could not stay in their places, and stand at the beginning"
     for file in plan.left_files:
@@ -271,6 +273,7 @@ def _summarise_slices(plan: ImportPlan) -> Iterator[str]:
 
 
 def _write_plan(plan: ImportPlan, *, quiet: bool) -> None:
+    from archgen.edit.imported_slices import record_path
     from archgen.emit import new_files
     from archgen.emit.file_tree import replace_file
 
@@ -280,6 +283,12 @@ def _write_plan(plan: ImportPlan, *, quiet: bool) -> None:
         new_files.write_new_files(new, plan.root)
         for planned in changed:
             replace_file(plan.root / planned.file, planned.text.encode())
+        # Last: where something fails before, the next import knows what the one before it said.
+        for planned in plan.slices:
+            if planned.record:
+                record = plan.root / record_path(planned.file)
+                record.parent.mkdir(parents=True, exist_ok=True)
+                replace_file(record, planned.record.encode())
     for path in () if quiet else (*new, *(plan.root / planned.file for planned in changed)):
         command_support.print_written(path)
 

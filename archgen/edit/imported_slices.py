@@ -31,6 +31,8 @@ _HOLDERS = frozenset(
     | {"parameters", "operations", "fields"}
 )
 """Keys below which elements stand by their ids."""
+RECORD_FOLDER = ".archgen/imported"
+"""What the last import wrote, below the project's folder: what is not said any more is told from what people added."""
 _GROWING_KEYS = frozenset({"from", "implements", "connects"})
 """Keys whose lists people make longer: what they added to what the model says stays."""
 
@@ -47,6 +49,10 @@ class PlannedSlice:
     """Elements that stand in the file and that the model does not name (any more): they stay."""
     replaced: list[str] = field(default_factory=list)
     """What the file said otherwise than the model: path, old and new value."""
+    removed: list[str] = field(default_factory=list)
+    """What the model said at the last import and does not say any more, and nobody had changed since: path and value."""
+    record: str = ""
+    """What the model says, as the next import has to know it; empty for a file that is none of its slices."""
     is_rewritten: bool = False
 
 
@@ -140,7 +146,7 @@ def _plan_slice(  # noqa: PLR0913 - what, where and how
         msg = f"{file} would be larger than {MAX_BYTES // 1_048_576} MiB, more than archgen reads: import the model in parts"
         raise ImportRefusedError(msg)
     if files is None or not files.has_path(file):
-        return PlannedSlice(file, new_text)
+        return PlannedSlice(file, new_text, record=new_text)
     if not merge:
         msg = f"{file} is there already; nothing was written; `--merge` brings it up to date, `-o` names another folder"
         raise ImportRefusedError(msg)
@@ -154,17 +160,35 @@ def _plan_slice(  # noqa: PLR0913 - what, where and how
             f"`{origin.header.strip()}`; `-o` names another folder"
         )
         raise ImportRefusedError(msg)
-    return _update_slice(file, old_file.text, new_text)
+    return _update_slice(file, old_file.text, new_text, _read_record(files, file, origin))
 
 
-def _update_slice(file: str, old_text: str, new_text: str) -> PlannedSlice:
+def record_path(file: str) -> str:
+    """Return where it stands, from the project's folder, what the last import wrote into a slice."""
+    return f"{RECORD_FOLDER}/{file}"
+
+
+def _read_record(files: FolderFiles, file: str, origin: ImportOrigin) -> Mapping[str, Any]:
+    """Return what the last import wrote into a slice, nothing where that is not known: then nothing is taken away."""
+    path = record_path(file)
+    if not files.has_path(path) or files.is_behind_link(path):
+        return {}
+    record = read_text_file(files, path)
+    if record.problem or not origin.is_of(record.text):
+        return {}
+    return slice_update.read_slice_content(path, record.text).data
+
+
+def _update_slice(file: str, old_text: str, new_text: str, base: Mapping[str, Any]) -> PlannedSlice:
     old_content = slice_update.read_slice_content(file, old_text)
     if old_content.diagnostics:
         msg = f"{file} cannot be brought up to date; nothing was written"
         raise ImportRefusedError(msg, old_content.diagnostics)
     # Read back, so that both sides are in the same normal form.
     new_content = slice_update.read_slice_content(file, new_text)
-    merged = _lay_over(old_content.data, new_content.data)
+    removed: list[str] = []
+    old_data = _take_away_unsaid(old_content.data, base, new_content.data, removed)
+    merged = _lay_over(old_data, new_content.data)
     updated = slice_update.update_slice_text(old_text, write_yaml(old_content.data), write_yaml(merged))
     return PlannedSlice(
         file,
@@ -172,9 +196,42 @@ def _update_slice(file: str, old_text: str, new_text: str) -> PlannedSlice:
         is_new=False,
         is_changed=updated.text != old_text,
         kept=list(_list_kept(old_content.data, new_content.data)),
-        replaced=list(_list_replaced(old_content.data, merged)),
+        replaced=list(_list_replaced(old_data, merged)),
+        removed=removed,
+        record=new_text,
         is_rewritten=updated.is_rewritten,
     )
+
+
+def _take_away_unsaid(  # noqa: PLR0913 - three versions of a mapping, and where it stands
+    old: Mapping[str, Any],
+    base: Mapping[str, Any],
+    new: Mapping[str, Any],
+    removed: list[str],
+    path: str = "",
+    *,
+    holds: bool = False,
+) -> dict[str, Any]:
+    """Return the old mapping without what the model said last time, does not say now, and nobody has changed since.
+
+    Elements stay: what other files say of them would be lost. `removed` gets what went, with its path.
+    """
+    kept: dict[str, Any] = {}
+    for key, value in old.items():
+        inner_path = f"{path}.{key}" if path else key
+        base_value, new_value = base.get(key), new.get(key)
+        is_element = holds or key in _HOLDERS or not path
+        if isinstance(value, Mapping) and isinstance(base_value, Mapping) and (key in new or not is_element):
+            inner_new = new_value if isinstance(new_value, Mapping) else {}
+            inner_holds = not holds and key in _HOLDERS
+            inner = _take_away_unsaid(value, base_value, inner_new, removed, inner_path, holds=inner_holds)
+            if inner or key in new:
+                kept[key] = inner
+        elif not is_element and key in base and key not in new and value == base_value:
+            removed.append(f"{inner_path}: {_quote(value)}")
+        else:
+            kept[key] = value
+    return kept
 
 
 def _lay_over(old: Mapping[str, Any], new: Mapping[str, Any]) -> dict[str, Any]:

@@ -1,0 +1,93 @@
+"""`archgen import --merge` of a launch file that lost something: what the import wrote and nobody changed goes with its source."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import Run
+
+LAUNCH = """\
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+def generate_launch_description():
+    return LaunchDescription([Node(package='p', executable='a', name='a'SAYS)])
+"""
+FIRST = ", namespace='front', remappings=[('scan', '/scan'), ('tf', '/tf')], arguments=['-v'], respawn=True, parameters=[{'rate': 5}]"
+SLICE = Path("robot/r_launch.yaml")
+
+
+@pytest.fixture(autouse=True)
+def _in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def bring_in(run: Run, said: str, *options: str) -> str:
+    """Import the launch file with what its node says, again if it is there; return what is told."""
+    Path("r.launch.py").write_text(LAUNCH.replace("SAYS", said), encoding="utf-8")
+    merge = ["--merge"] if Path("robot").exists() else []
+    done = run("import", "launch", "r.launch.py", "-o", "robot", *merge, *options)
+    assert done.status == 0, done.err + done.out
+    return done.out
+
+
+def test_what_went_away_with_its_source_is_taken_out_and_told(run: Run) -> None:
+    bring_in(run, FIRST)
+    before = SLICE.read_text(encoding="utf-8")
+    for key in ("namespace", "remaps", "arguments", "respawn"):
+        assert f"{key}:" in before
+    out = bring_in(run, "")
+    after = SLICE.read_text(encoding="utf-8")
+    for key in ("namespace", "remaps", "arguments", "respawn"):
+        assert f"{key}:" not in after
+    assert "not in the model any more, removed: nodes.a.namespace: `/front`" in out
+    assert "not in the model any more, removed: nodes.a.remaps.scan: `/scan`" in out
+    # A parameter is an element of its own: it stays, and is told, as before.
+    assert "rate: 5" in after
+    assert "not in the model, kept: a.rate" in out
+    assert "as before" in bring_in(run, "")
+
+
+def test_what_people_changed_or_added_stays(run: Run) -> None:
+    bring_in(run, FIRST)
+    text = SLICE.read_text(encoding="utf-8")
+    text = text.replace("namespace: /front", "namespace: /bow  # ours").replace(
+        "scan: /scan", "scan: /scan\n      odom: /odom"
+    )
+    SLICE.write_text(text, encoding="utf-8")
+    out = bring_in(run, "")
+    after = SLICE.read_text(encoding="utf-8")
+    assert "namespace: /bow  # ours" in after
+    assert "odom: /odom" in after
+    assert "scan" not in after.replace("r.launch", "")
+    assert "namespace" not in out
+
+
+def test_without_a_record_nothing_is_taken_away(run: Run) -> None:
+    bring_in(run, FIRST)
+    record = Path("robot/.archgen/imported/r_launch.yaml")
+    assert record.read_text(encoding="utf-8") == SLICE.read_text(encoding="utf-8")
+    record.unlink()
+    assert "removed" not in bring_in(run, "")
+    assert "namespace: /front" in SLICE.read_text(encoding="utf-8")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="links need rights there")
+def test_a_record_behind_a_link_is_not_read(run: Run) -> None:
+    bring_in(run, FIRST)
+    record = Path("robot/.archgen/imported/r_launch.yaml")
+    record.rename("elsewhere.yaml")
+    record.symlink_to(Path("elsewhere.yaml").resolve())
+    assert "removed" not in bring_in(run, "")
+
+
+def test_a_dry_run_tells_and_writes_nothing(run: Run) -> None:
+    bring_in(run, FIRST)
+    before = SLICE.read_bytes()
+    record = json.loads(bring_in(run, "", "--dry-run", "--format", "json"))
+    assert "nodes.a.namespace: `/front`" in record["files"][0]["removed"]
+    assert SLICE.read_bytes() == before
