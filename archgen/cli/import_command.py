@@ -241,6 +241,7 @@ def _make_record(imported: ForeignImport, plan: ImportPlan | None) -> dict[str, 
             }
             for planned in (plan.slices if plan else ())
         ],
+        "differences": list(plan.differences) if plan else [],
     }
 
 
@@ -266,6 +267,7 @@ def _summarise_slices(plan: ImportPlan) -> Iterator[str]:
             yield from (f"  not in the model any more, removed: {change}" for change in planned.removed)
         if planned.is_rewritten:
             yield "  written anew: comments could not stay in their places, and stand at the beginning"
+    yield from (f"said otherwise by another file, which stays as it is: {each}" for each in plan.differences)
     for file in plan.left_files:
         yield f"{file}: as before; nothing of it is in the model any more: take it out if it is gone"
     for place, old_place in plan.moves.items():

@@ -15,6 +15,7 @@ from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.edit import slice_update
 from archgen.edit.earlier_import import ImportOrigin, keep_places, list_known_ids, read_earlier_import
 from archgen.edit.edit_proof import list_new_errors
+from archgen.edit.said_elsewhere import leave_out_said, list_said_values
 from archgen.importers.foreign.foreign_import import ForeignImport
 from archgen.model import element_ids
 from archgen.pipeline import CheckedProject
@@ -70,6 +71,8 @@ class ImportPlan:
     """Where components stand in the project, by the place that the model has them in by now."""
     left_files: tuple[str, ...] = ()
     """Slices of the earlier import for which nothing is in the model any more: they stay."""
+    differences: tuple[str, ...] = ()
+    """What other files of the project say otherwise: path, their value, and that of the model."""
 
     @property
     def unread_files(self) -> list[str]:
@@ -96,6 +99,9 @@ def plan_import(imported: ForeignImport, origin: ImportOrigin, folder: Path, *, 
     files = FolderFiles(root) if root.is_dir() else None
     earlier = read_earlier_import(target, origin) if merge else {}
     new_slices, moves = keep_places(earlier, imported.slices, origin.tool)
+    differences: list[str] = []
+    if not is_new_project and files is not None:
+        new_slices = _leave_out_said(new_slices, prefix, files, differences)
     slices = [
         _plan_slice(f"{prefix}{name}", data, imported.comments.get(name, {}), origin, files, merge=merge)
         for name, data in new_slices.items()
@@ -109,7 +115,23 @@ def plan_import(imported: ForeignImport, origin: ImportOrigin, folder: Path, *, 
         before = pipeline.judge_project(load_from_files(files, PROJECT_FILE))
         errors = list(list_new_errors(before, judged))
     left_files = tuple(f"{prefix}{name}" for name in earlier if name not in new_slices)
-    return ImportPlan(root, slices, is_new_project, judged, tuple(errors), moves, left_files)
+    return ImportPlan(root, slices, is_new_project, judged, tuple(errors), moves, left_files, tuple(differences))
+
+
+def _leave_out_said(
+    new_slices: Mapping[str, Mapping[str, Any]], prefix: str, files: FolderFiles, differences: list[str]
+) -> dict[str, Mapping[str, Any]]:
+    """Return the slices without what other files of the project say; what they say otherwise is added to `differences`."""
+    own_files = frozenset(f"{prefix}{name}" for name in new_slices)
+    said = list_said_values(load_from_files(files, PROJECT_FILE).documents, own_files)
+    kept_slices: dict[str, Mapping[str, Any]] = {}
+    for name, data in new_slices.items():
+        normal_data = slice_update.read_slice_content(name, write_yaml(data)).data
+        left_out = leave_out_said(data, normal_data, said)
+        differences += left_out.differences
+        if left_out.data:
+            kept_slices[name] = left_out.data
+    return kept_slices
 
 
 def find_known_ids(origin: ImportOrigin, folder: Path) -> dict[str, str]:

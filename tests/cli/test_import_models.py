@@ -123,11 +123,20 @@ def test_json_lists_what_was_taken_and_a_dry_run_writes_nothing(run: Run) -> Non
 
 def test_errors_that_come_with_a_model_are_shown(run: Run) -> None:
     Path("archgen.yaml").write_text("project: {title: Mine}\n")
-    Path("own.yaml").write_text("groups: {toys: {title: Other, components: {arm: {functionality: Mine.}}}}\n")
+    # A component that the model names is an instance here, and may not say what its type says.
+    Path("own.yaml").write_text("component_types: {toy: {}}\ngroups: {toys: {components: {arm: {same_as: toy}}}}\n")
     done = run("import", write_model("arm"))
     assert done.status == 1
     err = done.err
     assert "these errors are in what the model says" in err
+
+
+def test_what_another_file_says_is_not_written_again(run: Run) -> None:
+    Path("archgen.yaml").write_text("project: {title: Mine}\n")
+    Path("own.yaml").write_text("groups: {toys: {title: Other, components: {arm: {functionality: Mine.}}}}\n")
+    done = run("import", write_model("arm"))
+    assert done.status == 0
+    assert "said otherwise by another file, which stays as it is: groups.toys.title: `Other` in own.yaml" in done.out
 
 
 @pytest.mark.parametrize(

@@ -91,3 +91,47 @@ def test_a_dry_run_tells_and_writes_nothing(run: Run) -> None:
     record = json.loads(bring_in(run, "", "--dry-run", "--format", "json"))
     assert "nodes.a.namespace: `/front`" in record["files"][0]["removed"]
     assert SLICE.read_bytes() == before
+
+
+GRAPH = """\
+/front/driver
+$ ros2 node info /front/driver
+/front/driver
+  Subscribers:
+  Publishers:
+    /front/scan: sensor_msgs/msg/LaserScan
+  Service Servers:
+    /front/driver/describe_parameters: rcl_interfaces/srv/DescribeParameters
+  Service Clients:
+  Action Servers:
+  Action Clients:
+$ ros2 param dump /front/driver
+/front/driver:
+  ros__parameters:
+    frame: "laser"
+    rate: 5
+"""
+DRIVER = ", namespace='front', parameters=[{'rate': RATE}]"
+
+
+@pytest.mark.parametrize(
+    ("rate", "told"), [("5", ""), ("7", "nodes.driver.parameters.rate: `7` in r_launch.yaml, `5` here")]
+)
+def test_the_launch_and_the_running_robot_are_one_project(run: Run, rate: str, told: str) -> None:
+    Path("r.launch.py").write_text(
+        LAUNCH.replace("name='a'SAYS", f"name='driver'{DRIVER.replace('RATE', rate)}"), encoding="utf-8"
+    )
+    assert run("import", "launch", "r.launch.py", "-o", "robot").status == 0
+    Path("dump.txt").write_text(GRAPH, encoding="utf-8")
+    done = run("import", "ros2", "dump.txt", "-o", "robot")
+    assert done.status == 0, done.err + done.out
+    assert (told in done.out) if told else "said otherwise" not in done.out
+    checked = run("check", "robot")
+    assert "conflicting-values" not in checked.out + checked.err
+    slices = "".join(path.read_text(encoding="utf-8") for path in Path("robot").glob("*.yaml"))
+    assert slices.count("namespace: /front") == 1
+    assert slices.count("rate:") == 1
+    assert "topic: /front/scan" in slices
+    again = run("import", "ros2", "dump.txt", "-o", "robot", "--merge")
+    assert again.status == 0, again.err
+    assert "conflicting-values" not in run("check", "robot").err
