@@ -54,5 +54,5 @@ def _parse_quietly(text: str, mode: Literal["exec", "eval"]) -> ast.AST:
         msg = "its expressions nest deeper than Python reads"
         raise PythonRefusedError(msg) from None
     except ValueError as error:
-        msg = f"it is no Python ({error})"
-        raise PythonRefusedError(msg) from None
+        # Null bytes, before Python 3.11.4: the same words as a SyntaxError has later.
+        raise PythonRefusedError(str(error)) from None
