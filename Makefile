@@ -6,7 +6,7 @@ TESTS ?= tests
 # One more than there are cores: a fifth of the time, tests wait for processes that they started and for browsers.
 WORKERS ?= $(shell expr $$(getconf _NPROCESSORS_ONLN) + 1)
 
-.PHONY: demo test test-all properties check lint format bench mutants golden language pages clean
+.PHONY: demo test test-all properties check lint format bench mutants golden covered language pages clean
 .DEFAULT_GOAL := help
 
 .PHONY: help
@@ -14,6 +14,8 @@ help:
 	@echo "make demo      set up, and make report, site, diagrams and packed file of example_ramcip"
 	@echo "make check     ruff, mypy, lint-imports and the tests of make test"
 	@echo "make test      set up, and run the tests that take at most 20 s each"
+	@echo "make test CHANGED=1  only the tests of what differs from main, and of what is not committed"
+	@echo "make covered   write tests/covered_by.yaml anew, by what the tests execute"
 	@echo "make test-all  all tests: also those that take longer, build a wheel or need an installed ROS"
 	@echo "make properties  the property tests again, on new random draws each time"
 	@echo "make mutants   change one condition at a time, and see which changes no test notices"
@@ -27,13 +29,23 @@ demo: .make/run
 	@echo
 	@echo "Open archgen-out/example_ramcip/site/index.html and archgen-out/example_ramcip/report.docx"
 
+# With CHANGED=1 only the tests of what differs from main, and of what is not committed.
 test: .make/test
+ifdef CHANGED
+	$(BIN)/python -m tests.changed_tests > .make/changed-tests
+	test ! -s .make/changed-tests || $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal $$(cat .make/changed-tests)
+	@echo "That were $$(wc -l < .make/changed-tests) files of tests of what was changed; make test runs all."
+else
 	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal $(TESTS)
+endif
 
 # The rest comes after, not among them: what builds or takes long would push others over their time limits. `-rs` says what was
 # not tried here, such as a Python that is not installed.
 test-all: test .make/ros
 	$(BIN)/python -m pytest -m "slow or build or ros" -rs -n $(WORKERS) --dist worksteal $(TESTS)
+
+covered: .make/test
+	-$(BIN)/python -m pytest -q tests/test_modules_are_tested.py -k has_a_test --update-covered
 
 properties: .make/test
 	ARCHGEN_DRAW_ANEW=1 $(BIN)/python -m pytest -m hypothesis -n $(WORKERS) --dist worksteal $(TESTS)

@@ -79,6 +79,7 @@ def derived() -> Callable[[str], Architecture]:
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--update-covered", action="store_true", help="Write tests/covered_by.yaml anew, by what runs.")
     parser.addoption("--update-golden", action="store_true", help="Renew what stands in tests/golden.")
 
 

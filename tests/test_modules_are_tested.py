@@ -8,12 +8,10 @@ from __future__ import annotations
 
 import json
 import os
-import re
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
@@ -28,104 +26,19 @@ from tests.enough_executed import (
     choose_context,
     executed_share,
 )
+from tests.module_graph import find_imports, find_reachable, is_test, list_modules, read_source
 from tests.running import ROOT, made_once
 
 TABLE = ROOT / "tests" / "covered_by.yaml"
 COVERED_BY: dict[str, list[str]] = yaml.safe_load(TABLE.read_text(encoding="utf-8"))
 """Modules by the test that covers them."""
 COVERED_MODULES = [module for modules in COVERED_BY.values() for module in modules]
-_FROM_IMPORT = re.compile(r"^ *from ((?:archgen|tests)[\w.]*) import (?:\(([^)]*)\)|(.*))", re.MULTILINE)
-_FUNCTION = re.compile(r"^ *def ", re.MULTILINE)
-_ATTRIBUTE = re.compile(r"\b(\w+)\.(\w+)")
-
-
-@dataclass(frozen=True)
-class SourceFile:
-    """What a Python file imports: what each name stands for (`module` or `module.name`), and whether it has functions.
-
-    Read by patterns: ruff writes imports in one way, and Python's own parser takes five times as long for 700 files.
-    """
-
-    text: str
-    imported: Mapping[str, str]
-    has_functions: bool
-
-
-@cache
-def _read_source(path: Path) -> SourceFile:
-    text = path.read_text(encoding="utf-8")
-    imported: dict[str, str] = {}
-    for module, in_brackets, in_line in _FROM_IMPORT.findall(text):
-        for part in (in_brackets or in_line).split(","):
-            name, _, alias = part.partition("#")[0].strip().partition(" as ")
-            imported[alias or name] = f"{module}.{name}"
-    return SourceFile(text, imported, _FUNCTION.search(text) is not None)
-
-
-@cache
-def _list_modules() -> dict[str, Path]:
-    """Return the file of each module of archgen and of the tests."""
-    folders = (ROOT / "archgen", *(folder for folder in (ROOT / "tests").iterdir() if folder.name != "judges"))
-    files = [file for folder in folders for file in ([folder] if folder.suffix == ".py" else folder.rglob("*.py"))]
-    return {".".join(file.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"): file for file in files}
-
-
-def _resolve_name(name: str) -> str | None:
-    """Return the module of archgen or of the tests in which `package.name` is defined."""
-    modules = _list_modules()
-    if name in modules:
-        return name
-    module, _, own_name = name.rpartition(".")
-    if module not in modules:
-        return None
-    # A package hands on what it imports: the module behind it counts.
-    behind = _read_source(modules[module]).imported.get(own_name)
-    return (_resolve_name(behind) or module) if behind and behind != name else module
-
-
-@cache
-def _find_imports(module: str) -> frozenset[str]:
-    """Return the modules that a module imports, those that it uses through a package (`git.find_repository`) too."""
-    source = _read_source(_list_modules()[module])
-    names = {*source.imported.values()}
-    names |= {
-        f"{source.imported[name]}.{part}" for name, part in _ATTRIBUTE.findall(source.text) if name in source.imported
-    }
-    return frozenset(found for name in names if (found := _resolve_name(name)))
-
-
-@cache
-def _list_next(module: str) -> frozenset[str]:
-    """Return the modules that a module leads to: by imports, by fixtures, by a process, by the name of a verb."""
-    from archgen.cli import VERBS, verb_module
-
-    found = set(_find_imports(module))
-    if module == "archgen.cli":
-        found |= {verb_module(verb) for verb in VERBS}
-    if module == "tests.running":
-        found.add("archgen.__main__")
-    if _is_test(module):
-        found |= {name for name in _list_modules() if name.endswith("conftest") and module.startswith(name[:-8])}
-    return frozenset(found)
-
-
-def _is_test(module: str) -> bool:
-    return module.startswith("tests.") and module.rpartition(".")[2].startswith("test_")
-
-
-def _find_reachable(module: str) -> set[str]:
-    reached, pending = {module}, [module]
-    while pending:
-        new = _list_next(pending.pop()) - reached
-        reached |= new
-        pending += new
-    return reached
 
 
 def _list_logic() -> Iterator[str]:
     """Yield the modules of archgen that hold a function."""
-    for module, path in _list_modules().items():
-        if module.startswith("archgen") and _read_source(path).has_functions:
+    for module, path in list_modules().items():
+        if module.startswith("archgen") and read_source(path).has_functions:
             yield module
 
 
@@ -133,28 +46,37 @@ def _list_logic() -> Iterator[str]:
 def _list_tested() -> frozenset[str]:
     """Return the modules that a test of the same room imports; those at the top of archgen, that any test imports."""
     tested = set[str]()
-    for test in filter(_is_test, _list_modules()):
+    for test in filter(is_test, list_modules()):
         room = f"archgen.{test.split('.')[1]}."
-        tested |= {name for name in _find_imports(test) if name.count(".") <= 1 or name.startswith(room)}
+        tested |= {name for name in find_imports(test) if name.count(".") <= 1 or name.startswith(room)}
     return frozenset(tested)
 
 
-def test_every_module_with_logic_has_a_test_or_one_that_covers_it() -> None:
+def test_every_module_with_logic_has_a_test_or_one_that_covers_it(
+    request: pytest.FixtureRequest, tmp_path: Path
+) -> None:
+    if request.config.getoption("--update-covered"):
+        _update_table(tmp_path)
+        pytest.fail(f"{TABLE.name} is written anew: run the tests again")
     untested = sorted(set(_list_logic()) - _list_tested() - set(COVERED_MODULES))
-    assert untested == [], f"write a test in the folder that mirrors theirs, or add them to {TABLE.name}"
+    assert untested == [], (
+        f"write a test in the folder that mirrors theirs, or `pytest {Path(__file__).name} --update-covered`"
+    )
 
 
-def test_nothing_is_listed_that_is_tested_twice_or_gone() -> None:
+def test_nothing_is_listed_thatis_tested_twice_or_gone() -> None:
     assert len(set(COVERED_MODULES)) == len(COVERED_MODULES)
-    assert sorted(set(COVERED_MODULES) - set(_list_logic())) == [], f"take them out of {TABLE.name}: no such modules"
-    assert sorted(set(COVERED_MODULES) & _list_tested()) == [], f"take them out of {TABLE.name}: their rooms test them"
+    assert sorted(set(COVERED_MODULES) - set(_list_logic())) == [], "no such modules: `--update-covered` takes them out"
+    assert sorted(set(COVERED_MODULES) & _list_tested()) == [], (
+        "their rooms test them: `--update-covered` takes them out"
+    )
 
 
 @pytest.mark.parametrize("test", COVERED_BY)
 def test_imports_lead_from_the_test_to_what_it_covers(test: str) -> None:
     name = ".".join(Path(test).with_suffix("").parts)
-    assert name in _list_modules(), f"there is no {test}"
-    assert sorted(set(COVERED_BY[test]) - _find_reachable(name)) == []
+    assert name in list_modules(), f"there is no {test}"
+    assert sorted(set(COVERED_BY[test]) - find_reachable(name)) == []
 
 
 _ROWS_AT_ONCE = 12
@@ -166,7 +88,7 @@ Shares = dict[str, dict[str, float]]
 def _executed_shares(modules_by_test: Mapping[str, list[str]], folder: Path) -> Shares:
     """Run files of tests in one process, each until it has executed enough, and return what each executed."""
     folder.mkdir(exist_ok=True)
-    files = {test: [str(_list_modules()[each]) for each in modules] for test, modules in modules_by_test.items()}
+    files = {test: [str(list_modules()[each]) for each in modules] for test, modules in modules_by_test.items()}
     all_files = "\n    ".join(dict.fromkeys(file for row in files.values() for file in row))
     settings = folder / "coveragerc"
     settings.write_text(
@@ -189,9 +111,38 @@ def _executed_shares(modules_by_test: Mapping[str, list[str]], folder: Path) -> 
         executed = {module: data.lines(file) or () for module, file in zip(modules, files[test], strict=True)}
         choose_context(data, None)
         shares[test] = {
-            module: executed_share(measured, str(_list_modules()[module]), lines) for module, lines in executed.items()
+            module: executed_share(measured, str(list_modules()[module]), lines) for module, lines in executed.items()
         }
     return shares
+
+
+_MAX_CANDIDATES = 12
+"""Tests that are tried for a module that no row covers, those first that lead to the fewest modules."""
+
+
+def _update_table(folder: Path) -> None:
+    """Write the table anew: without what is gone or tested by its room, with a test for what has none that executes it."""
+    rows = {test: set(modules) & set(_list_logic()) - _list_tested() for test, modules in COVERED_BY.items()}
+    covered = {module for modules in rows.values() for module in modules}
+    for number, module in enumerate(sorted(set(_list_logic()) - _list_tested() - covered)):
+        reaching = [
+            (len(reached), test)
+            for test in filter(is_test, list_modules())
+            if module in (reached := find_reachable(test))
+        ]
+        for _, test in sorted(reaching)[:_MAX_CANDIDATES]:
+            file = list_modules()[test].relative_to(ROOT).as_posix()
+            if not _find_too_small(_executed_shares({file: [module]}, folder / f"{number}-{test}")[file]):
+                rows.setdefault(file, set()).add(module)
+                break
+    head = TABLE.read_text(encoding="utf-8").partition("\n\n")[0]
+    lines = [
+        line
+        for test in sorted(rows)
+        if rows[test]
+        for line in (f"{test}:", *(f"- {each}" for each in sorted(rows[test])))
+    ]
+    TABLE.write_text("\n".join((head, "", *lines)) + "\n", encoding="utf-8", newline="\n")
 
 
 def _measure_together(test: str, request: pytest.FixtureRequest, folder: Path) -> dict[str, float]:

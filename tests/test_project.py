@@ -58,8 +58,10 @@ def test_everything_below_by_default(tmp_path: Path) -> None:
         },
     )
     loaded = load_project(tmp_path)
-    assert names(loaded) == ["archgen.yaml", "b/a.yaml", "b/c.yaml", "b.yaml", "z.yaml"]
-    assert findings(loaded) == []
+    assert names(loaded) == ["archgen.yaml", "b/a.yaml", "b/c.yaml", "b.yaml", "readme.yml", "z.yaml"]
+    assert findings(loaded) == [
+        "packed.yaml:1:1 ignored-file: `archgen:` makes this file a project of its own: it is no part of this one"
+    ]
 
 
 def test_files_without_a_section_are_listed_in_one_note(tmp_path: Path) -> None:

@@ -59,7 +59,9 @@ def list_offered_names(architecture: Architecture, library_types: Mapping[str, s
     nodes = tuple(_list_titles({id_: node for id_, node in architecture.nodes.items() if node.written}))
     messages = sorted(architecture.interfaces.names)
     sections = {
-        name: tuple(_list_titles(getattr(architecture, name))) for name in SECTION_KINDS.keys() - _OTHERWISE_TITLED
+        name: tuple(_list_titles(getattr(architecture, name)))
+        for name in SECTION_KINDS
+        if name not in _OTHERWISE_TITLED
     }
     own_types = {id_: each for id_, each in architecture.component_types.items() if each.library is None}
     return sections | {
