@@ -59,6 +59,7 @@ _OTHER_WORDS = frozenset(
             "listed",
             "named_by_id",
             "element",
+            "see",
         ),
     }
 )

@@ -1,4 +1,4 @@
-"""Write what follows from the description in `language/`: the JSON Schema of a project, and the tables of `archgen/language/`."""
+"""Write what follows from the description in `language/`: the JSON Schema, the tables of `archgen/language/`, those of docs."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from language_description import DescriptionError, add_rule_settings, find_faults, load_description, make_schema
+from language_page import renew_page
 from language_tables import make_tables
 
 from archgen.findings.rule_table import index_rules
@@ -23,7 +24,9 @@ def make_files() -> Mapping[Path, str]:
     if faults := list(find_faults(description)):
         message = "\n".join(faults)
         raise DescriptionError(message)
+    page = ROOT / "docs" / "language.md"
     return {
+        page: renew_page(page.read_text(encoding="utf-8"), description),
         ROOT / "schemas" / "archgen.schema.json": json.dumps(make_schema(description), indent=2) + "\n",
         ROOT / "archgen" / "language" / "language_tables.py": make_tables(description),
     }
