@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 
-from archgen.emit.text import template_filters
+from archgen.emit.markdown import escaped_text
 
 _ZERO_WIDTH_SPACE = "\u200b"
 _SPACE_ENTITY = "&#8203;"
@@ -28,7 +28,7 @@ def escape_inert(text: str) -> str:
     line = _COMMIT_HASH.sub(_break_hash, " ".join(text.split()))
     # Inserted as a character, since the escaping would break an entity; then as an entity, which people can see.
     return (
-        template_filters.escape_markdown(_TRIGGER_POSITION.sub(_ZERO_WIDTH_SPACE, line))
+        escaped_text.escape_markdown(_TRIGGER_POSITION.sub(_ZERO_WIDTH_SPACE, line))
         .replace(_ZERO_WIDTH_SPACE, _SPACE_ENTITY)
         .replace("|", "\\|")
     )
@@ -41,4 +41,4 @@ def _break_hash(match: re.Match[str]) -> str:
 
 def make_code_cell(text: str) -> str:
     """Make a code span for a cell of a table. A bar would end the cell, so it becomes a broken bar."""
-    return template_filters.make_code_span(text.replace("|", "\u00a6"))
+    return escaped_text.make_code_span(text.replace("|", "\u00a6"))

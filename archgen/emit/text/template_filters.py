@@ -10,36 +10,14 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+from archgen.emit.markdown.escaped_text import CONTROL_CHARACTER, escape_markdown, make_code_span
 from archgen.emit.safe_names import make_identifier, make_slug
 from archgen.emit.text.code_filters import CODE_FILTERS
 
 if TYPE_CHECKING:
     from markdown_it import MarkdownIt
 
-_MARKDOWN_MARKS = re.compile(r"([\\`*_{}\[\]<>&~$])")
-_LINE_START_MARK = re.compile(r"^(\d*)([-+=#]|(?<=\d)[.)](?=\s|$))")
-_TICK_RUN = re.compile(r"`+")
-_CONTROL_CHARACTER = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]")
 _URL_SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:")
-
-
-def escape_markdown(text: object) -> str:
-    """Escape text for a line of Markdown: nothing in the result is a mark."""
-    line = _join_lines(text)
-    return _LINE_START_MARK.sub(r"\1\\\2", _MARKDOWN_MARKS.sub(r"\\\1", line))
-
-
-def make_code_span(text: object) -> str:
-    """Make a code span of one line, with more ticks around it than in it."""
-    line = _join_lines(text) or " "
-    # CommonMark: a code span ends at the first run of exactly as many ticks as began it.
-    ticks = "`" * (max((len(run) for run in _TICK_RUN.findall(line)), default=0) + 1)
-    pad = " " if line[0] == "`" or line[-1] == "`" else ""
-    return f"{ticks}{pad}{line}{pad}{ticks}"
-
-
-def _join_lines(text: object) -> str:
-    return _CONTROL_CHARACTER.sub("\ufffd", " ".join(str(text).split()))
 
 
 def safe_commonmark(text: object) -> str:
@@ -47,7 +25,7 @@ def safe_commonmark(text: object) -> str:
     plain text.
     """
     parser = _commonmark_parser()
-    text = _CONTROL_CHARACTER.sub("\ufffd", str(text))
+    text = CONTROL_CHARACTER.sub("\ufffd", str(text))
     tokens = [token for block in parser.parse(text) for token in (block, *(block.children or ()))]
     addresses = [str(token.attrs.get(name, "")) for token in tokens for name in ("href", "src")]
     if any(token.type.startswith("html_") for token in tokens) or any(_is_strange(address) for address in addresses):

@@ -8,6 +8,7 @@ from typing import Literal
 from archgen.frozen import dataclass, replace
 from archgen.model.partner_interfaces import PartnerInterface, components_at_ends
 from archgen.views.agreement.interface_terms import interface_title, partner_titles
+from archgen.views.elements import element_names
 from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 from archgen.views.graphs import element_boxes, node_boxes
 from archgen.views.graphs.component_flows import FlowStyle
@@ -90,7 +91,7 @@ def _draw_box(lookup: Lookup, box_id: str, pair: tuple[str, str]) -> Box:
     else:
         component = lookup.architecture.components[element_id]
         place = partner_titles(lookup, component.owners) if side else lookup.architecture.groups[component.group].title
-        line = " · ".join(filter(None, (place, element_boxes.join_surrounding_titles(lookup, component))))
+        line = " · ".join(filter(None, (place, element_names.join_surrounding_titles(lookup, component))))
         box = element_boxes.component_box(lookup, component, lines=(line,))
     return replace(box, id=box_id, colour=_PARTNER_HUES[partner_index], cluster=cluster, side=side)
 

@@ -14,7 +14,7 @@ from archgen.views.agreement.interface_terms import InterfaceEnd, InterfaceTerms
 from archgen.views.agreement.promise_rows import write_promise_table
 from archgen.views.agreement.signature_record import SignatureRecord
 from archgen.views.element_references import message_link
-from archgen.views.graphs.element_boxes import join_surrounding_titles
+from archgen.views.elements.element_names import join_surrounding_titles
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Facts, Inlines, Paragraph, Section, Table, Text
 from archgen.views.shapes import drop_empty_columns as tidy

@@ -8,11 +8,11 @@ from archgen.model.component import Component, ComponentType
 from archgen.views import inline_text
 from archgen.views.element_references import place_run
 from archgen.views.elements.annotation_facts import list_annotation_facts, list_contact_facts, make_image_blocks
+from archgen.views.elements.element_names import join_surrounding_titles
 from archgen.views.elements.functional_level import describe_purpose
 from archgen.views.elements.instance_values import OwnValue, TypeTexts
 from archgen.views.elements.parameter_blocks import make_parameter_blocks
 from archgen.views.elements.promise_words import write_badges, write_deprecation
-from archgen.views.graphs.element_boxes import join_surrounding_titles
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Facts, Inlines, Markdown, Table, Text, drop_empty_columns
 from archgen.views.type_names import link_type, list_instances, type_page_link

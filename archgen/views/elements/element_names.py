@@ -1,4 +1,4 @@
-"""Which elements of an architecture a name means, whatever their kind."""
+"""Which elements of an architecture a name means, whatever their kind, and what stands around them."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from typing import Any
 
 from archgen.language.language_tables import SECTION_KINDS
 from archgen.model.architecture import Architecture
+from archgen.model.component import Component
+from archgen.model.component_nesting import list_surrounding
 from archgen.model.node import Topic
 from archgen.model.port_media import name_on_medium
 from archgen.views.lookup import Lookup
@@ -59,6 +61,12 @@ def kinds_by_id(lookup: Lookup) -> dict[str, list[str]]:
         for element_id in elements:
             result.setdefault(element_id, []).append(kind)
     return result
+
+
+def join_surrounding_titles(lookup: Lookup, component: Component) -> str:
+    """Join the titles of the composed components around a component, the outermost first; empty where there are none."""
+    shells = lookup.architecture.shells
+    return " · ".join(shells[name].title for name in list_surrounding(lookup.architecture, component.id))
 
 
 def find_elements(lookup: Lookup, name: str) -> list[tuple[str, str]]:

@@ -21,10 +21,10 @@ from archgen.views.elements.card_parts import (
 from archgen.views.elements.element_names import elements_by_kind
 from archgen.views.elements.frame_users import list_frame_users
 from archgen.views.elements.requirement_facts import list_requirement_facts, list_requirement_parts
+from archgen.views.elements.type_fields import list_field_lines
 from archgen.views.lookup import Lookup
 from archgen.views.requirement_servers import describe_chain_state
 from archgen.views.sequences.step_words import describe_total, list_step_lines
-from archgen.views.tables.type_fields import list_field_lines
 
 
 def make_use_case_card(lookup: Lookup, use_case: UseCase) -> ElementCard:

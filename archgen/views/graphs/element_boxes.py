@@ -8,7 +8,8 @@ from typing import Literal, cast
 from archgen.diagnostics.diagnostic import Severity
 from archgen.frozen import replace
 from archgen.model.component import Component
-from archgen.model.component_nesting import find_component, list_members, list_surrounding
+from archgen.model.component_nesting import find_component, list_members
+from archgen.views.elements.element_names import join_surrounding_titles
 from archgen.views.graph_shapes import Box, Cluster
 from archgen.views.inline_marks import strip_marks
 from archgen.views.inline_text import count_noun
@@ -71,12 +72,6 @@ def _component_tooltip(lookup: Lookup, component: Component) -> str:
 def _list_ports(component: Component) -> list[str]:
     uses = ("Inputs", component.inputs), ("Outputs", component.outputs)
     return [f"{use}: {', '.join(ports)}" for use, ports in uses if ports]
-
-
-def join_surrounding_titles(lookup: Lookup, component: Component) -> str:
-    """Join the titles of the composed components around a component, the outermost first; empty where there are none."""
-    shells = lookup.architecture.shells
-    return " · ".join(shells[name].title for name in list_surrounding(lookup.architecture, component.id))
 
 
 def name_in_place(lookup: Lookup, component: Component) -> str:

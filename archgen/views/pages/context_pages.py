@@ -12,6 +12,7 @@ from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.port_media import ROS, describe_way, key_of_channel, name_medium, name_on_medium
 from archgen.views import inline_text, timing_words
 from archgen.views.element_references import message_link
+from archgen.views.elements import type_fields
 from archgen.views.elements.annotation_facts import list_annotation_facts
 from archgen.views.elements.promise_words import list_topic_facts, write_deprecation
 from archgen.views.lookup import Lookup
@@ -30,7 +31,7 @@ from archgen.views.shapes import (
     Text,
     drop_empty_columns,
 )
-from archgen.views.tables import deployment_tables, requirement_tables, type_fields, type_tables
+from archgen.views.tables import deployment_tables, requirement_tables, type_tables
 from archgen.views.timing import element_timing
 
 FigureFilter = Callable[[Iterable[Block]], tuple[Block, ...]]

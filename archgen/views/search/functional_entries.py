@@ -9,7 +9,7 @@ from archgen.model.component import Component, Connection, Group, Input, Output
 from archgen.model.component_nesting import find_component
 from archgen.views import inline_text
 from archgen.views.elements import promise_words
-from archgen.views.graphs.element_boxes import join_surrounding_titles
+from archgen.views.elements.element_names import join_surrounding_titles
 from archgen.views.lookup import Lookup
 from archgen.views.search.search_entry import SearchEntry, join_entry_parts, to_plain_text
 

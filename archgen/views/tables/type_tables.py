@@ -6,10 +6,9 @@ from archgen.model.graph_search import find_reachable
 from archgen.model.message_types import ConceptualType
 from archgen.model.port_media import name_medium
 from archgen.views import element_references, inline_text
-from archgen.views.elements import promise_words
+from archgen.views.elements import promise_words, type_fields
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Column, Inlines, Table, Text
-from archgen.views.tables import type_fields
 from archgen.views.tables.functional_tables import shown_connections
 
 

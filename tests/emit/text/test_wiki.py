@@ -9,14 +9,13 @@ from markdown_it import MarkdownIt
 
 from archgen.emit import text
 from archgen.emit.backend_manifests import read_shipped_backend
+from archgen.emit.markdown.escaped_text import escape_markdown, make_code_span
 from archgen.emit.markdown.mermaid_chart import escape_mermaid
 from archgen.emit.markdown.mermaid_folding import fold_for_mermaid
 from archgen.emit.safe_names import make_identifier
 from archgen.emit.text.template_filters import (
     draw_mermaid,
     draw_mermaid_sequence,
-    escape_markdown,
-    make_code_span,
     safe_commonmark,
 )
 from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph

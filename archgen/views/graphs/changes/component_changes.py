@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from archgen.compare import Comparison
 from archgen.model.component import Component
 from archgen.views.changes.change_wording import BREAK_SIGN, CHANGE_SIGNS
+from archgen.views.elements import element_names
 from archgen.views.graph_shapes import Box, Cluster, ElementChange, Graph
 from archgen.views.graphs import element_boxes
 from archgen.views.graphs.changes.broken_readers import BrokenReaders
@@ -242,7 +243,7 @@ def _draw_box(overlay: _OverlaidComponents, name: str) -> Box:
 
 def _draw_placed_box(lookup: Lookup, component: Component) -> Box:
     """Draw a component with what it stands in below its title: instances hold components of equal titles."""
-    place = element_boxes.join_surrounding_titles(lookup, component)
+    place = element_names.join_surrounding_titles(lookup, component)
     return element_boxes.component_box(lookup, component, lines=(place,) if place else ())
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from archgen import pipeline
+from archgen.views.elements import type_fields
 from archgen.views.elements.element_card import make_card
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.pages.message_pages import MessagePages
@@ -12,7 +13,7 @@ from archgen.views.records.resolved_record import make_record
 from archgen.views.records.type_record import record_type
 from archgen.views.search.implementation_entries import make_message_entries
 from archgen.views.shapes import Facts, Table
-from archgen.views.tables import type_fields, type_tables
+from archgen.views.tables import type_tables
 
 ROBOT = """\
 archgen: 1
