@@ -6,7 +6,7 @@ TESTS ?= tests
 # One more than there are cores: a fifth of the time, tests wait for processes that they started and for browsers.
 WORKERS ?= $(shell expr $$(getconf _NPROCESSORS_ONLN) + 1)
 
-.PHONY: demo test test-all properties check lint format bench mutants golden covered language pages clean
+.PHONY: demo test test-all properties check lint format bench mutants golden covered size language pages clean
 .DEFAULT_GOAL := help
 
 .PHONY: help
@@ -16,6 +16,7 @@ help:
 	@echo "make test      set up, and run the tests that take at most 20 s each"
 	@echo "make test CHANGED=1  only the tests of what differs from main, and of what is not committed"
 	@echo "make covered   write tests/covered_by.yaml anew, by what the tests execute"
+	@echo "make size      count the package's lines by what they are for"
 	@echo "make test-all  all tests: also those that take longer, build a wheel or need an installed ROS"
 	@echo "make properties  the property tests again, on new random draws each time"
 	@echo "make mutants   change one condition at a time, and see which changes no test notices"
@@ -46,6 +47,10 @@ test-all: test .make/ros
 
 covered: .make/test
 	-$(BIN)/python -m pytest -q tests/test_modules_are_tested.py -k has_a_test --update-covered
+
+# Lines by what they are for; docs/quality.md holds the table as it was last printed.
+size:
+	$(PYTHON) tools/capability_sizes.py
 
 properties: .make/test
 	ARCHGEN_DRAW_ANEW=1 $(BIN)/python -m pytest -m hypothesis -n $(WORKERS) --dist worksteal $(TESTS)
