@@ -137,14 +137,18 @@ def _name_ports(endpoints: Iterable[Endpoint]) -> dict[tuple[str, str, str], lis
 
 
 def _tell_apart(topics: Sequence[str]) -> list[str]:
-    """Return for each topic what is not the same in all: `left` and `right` for `/left/state` and `/right/state`."""
+    """Return for each topic what tells it from the others, in few words: `left` and `right` for `/left/state` and `/right/state`."""
     parts = [topic.strip("/").split("/") for topic in topics]
     shortest = min(map(len, parts), default=0)
-    start = next((i for i in range(shortest) if len({each[i] for each in parts}) > 1), shortest)
-    rest = [each[start:] for each in parts]
-    shortest = min(map(len, rest), default=0)
-    end = next((i for i in range(shortest) if len({each[-1 - i] for each in rest}) > 1), shortest)
-    return [make_snake_name("_".join(each[: len(each) - end] or each[-1:])) for each in rest]
+    # What all end with tells nothing; of what stands before it, as few words from the end as are not the same.
+    same = next((i for i in range(shortest) if len({each[-1 - i] for each in parts}) > 1), max(shortest - 1, 0))
+    heads = [each[: len(each) - same] for each in parts]
+    words = ["_".join(each) for each in heads]
+    for count in range(1, max(map(len, heads), default=1) + 1):
+        words = ["_".join(each[-count:]) for each in heads]
+        if len(set(words)) == len(words):
+            break
+    return list(map(make_snake_name, words))
 
 
 def _place_name(endpoint: Endpoint) -> tuple[str, str, str]:
