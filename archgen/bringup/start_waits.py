@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 
 from archgen.bringup.plan_shapes import Wait, WaitReason
 from archgen.model.architecture import Architecture, PortEdge
@@ -124,8 +124,3 @@ def group_by_waiting(waits: Iterable[Wait]) -> dict[str, list[Wait]]:
     for wait in sorted(waits, key=lambda each: -each.need):
         grouped[wait.waiting].append(wait)
     return grouped
-
-
-def list_awaited(waits: Sequence[Wait]) -> tuple[str, ...]:
-    """Return the steps that are awaited, each once."""
-    return tuple(dict.fromkeys(wait.awaited for wait in waits))
