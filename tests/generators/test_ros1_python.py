@@ -163,3 +163,11 @@ def test_no_text_breaks_out(text: str, tmp_path: Path) -> None:
     assert set(yaml.safe_load(values.read_text(encoding="utf-8"))) == {"/a"}
     for file in [*(tmp_path / "w").rglob("*.test"), *(tmp_path / "w").rglob("package.xml")]:
         ET.parse(file)  # noqa: S314 - just made
+
+
+def test_what_nobody_wrote_yet_reports_no_success(tmp_path: Path) -> None:
+    generate_nodes(tmp_path / "p", ROBOT, tmp_path / "w", status=1)
+    behaviours = "".join(file.read_text() for file in (tmp_path / "w").rglob("*.py"))
+    assert "set_aborted(" in behaviours
+    assert "set_succeeded(" not in behaviours
+    assert "is not written yet: its answers say nothing" in behaviours

@@ -285,3 +285,12 @@ def is_ros_own(topic: str, node: str) -> bool:
     return topic in {"/rosout", "/parameter_events", "/clock"} or topic in {
         f"{node}/{name}" for name in (*own, *cycle, "transition_event")
     }
+
+
+def test_what_nobody_wrote_yet_reports_no_success(tmp_path: Path) -> None:
+    generate(tmp_path / "p", ROBOT, tmp_path / "w")
+    (behaviour,) = (file.read_text() for file in (tmp_path / "w").rglob("det.py"))
+    assert "goal_handle.abort()" in behaviour
+    assert ".succeed()" not in behaviour
+    assert "execute_go is not written yet: its goals are aborted" in behaviour
+    assert "serve_plan is not written yet: its answers say nothing" in behaviour
