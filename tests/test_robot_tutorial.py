@@ -65,7 +65,7 @@ def test_nothing_is_wrong_with_it(rover: Path) -> None:
 
 
 def test_own_code_is_written_as_ros_developers_write(rover: Path) -> None:
-    command = [sys.executable, "-m", "flake8", "--isolated", *AMENT_FLAKE8, str(rover / "ws")]
+    command = [sys.executable, "-m", "flake8", "--isolated", "--jobs=1", *AMENT_FLAKE8, str(rover / "ws")]
     done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - our own program
     assert (done.returncode, done.stdout) == (0, "")
 

@@ -88,7 +88,7 @@ def _generate_all(workspace: Path) -> None:
 def _judge(settings: tuple[str, ...], folders: list[Path]) -> str:
     assert folders
     assert all(any(each.rglob("*.py")) for each in folders)
-    command = [sys.executable, "-m", "flake8", "--isolated", *settings, *map(str, folders)]
+    command = [sys.executable, "-m", "flake8", "--isolated", "--jobs=1", *settings, *map(str, folders)]
     return subprocess.run(command, capture_output=True, text=True, check=False).stdout  # noqa: S603 - our own program
 
 

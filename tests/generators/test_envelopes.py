@@ -84,7 +84,7 @@ def test_only_a_text_and_a_payload_are_an_envelope() -> None:
 def test_it_is_written_as_ros_developers_write(backend: str, distro: str, tmp_path: Path) -> None:
     project = write_enveloped(tmp_path, distro)
     archgen_here("generate", backend, "-o", tmp_path / "w", cwd=project, status=0)
-    command = [sys.executable, "-m", "flake8", "--isolated", *AMENT_FLAKE8, str(tmp_path / "w")]
+    command = [sys.executable, "-m", "flake8", "--isolated", "--jobs=1", *AMENT_FLAKE8, str(tmp_path / "w")]
     done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - our own program
     assert (done.returncode, done.stdout) == (0, "")
 

@@ -112,7 +112,7 @@ def test_it_is_written_as_ros_developers_write(tmp_path: Path) -> None:
     generate_nodes(tmp_path / "p", ROBOT, tmp_path / "w", status=1)
     scripts = [str(each) for each in (tmp_path / "w").rglob("scripts/*")]
     assert len(scripts) == 6
-    command = [sys.executable, "-m", "flake8", "--isolated", *AMENT_FLAKE8, str(tmp_path / "w"), *scripts]
+    command = [sys.executable, "-m", "flake8", "--isolated", "--jobs=1", *AMENT_FLAKE8, str(tmp_path / "w"), *scripts]
     done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - our own program
     assert (done.returncode, done.stdout) == (0, "")
     for path in [*(tmp_path / "w").rglob("scripts/*"), *(tmp_path / "w").rglob("test/*.py")]:

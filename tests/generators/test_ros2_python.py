@@ -151,7 +151,7 @@ def test_messages_of_one_name_are_told_apart(tmp_path: Path) -> None:
 
 def test_it_is_written_as_ros_developers_write(tmp_path: Path) -> None:
     generate(tmp_path / "p", ROBOT, tmp_path / "w")
-    command = [sys.executable, "-m", "flake8", "--isolated", *AMENT_FLAKE8, str(tmp_path / "w")]
+    command = [sys.executable, "-m", "flake8", "--isolated", "--jobs=1", *AMENT_FLAKE8, str(tmp_path / "w")]
     done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - our own program
     assert (done.returncode, done.stdout) == (0, "")
 
