@@ -52,26 +52,27 @@ def report_missing_sources(state: ReadingState, patterns: Iterable[ScalarNode]) 
 def report_other_endings(state: ReadingState, patterns: Iterable[YamlNode]) -> None:
     """Report YAML files that a pattern would match if they ended as it does: a partner writes `.yml` where others do not."""
     for pattern in patterns:
-        if not isinstance(pattern, ScalarNode) or not pattern.text.endswith(file_patterns.YAML_ENDINGS):
+        if not isinstance(pattern, ScalarNode) or not file_patterns.is_yaml_name(pattern.text):
             continue
         stem, ending = posixpath.splitext(pattern.text)
-        for other in file_patterns.YAML_ENDINGS:
-            if other == ending or not file_patterns.is_inside_project(pattern.text) or "*" not in stem:
-                continue
-            unread = [
-                file for file in file_patterns.expand_pattern(state.files, stem + other) if file not in state.seen_files
-            ]
-            if unread:
-                names = ", ".join(f"`{file}`" for file in unread)
-                state.diagnostics.append(
-                    Diagnostic(
-                        "ignored-file",
-                        f"{names} {'is' if len(unread) == 1 else 'are'} not read: `{pattern.text}` names files that end in `{ending}`",
-                        pattern.span,
-                        severity=Severity.WARNING,
-                        help=f"add `{stem}{other}`, or let {'its name' if len(unread) == 1 else 'their names'} end in `{ending}`",
-                    )
+        if not file_patterns.is_inside_project(pattern.text) or "*" not in stem:
+            continue
+        unread_files: dict[str, list[str]] = {}
+        for file in file_patterns.expand_pattern(state.files, f"{stem}.*"):
+            other = posixpath.splitext(file)[1]
+            if other != ending and file_patterns.is_yaml_name(file) and file not in state.seen_files:
+                unread_files.setdefault(other, []).append(file)
+        for other, files in unread_files.items():
+            names = ", ".join(f"`{file}`" for file in files)
+            state.diagnostics.append(
+                Diagnostic(
+                    "ignored-file",
+                    f"{names} {'is' if len(files) == 1 else 'are'} not read: `{pattern.text}` names files that end in `{ending}`",
+                    pattern.span,
+                    severity=Severity.WARNING,
+                    help=f"add `{stem}{other}`, or let {'its name' if len(files) == 1 else 'their names'} end in `{ending}`",
                 )
+            )
 
 
 def _widen_pattern(file: str) -> str:

@@ -13,10 +13,12 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path, PurePath
 
+from archgen.syntax.file_patterns import YAML_ENDINGS
+
 Snapshot = Mapping[str, tuple[int, int, int]]
 """Time (ns), size and number of each watched file, by its path."""
 _WATCHED_ENDINGS = frozenset(
-    {".yaml", ".yml", ".md", ".msg", ".srv", ".action", ".png", ".jpg", ".jpeg", ".gif", ".webp", ".svg"}
+    {*YAML_ENDINGS, ".md", ".msg", ".srv", ".action", ".png", ".jpg", ".jpeg", ".gif", ".webp", ".svg"}
 )
 _SKIPPED_FOLDERS = frozenset({"archgen-out", "node_modules", "__pycache__"})
 _SHORTEST_PAUSE, _LONGEST_PAUSE = 0.03, 2.0

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from archgen.syntax.project_files import ProjectFiles
 
 YAML_ENDINGS = (".yaml", ".yml")
-"""How the names of YAML files end."""
+"""How the names of YAML files end, in small letters."""
 _WILDCARD = re.compile(r"[*?\[]")
 OUTPUT_FOLDER = "archgen-out"
 
@@ -58,13 +58,13 @@ def list_yaml_files(
     files: ProjectFiles, folder: str = "", skipped_folders: frozenset[str] = frozenset(), *, is_deep: bool = True
 ) -> tuple[str, ...]:
     """Return the YAML files below a folder, or those in it alone, sorted by path, whichever ending they have."""
-    places = "/".join(filter(None, (folder, "**" if is_deep else "")))
-    found_files = (
-        file
-        for ending in YAML_ENDINGS
-        for file in expand_pattern(files, f"{places}/*{ending}".lstrip("/"), skipped_folders)
-    )
-    return tuple(sorted(found_files, key=lambda name: name.split("/")))
+    pattern = "/".join(filter(None, (folder, "**" if is_deep else "", "*")))
+    return tuple(filter(is_yaml_name, expand_pattern(files, pattern, skipped_folders)))
+
+
+def is_yaml_name(name: str) -> bool:
+    """Whether a file is called as YAML files are, in capitals or not."""
+    return name.lower().endswith(YAML_ENDINGS)
 
 
 def matches_pattern(pattern: str, file: str) -> bool:
@@ -84,7 +84,7 @@ def _walk_files(files: ProjectFiles, top: str, skipped_folders: frozenset[str]) 
         yield from (f"{path_prefix}{name}" for name in file_names if name[0] != ".")
         # A folder called `x.yaml` is yielded too: reading it then reports that it is a folder, instead of silently
         # leaving out what somebody may take for a file.
-        yield from (f"{path_prefix}{name}" for name in folders if name.endswith(YAML_ENDINGS))
+        yield from (f"{path_prefix}{name}" for name in folders if is_yaml_name(name))
 
 
 def _compile_path(parts: tuple[str, ...]) -> tuple[re.Pattern[str] | None, ...]:

@@ -21,7 +21,7 @@ def write_project(folder: Path, files: dict[str, str], head: str = "archgen: 1\n
     return list(checked.architecture.components), told
 
 
-@pytest.mark.parametrize("name", ["weeder.yaml", "weeder.yml", "groups/weeder.yml", "a/b/c.yml"])
+@pytest.mark.parametrize("name", ["weeder.yaml", "weeder.yml", "groups/weeder.yml", "a/b/c.yml", "groups/WEEDER.YAML", "weeder.Yml"])
 def test_a_slice_is_read_whichever_ending_it_has(tmp_path: Path, name: str) -> None:
     assert write_project(tmp_path, {name: SLICE}) == (["g.weeder"], [])
 
@@ -40,6 +40,10 @@ def test_what_a_pattern_leaves_out_for_its_ending_is_told_at_the_pattern(tmp_pat
         "warning archgen.yaml:2:11: `groups/weeder.yml` is not read: `groups/*.yaml` names files that end in `.yaml`"
     ]
     assert write_project(tmp_path, {}, 'archgen: 1\nsources: ["groups/*.yaml", "groups/*.yml"]\n')[1] == []
+    (tmp_path / "groups/weeder.yml").rename(tmp_path / "groups/weeder.YAML")
+    assert write_project(tmp_path, {}, 'archgen: 1\nsources: ["groups/*.yaml"]\n')[1] == [
+        "warning archgen.yaml:2:11: `groups/weeder.YAML` is not read: `groups/*.yaml` names files that end in `.yaml`"
+    ]
 
 
 @pytest.mark.parametrize("head", ["archgen: 1\n", 'archgen: 1\nsources: ["**/*.yaml"]\n'])
