@@ -66,12 +66,6 @@ def _list_loops(successors: Mapping[T, Sequence[T]]) -> Iterator[tuple[T, ...]]:
                 heappush(ready, (positions[loops[follower][0]], follower))
 
 
-def sum_feedback(elements: Sequence[T], weights: Mapping[tuple[T, T], int]) -> int:
-    """Return how much flows back in an order."""
-    positions = {element: position for position, element in enumerate(elements)}
-    return sum(weight for (source, target), weight in weights.items() if positions[source] > positions[target])
-
-
 def _order_exactly(loop: Sequence[T], weights: Mapping[tuple[T, T], int]) -> list[T]:
     """Find the best order: of each subset the least feedback, by which of it comes last."""
     count = len(loop)

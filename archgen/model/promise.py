@@ -77,8 +77,3 @@ def format_limit(limit: float) -> str:
     if limit in {float("inf"), float("-inf")}:
         return "no limit" if limit > 0 else "no lower limit"
     return str(limit).removesuffix(".0")
-
-
-def format_promised(key: str, value: object, unit: str | None = None) -> str:
-    """Return a promised value as people read it; a range has its unit."""
-    return format_range(value, unit) if key == "range" and isinstance(value, tuple) else str(value)

@@ -39,11 +39,6 @@ def list_below(parts: Mapping[str, Iterable[str]], requirement_id: str) -> Itera
     yield from _walk_on([requirement_id], lambda each: parts.get(each, ()))
 
 
-def list_above(requirements: Mapping[str, Requirement], requirement_id: str) -> Iterator[str]:
-    """Yield the ids of all that a requirement is part of, each once, the nearest first."""
-    yield from _walk_on([requirement_id], _parents_in(requirements))
-
-
 def add_above(requirements: Mapping[str, Requirement], requirement_ids: Iterable[str]) -> frozenset[str]:
     """Return the ids of all that some requirements are part of, to any height."""
     return frozenset(_walk_on(requirement_ids, _parents_in(requirements), keeps_starts=True))

@@ -153,17 +153,6 @@ class ProjectTree:
             self._shift_items(path[:-1], key)
         self.edit_count += 1
 
-    def drop_item(self, path: TreePath, text: str) -> None:
-        """Take the item of this text out of the list at a path; a scalar of this text goes with its key."""
-        node = self.get(path)
-        if isinstance(node, SequenceNode):
-            for number in range(len(node.items) - 1, -1, -1):
-                item = node.items[number]
-                if isinstance(item, ScalarNode) and item.text == text:
-                    self.drop((*path, number))
-        elif isinstance(node, ScalarNode) and node.text == text:
-            self.drop(path)
-
     def mark(self, path: TreePath) -> None:
         """Say that the pass made what stands at a path from itself: it is there, and follows from what is written."""
         if not self.trace(path).passes:

@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 import random
+from collections.abc import Sequence
 from itertools import pairwise, permutations
 
 import pytest
 
-from archgen.model.feedback_order import MAX_EXACT, order_by_feedback, sum_feedback
+from archgen.model.feedback_order import MAX_EXACT, order_by_feedback
 
 Weights = dict[tuple[str, str], int]
+
+
+def sum_feedback(elements: Sequence[str], weights: Weights) -> int:
+    """Return how much flows back in an order."""
+    positions = {element: position for position, element in enumerate(elements)}
+    return sum(weight for (source, target), weight in weights.items() if positions[source] > positions[target])
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,6 @@ from archgen.model.promise import (
     Promise,
     describe_deprecation,
     format_limit,
-    format_promised,
     format_range,
 )
 from archgen.model.quantity import parse_quantity
@@ -42,13 +41,11 @@ def test_the_last_day_itself_is_not_over(until: str | None, day: str | None, is_
 )
 def test_ranges_in_words(limits: tuple[float, float], unit: str | None, words: str) -> None:
     assert format_range(limits, unit) == words
-    assert format_promised("range", limits, unit) == words
 
 
 def test_what_is_kept_is_listed_in_the_order_of_the_keys() -> None:
     rate = parse_quantity("10 Hz", "frequency")
     assert dict(Promise(range=(0, 1), rate=rate).list_kept()) == {"rate": rate, "range": (0, 1)}
-    assert format_promised("rate", rate) == "10 Hz"
     assert format_limit(5.0) == "5"
 
 

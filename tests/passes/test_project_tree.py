@@ -107,7 +107,7 @@ def test_items_are_appended_once_and_origins_follow_the_items_that_stay() -> Non
         tree.append(tags, text, OUTPUT)
     assert node_to_data(tree.root)["groups"]["g"]["components"]["b"]["tags"] == ["fast", "new", "newer"]  # type: ignore[index]
     assert [len(tree.trace((*tags, number)).passes) for number in range(3)] == [0, 1, 1]
-    tree.drop_item(tags, "fast")
+    tree.drop((*tags, 0))
     assert [len(tree.trace((*tags, number)).passes) for number in range(2)] == [1, 1]
     tree.drop((*tags, 0))
     assert node_to_data(tree.root)["groups"]["g"]["components"]["b"]["tags"] == ["newer"]  # type: ignore[index]

@@ -21,7 +21,9 @@ def write_project(folder: Path, files: dict[str, str], head: str = "archgen: 1\n
     return list(checked.architecture.components), told
 
 
-@pytest.mark.parametrize("name", ["weeder.yaml", "weeder.yml", "groups/weeder.yml", "a/b/c.yml", "groups/WEEDER.YAML", "weeder.Yml"])
+@pytest.mark.parametrize(
+    "name", ["weeder.yaml", "weeder.yml", "groups/weeder.yml", "a/b/c.yml", "groups/WEEDER.YAML", "weeder.Yml"]
+)
 def test_a_slice_is_read_whichever_ending_it_has(tmp_path: Path, name: str) -> None:
     assert write_project(tmp_path, {name: SLICE}) == (["g.weeder"], [])
 

@@ -8,7 +8,6 @@ draws its own below the edges and lets them overlap.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
 from functools import lru_cache
 from typing import Any, Literal
 
@@ -235,16 +234,3 @@ def rectangles_meet(first: Rectangle, second: Rectangle, gap: float = 0.0) -> bo
         and first[1] < second[3] + gap
         and second[1] < first[3] + gap
     )
-
-
-def overlapping_parts(scene: Scene) -> Iterable[tuple[str, str]]:
-    """Yield each pair of boxes, titles and labels that overlap by more than the rounding of a hairline. For tests."""
-    parts = [part for part in scene.parts if part.kind != "mark"]
-    # A sweep from left to right: nothing that begins beyond a part's right side can overlap it.
-    parts.sort(key=lambda part: part.rectangle[0])
-    for at, part in enumerate(parts):
-        for other in parts[at + 1 :]:
-            if other.rectangle[0] >= part.rectangle[2]:
-                break
-            if rectangles_meet(part.rectangle, other.rectangle, -0.5):
-                yield part.name, other.name

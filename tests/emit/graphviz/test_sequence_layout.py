@@ -7,9 +7,9 @@ import re
 import pytest
 
 from archgen.emit.graphviz.graph_drawing import draw_picture
-from archgen.emit.graphviz.placed_scene import overlapping_parts
 from archgen.emit.graphviz.sequence_layout import lay_out_sequence
 from archgen.views.sequence_shapes import Lifeline, SequenceChart, SequenceMessage
+from tests.emit.graphviz.overlaps import overlapping_parts
 
 LIFELINES = (
     Lifeline("The resident", "actor"),
