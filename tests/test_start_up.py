@@ -21,6 +21,7 @@ HEAVY = {
     "networkx",
     "numpy",
     "pygraphviz",
+    "rapidfuzz",
     "ruamel",
     "xml.dom",
 }

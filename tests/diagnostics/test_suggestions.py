@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import random
+
 import pytest
 
+from archgen.diagnostics import suggestions
 from archgen.diagnostics.suggestions import did_you_mean, find_closest
 
 
@@ -42,3 +45,13 @@ def test_words_longer_than_any_name_are_only_compared_as_a_whole() -> None:
 )
 def test_a_help_line_never_proposes_the_word_itself(word: str, line: str | None) -> None:
     assert did_you_mean(word, ["image"]) == line
+
+
+def test_looking_at_the_letters_first_changes_no_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+    draw = random.Random(7)  # noqa: S311 - drawn anew each time would fail anew
+    words = ["".join(draw.choices("abc_", k=draw.randint(1, 9))) for _ in range(400)]
+    cases = [(word, draw.choices(words, k=draw.randint(0, 4))) for word in words]
+    answers = [find_closest(*case) for case in cases]
+    monkeypatch.setattr(suggestions, "_FEW_NAMES", -1)
+    assert [find_closest(*case) for case in cases] == answers
+    assert len(set(answers)) > 20
