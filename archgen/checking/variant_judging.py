@@ -18,6 +18,7 @@ from archgen.link import mapping_values, slice_merging
 from archgen.link.variants import variant_order
 from archgen.model.variant import BASE_NAME
 from archgen.project.variant_settings import adopt_settings, changes_settings
+from archgen.syntax.remembered_files import RememberedFiles
 from archgen.syntax.yaml_tree import list_spans
 from archgen.timing.run_analysis import AnalysisMemory
 
@@ -42,6 +43,10 @@ def judge_in_variants(
     from archgen.findings import variant_findings
 
     part_memory = PartMemory()
+    loaded_project = merged_project.loaded_project
+    merged_project = replace(
+        merged_project, loaded_project=replace(loaded_project, files=RememberedFiles(loaded_project.files))
+    )
     analysis_memory.make_room(len(mapping_values.get_mapping(merged_project.table, "variants").entries) + 1)
     checked_project = judge_merged_project(merged_project, analysis_memory, part_memory)
     judge = _VariantJudge(merged_project, checked_project, analysis_memory, part_memory)
@@ -59,6 +64,7 @@ def judge_in_variants(
     )
     return replace(
         checked_project,
+        loaded_project=loaded_project,
         findings=finding_limit.limit_findings(joined_findings),
         own_findings=checked_project.findings,
         variants=variants,
