@@ -26,6 +26,7 @@ from archgen.model.step_connections import UseCaseSteps
 from archgen.timing.system import message_sizes
 from archgen.views.requirement_trace import RequirementTrace, trace_requirements
 from archgen.views.timing.timing_lookup import TimingLookup
+from archgen.views.type_texts import TypeTexts
 
 T = TypeVar("T")
 
@@ -90,6 +91,8 @@ class Lookup:
     # Computed when somebody asks: most views show no use case.
     steps: UseCaseSteps = field(kw_only=True, compare=False, repr=False)
     """The steps of use cases, with what they run along."""
+    type_texts: TypeTexts = field(kw_only=True, compare=False, repr=False)
+    """Where the texts of component types are."""
     timing: TimingLookup | None = None
     """Results of the timing analysis; None for the many views that need no timing."""
 
@@ -197,6 +200,7 @@ def make_lookup(
         group_hues={group: hue for hue, group in enumerate(architecture.groups)},
         message_size=message_sizes.make_size_query(architecture),
         steps=UseCaseSteps(architecture),
+        type_texts=TypeTexts(architecture),
         timing=timing_lookup,
     )
 

@@ -25,6 +25,7 @@ from archgen.views.shapes import (
     Section,
     Table,
     Text,
+    drop_column,
     drop_empty_columns,
 )
 from archgen.views.tables import deployment_tables
@@ -185,13 +186,7 @@ class MessagePages:
             self._lookup, topics, f"table:carriers/{message}", "Topics, services and actions that carry it"
         )
         if topic_table:
-            without_message = (column for column in topic_table.columns if column.title != "Message")
-            yield Table(
-                topic_table.anchor,
-                topic_table.caption,
-                tuple(without_message),
-                tuple((name, *ends) for name, _message, *ends in topic_table.rows),
-            )
+            yield drop_column(topic_table, "carried")
         outputs = [output for each in self._types_of(message) for output in self._shown_outputs(each)]
         if outputs:
             yield self._make_port_table(message, outputs)

@@ -26,7 +26,7 @@ from archgen.views.pages import (
     undrawn_pictures,
     variant_chapter,
 )
-from archgen.views.pages.component_pages import ComponentPages, drop_facts
+from archgen.views.pages.component_pages import ComponentPages
 from archgen.views.pages.context_pages import HOME_CRUMB
 from archgen.views.pages.message_pages import MessagePages
 from archgen.views.pages.page_parts import split_pages
@@ -292,8 +292,15 @@ class PageMaker:
         yield self._spanning_page("variants", "Variants", lead, table)
         crumbs = (HOME_CRUMB, ("Variants", "page:variants"))
         for section in variant_chapter.make_variant_sections(self.architecture, self.edition.variants):
-            name = section.anchor.partition(":")[2]
-            yield Page(f"variants/{name}.html", section.anchor, section.title, "variants", section, crumbs, "Variant")
+            yield Page(
+                f"variants/{section.subject}.html",
+                section.anchor,
+                section.title,
+                "variants",
+                section,
+                crumbs,
+                "Variant",
+            )
 
     def timing_pages(self) -> Iterator[Page]:
         """Make the pages on timing: one for the whole, one for all chains, and one for each chain."""
@@ -313,7 +320,7 @@ class PageMaker:
             # A page for each: together they were as long as 25 screens.
             crumbs = (HOME_CRUMB, ("Timing", "page:timing"))
             for section in sections:
-                path = f"timing/{section.anchor.partition(':')[2]}.html"
+                path = f"timing/{section.subject}.html"
                 yield Page(path, section.anchor, section.title, "timing", section, crumbs, "Timing")
         yield self._spanning_page("chains", "Chains of effect", *timing_chapter.make_chain_overview(self.lookup))
         yield from self.chain_pages()
@@ -322,19 +329,16 @@ class PageMaker:
         """Make a page for each chain."""
         graphs = self.edition.drawings
         crumbs = (HOME_CRUMB, ("Chains of effect", "page:chains"))
-        results = {f"chain:{result.id}": result for result in self.lookup.timing.chains} if self.lookup.timing else {}
-        for section in timing_chapter.make_chain_sections(self.lookup, graphs):
-            path = f"chains/{section.anchor.partition(':')[2]}.html"
-            result = results[section.anchor]
-            waterfall = make_waterfall(self.lookup, self.lookup.timing, result) if self.lookup.timing else None
+        timing_lookup = self.lookup.timing
+        for result in timing_lookup.chains if timing_lookup else ():
+            if timing_lookup is None or result.id not in self.architecture.chains:
+                continue
+            waterfall = make_waterfall(self.lookup, timing_lookup, result)
             # The waterfall says the same at a glance; the chart has a page of the report, which has no waterfall.
-            shown_blocks = drop_facts(
-                (block for block in section.blocks if not (waterfall and isinstance(block, Figure))),
-                WATERFALL_FACTS if waterfall else (),
-            )
-            shown_section = replace(section, blocks=shown_blocks)
-            lead = "Chain of effect"
-            yield Page(path, section.anchor, section.title, "chains", shown_section, crumbs, lead, waterfall=waterfall)
+            shown = ({}, WATERFALL_FACTS) if waterfall else (graphs, ())
+            section = timing_chapter.make_chain_section(self.lookup, timing_lookup, result, *shown)
+            path, lead = f"chains/{result.id}.html", "Chain of effect"
+            yield Page(path, section.anchor, section.title, "chains", section, crumbs, lead, waterfall=waterfall)
 
     def _listing_page(self, name: str, title: str, sections: tuple[Section, ...]) -> Page:
         """Make a page of sections, without anything before them."""
