@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import itertools
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -15,6 +16,7 @@ from archgen.checking.checked_project import CheckedProject
 from archgen.pipeline import check_project
 from archgen.products.output_options import OutputOptions
 from archgen.products.project_views import ProjectViews, make_views
+from archgen.views.agreement.partner_agreement import make_agreement
 from archgen.views.pages import report_outline
 from archgen.views.pages.site_pages import make_pages
 from archgen.views.report.printed_report import make_printed_report
@@ -82,6 +84,9 @@ def _write_documents(views: ProjectViews) -> Iterator[str]:
     yield repr(make_printed_report(views.lookup, replace(views.edition, ros_place="annex")))
     yield repr(make_printed_report(views.lookup, replace(views.edition, ros_place="inline")))
     yield repr(make_pages(views.lookup, views.edition))
+    partners = tuple(views.lookup.architecture.partners)
+    for pair in itertools.permutations(partners[:3], 2):
+        yield repr(make_agreement(views.lookup, *pair, earlier_revision=("earlier", views.lookup)))
 
 
 def _write_composed(folder: Path) -> Path:

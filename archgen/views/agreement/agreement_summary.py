@@ -9,7 +9,7 @@ from archgen.views import inline_text
 from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.interface_record import InterfaceRecord
 from archgen.views.agreement.interface_terms import InterfaceTerms, partner_titles
-from archgen.views.agreement.promise_rows import join_figures
+from archgen.views.agreement.promise_rows import RATE, join_figures
 from archgen.views.agreement.term_changes import NAME_KIND, AgreementChanges, write_signed_kind
 from archgen.views.element_references import message_link
 from archgen.views.shapes import Column, Inlines, Paragraph, Section, Table, Text, drop_empty_columns
@@ -60,8 +60,8 @@ def _summary_row(content: AgreementContent, record: InterfaceRecord) -> tuple[In
 def _rate_runs(interface_terms: InterfaceTerms) -> Inlines:
     """Return how often it flows, or within what it is answered, and whether that is promised."""
     for row in interface_terms.promise_rows:
-        if row.name.startswith(("Rate", "Answers within")) and (row.promised or row.expected):
-            words = "answered within " if row.name.startswith("Answers") else ""
+        if row.name.key in {RATE.key, "response"} and (row.promised or row.expected):
+            words = "answered within " if row.name.key == "response" else ""
             figure = join_figures(row.promised or row.expected)
             return inline_text.join_lines(
                 [

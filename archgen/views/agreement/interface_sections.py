@@ -16,7 +16,7 @@ from archgen.views.agreement.signature_record import SignatureRecord
 from archgen.views.element_references import message_link
 from archgen.views.elements.element_names import join_surrounding_titles
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Block, Column, Facts, Inlines, Paragraph, Section, Table, Text
+from archgen.views.shapes import Block, Column, Facts, Inlines, Paragraph, Section, Table, Text, show_facts
 from archgen.views.shapes import drop_empty_columns as tidy
 from archgen.views.timing import timing_tables
 
@@ -47,7 +47,7 @@ class SectionWriter:
                 (
                     *first_facts,
                     ("Version", inline_text.to_inlines(self.signatures.describe_version(record))),
-                    *interface_terms.facts,
+                    *show_facts(interface_terms.facts).rows,
                     *_further_facts(interface_terms),
                 )
             ),
@@ -65,7 +65,8 @@ class SectionWriter:
 
         removed_notice = Paragraph(inline_text.to_inlines(write_signed_kind("removed")), "error")
         interface_terms = record.terms
-        facts = Facts((("Version", inline_text.to_inlines(interface_terms.version)), *interface_terms.facts))
+        version = ("Version", inline_text.to_inlines(interface_terms.version))
+        facts = Facts((version, *show_facts(interface_terms.facts).rows))
         blocks: list[Block] = [
             removed_notice,
             facts,

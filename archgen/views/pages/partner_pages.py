@@ -126,8 +126,8 @@ def _make_number(count: int) -> Inlines:
 
 
 def _promised_cells(exchange: PartnerExchange) -> Iterator[Inlines]:
-    for starts in (("Rate", "Answers within"), ("QoS offered",)):
-        promised, total = exchange_tables.count_promised(exchange.interfaces, starts)
+    for keys in (exchange_tables.PACE_TERMS, exchange_tables.QOS_TERMS):
+        promised, total = exchange_tables.count_promised(exchange.interfaces, keys)
         yield (Text(f"{promised} of {total}", sort_number=f"{promised}/{total}"),) if total else ()
 
 
@@ -172,8 +172,8 @@ def _list_figures(lookup: Lookup, exchange: PartnerExchange) -> Iterator[KeyFigu
         count = len(exchange.list_given(giver))
         note = inline_text.to_inlines(Text(f"interfaces to {taker_title}", muted=True))
         yield KeyFigure(f"{giver_title} gives", str(count), "", note, f"given:{giver}" if count else "")
-    for name, starts in (("Rates promised", ("Rate", "Answers within")), ("QoS promised", ("QoS offered",))):
-        promised, total = exchange_tables.count_promised(exchange.interfaces, starts)
+    for name, keys in (("Rates promised", exchange_tables.PACE_TERMS), ("QoS promised", exchange_tables.QOS_TERMS)):
+        promised, total = exchange_tables.count_promised(exchange.interfaces, keys)
         if total:
             left = total - promised
             note = (Text(f"{left} still to be written" if left else "all of them", status="open" if left else "met"),)
