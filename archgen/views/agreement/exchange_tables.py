@@ -6,11 +6,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from archgen.model.partner_interfaces import components_at_ends
 from archgen.views import inline_text
-from archgen.views.agreement.interface_terms import InterfaceTerms, partner_titles
+from archgen.views.agreement.interface_terms import InterfaceTerms
 from archgen.views.agreement.open_points import describe_open_term
 from archgen.views.agreement.partner_exchanges import PartnerExchange
 from archgen.views.agreement.promise_rows import QOS_OFFERED, RATE, PromiseRow, TermName, join_figures
 from archgen.views.element_references import message_link
+from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Column, Inlines, Status, Table, Text, drop_empty_columns
 
@@ -167,4 +168,4 @@ def count_promised(interfaces: Iterable[InterfaceTerms], keys: tuple[str, ...]) 
 
 def pair_title(lookup: Lookup, pair: Sequence[str]) -> str:
     """Return the titles of two partners: `CERTH-ITI and FORTH-ICS`."""
-    return " and ".join(partner_titles(lookup, [partner]) for partner in pair)
+    return " and ".join(join_owner_titles(lookup, [partner]) for partner in pair)

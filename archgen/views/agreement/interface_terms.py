@@ -30,7 +30,7 @@ from archgen.views.agreement.promise_rows import (
     measure_qos,
 )
 from archgen.views.element_references import message_link
-from archgen.views.graphs.element_boxes import name_in_place
+from archgen.views.graphs.element_boxes import join_owner_titles, name_in_place
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Fact, Inlines, Text
 
@@ -111,7 +111,7 @@ def gather_terms(
 ) -> InterfaceTerms:
     """Gather all terms of an interface."""
     chains = tuple(interface_timing.find_chains_through(lookup, activity_names, interface))
-    giver, taker = (partner_titles(lookup, [partner]) for partner in interface.pair)
+    giver, taker = (join_owner_titles(lookup, [partner]) for partner in interface.pair)
     ports = output_promises.list_counted_ports(lookup, interface)
     return InterfaceTerms(
         interface,
@@ -232,12 +232,6 @@ def _other_reader(lookup: Lookup, component_id: str) -> Inlines:
     return (inline_text.component_link(component_model), *((Text(" ("), *owners, Text(")")) if owners else ()))
 
 
-def partner_titles(lookup: Lookup, owners: Iterable[str]) -> str:
-    """Return partners' titles, comma separated."""
-    known_partners = lookup.architecture.partners
-    return ", ".join(known_partners[owner].title if owner in known_partners else owner for owner in owners)
-
-
 def _list_ends(lookup: Lookup, interface: PartnerInterface) -> Iterator[InterfaceEnd]:
     giving_components, taking_components = components_at_ends(lookup.architecture, interface)
     verbs = ("serves", "calls") if interface.flow in {"service", "action"} else ("publishes", "reads")
@@ -343,10 +337,10 @@ def _shared_sentences(lookup: Lookup, interface: PartnerInterface) -> Iterator[s
     architecture = lookup.architecture
     for component in _components_of(lookup, interface):
         if len(component.owners) > 1:
-            yield f"{component.title} belongs to {partner_titles(lookup, component.owners)} together: each answers for this interface."
+            yield f"{component.title} belongs to {join_owner_titles(lookup, component.owners)} together: each answers for this interface."
     for node_id in dict.fromkeys(
         endpoint.node for endpoint in (*interface.giver_endpoints, *interface.taker_endpoints)
     ):
         component_titles = [architecture.components[name].title for name in architecture.nodes[node_id].implements]
         if (owners := foreign_owners(architecture, architecture.nodes[node_id])) and component_titles:
-            yield f"{partner_titles(lookup, owners)} implements {', '.join(component_titles)} with the node {node_id}, and answers for this interface too."
+            yield f"{join_owner_titles(lookup, owners)} implements {', '.join(component_titles)} with the node {node_id}, and answers for this interface too."

@@ -13,8 +13,9 @@ from dataclasses import field
 from archgen.compare.matched_ids import MatchedIds
 from archgen.frozen import dataclass
 from archgen.timing.analysis import ChainResult
-from archgen.views.agreement.interface_terms import InterfaceEnd, InterfaceTerms, partner_titles
+from archgen.views.agreement.interface_terms import InterfaceEnd, InterfaceTerms
 from archgen.views.agreement.promise_rows import MAX_GAP, RATE, PromiseRow, PromiseStrength
+from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Inlines
 from archgen.views.timing import value_format
@@ -126,7 +127,7 @@ def _end_term(lookup: Lookup, end: InterfaceEnd, matched_ids: MatchedIds) -> tup
     text, identity = (
         "; ".join(filter(None, parts))
         for parts in (
-            (end.role, partner_titles(lookup, end.owners), qos),
+            (end.role, join_owner_titles(lookup, end.owners), qos),
             (end.role, owner_ids, qos_identity),
         )
     )

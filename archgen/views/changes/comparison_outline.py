@@ -168,7 +168,7 @@ def _chain_section(chain_rows: Sequence[ChainRow]) -> Section | None:
 def _findings_section(group: FindingGroup) -> Section:
     rows = tuple(
         (
-            inline_text.to_inlines(str(comparison_document.severity_of(finding))),
+            inline_text.to_inlines(str(finding.effective_severity)),
             inline_text.to_inlines(Text(finding.rule, code=True)),
             text_runs(finding.message),
             inline_text.to_inlines(Text(str(finding.span), code=True)) if finding.span.file else (),

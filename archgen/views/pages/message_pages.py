@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import TypeVar
 
@@ -14,7 +13,7 @@ from archgen.model.node import Topic
 from archgen.views import inline_text
 from archgen.views.agreement.message_fields import field_type_run
 from archgen.views.element_references import message_link
-from archgen.views.lookup import Lookup
+from archgen.views.lookup import Lookup, group_values
 from archgen.views.shapes import (
     Block,
     Column,
@@ -46,9 +45,9 @@ class MessagePages:
         self._lookup = lookup
         self._types, self._topics = tuple(types), tuple(topics)
         self._users = collect_messages(lookup.architecture, self._types, self._topics)
-        self._types_by_message = _group_by_message((each.message, each) for each in self._types if each.message)
-        self._topics_by_message = _group_by_message((name, each) for each in self._topics for name in each.messages)
-        self._containers = _group_by_message(
+        self._types_by_message = group_values((each.message, each) for each in self._types if each.message)
+        self._topics_by_message = group_values((name, each) for each in self._topics for name in each.messages)
+        self._containers = group_values(
             (inner, message)
             for message in self._users
             for inner in dict.fromkeys(field.type for field in list_fields(lookup.architecture, message))
@@ -241,11 +240,3 @@ def _make_constant_table(anchor: str, title: str, constants: tuple[InterfaceCons
 
 def _count_cell(count: int) -> Inlines:
     return (Text(str(count), sort_number=str(count)),)
-
-
-def _group_by_message(pairs: Iterable[tuple[str, T]]) -> Mapping[str, tuple[T, ...]]:
-    """Collect what belongs to each message."""
-    collected: defaultdict[str, list[T]] = defaultdict(list)
-    for message, item in pairs:
-        collected[message].append(item)
-    return {message: tuple(items) for message, items in collected.items()}
