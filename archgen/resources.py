@@ -19,7 +19,7 @@ _PACKAGE_FOLDER = Path(__file__).resolve().parent
 
 
 def resource_root() -> Path:
-    """Return the folder with `schemas/`, `backends/`, `start/`, `ros_library/`, `ros_type_mapper.yaml` and `example_ramcip/`.
+    """Return the folder with `schemas/`, `backends/`, `docs/rules/`, `start/`, `ros_library/`, `ros_type_mapper.yaml` and `example_ramcip/`.
 
     It is `archgen/_data` in an installed wheel, and the top of the repository in a checkout.
     """

@@ -54,6 +54,8 @@ def _list_tests_of_file(file: str) -> Iterator[str]:
     else:
         names = {Path(file).name, file}
         yield from (path for path in tests.values() if any(name in (ROOT / path).read_text("utf-8") for name in names))
+        if file.startswith("docs/rules/"):
+            yield "tests/test_rule_pages.py"
         if file.startswith(("language/", "schemas/")):
             yield from (path for path in tests.values() if path.startswith(("tests/language/", "tests/schema/")))
 

@@ -16,6 +16,7 @@ from tests.changed_tests import list_tests_of
         ("archgen/analyses/answer_times.py", "tests/test_rule_pages.py"),
         ("tests/schema/test_short_forms.py", "tests/schema/test_short_forms.py"),
         ("language/types.yaml", "tests/language/test_description.py"),
+        ("docs/rules/absent-core.md", "tests/test_rule_pages.py"),
         ("docs/media.md", "tests/test_media_page.py"),
         ("CONTRIBUTING.md", "tests/test_contributing.py"),
     ],

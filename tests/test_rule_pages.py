@@ -1,4 +1,4 @@
-"""Every rule's page: its examples run, and what stands in docs/rules is what the docstrings say."""
+"""Every rule's page: its examples run, and what follows from the rule on it is fresh."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def _shown(diagnostics: tuple[Diagnostic, ...]) -> list[str]:
 
 @pytest.mark.parametrize("rule", ALL_RULES, ids=lambda rule: rule.name)
 def test_the_bad_example_breaks_this_rule_only_and_the_good_one_none(rule: Rule, tmp_path: Path) -> None:
-    parts = rule_pages.parse_rule_page(rule)
+    parts = rule_pages.read_rule_page(rule)
     assert parts.summary
     assert parts.why
     assert parts.bad
@@ -60,6 +60,6 @@ def test_the_pages_are_fresh() -> None:
         **{f"{name}.md": rule_pages.rule_page_to_markdown(rule) for name, rule in rules.items()},
     }
     written = {page.name: page.read_text(encoding="utf-8") for page in folder.glob("*.md")}
-    assert sorted(written) == sorted(wanted), "run tools/make_rule_pages.py"
+    assert sorted(written) == sorted(wanted)
     stale = [name for name, text in wanted.items() if written[name] != text]
     assert stale == [], "run tools/make_rule_pages.py"

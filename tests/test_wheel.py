@@ -23,7 +23,7 @@ from tests.running import REVISION, ROOT, contents, made_once
 
 pytestmark = pytest.mark.build
 NAME = f"archgen-{__version__}"
-DATA = ("backends", "schemas", "start", "passes", "example_ramcip", "ros_library", "ros_type_mapper.yaml")
+DATA = ("backends", "schemas", "start", "passes", "docs/rules", "example_ramcip", "ros_library", "ros_type_mapper.yaml")
 LEFT_OUT = {"__pycache__", "archgen-out"}
 
 
@@ -99,6 +99,7 @@ def test_the_wheel_holds_what_archgen_needs_and_nothing_else(built: Path) -> Non
         "_data/schemas/archgen.schema.json",
         "_data/backends/report/template/word/styles.xml",
         "_data/backends/wiki/templates/home.md.j2",
+        "_data/docs/rules/unread-output.md",
         "_data/ros_library/distributions.yaml",
         "_data/ros_library/ros_2.yaml",
         "_data/ros_library/sources/jazzy.yaml",

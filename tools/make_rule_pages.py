@@ -1,4 +1,4 @@
-"""Write docs/rules/NAME.md for every rule, and their index, from the rules' docstrings; and what is counted of the generators."""
+"""Write into docs/rules/NAME.md what follows from the rule, and the index of the rules; and what is counted of the generators."""
 
 from __future__ import annotations
 
@@ -27,13 +27,11 @@ def pages() -> Mapping[str, str]:
 
 
 def main() -> int:
-    """Write the pages, and take away those of rules that are gone."""
-    FOLDER.mkdir(parents=True, exist_ok=True)
+    """Write the pages; nothing where a page is that of no rule."""
     wanted = pages()
-    for old in sorted(FOLDER.glob("*.md")):
-        if old.name not in wanted:
-            old.unlink()
-            print(f"removed {old.name}")
+    if strange := sorted({page.name for page in FOLDER.glob("*.md")} - wanted.keys()):
+        print(f"pages of no rule, to be renamed or removed: {', '.join(strange)}", file=sys.stderr)
+        return 1
     for name, text in wanted.items():
         (FOLDER / name).write_text(text, encoding="utf-8", newline="\n")
     print(f"{len(wanted)} pages in {FOLDER}")

@@ -67,8 +67,8 @@ if TYPE_CHECKING:
     RuleFunction = Callable[..., Iterator[Diagnostic]]
     RuleEntry = tuple[RuleFunction, Severity] | tuple[RuleFunction, Severity, tuple[RuleOption, ...]]
 
-# A rule is a function that yields diagnostics, named as the rule, with the rule's page as its docstring. The order is
-# that in which rules run; findings are sorted later.
+# A rule is a function that yields diagnostics, named as the rule, whose docstring says what it finds. The order is that
+# in which rules run; findings are sorted later.
 _RULE_FUNCTIONS: tuple[RuleEntry, ...] = (
     *connectivity.RULES,
     *input_sources.RULES,

@@ -26,33 +26,8 @@ if TYPE_CHECKING:
 
 
 def slow_component(architecture: Architecture, analysis: Analysis, *, margin: Fraction) -> Iterator[Diagnostic]:
-    """A component takes longer than it promises: its node than its performance asks for, or what is inside than the whole.
-
-    Why: `performance` says what the component promises to others. Its node's worst response is above that: the execution time
-    with all that gets in its way on its host, or what it declares. `archgen timing --why NODE` shows how it is found. Several
-    components of one host that are only held up by what else works there are one finding, about the host. A composed component's
-    `performance`, and the `deadline` and `response` of its `timing`, are about the whole: from the activation of the first
-    component inside until the last one of the worst way through is done.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              detector:
-                performance: {detection: {execution_time: 100 ms}}
-                outputs: {objects: {type: vision_msgs/msg/Detection3DArray, external: The recording}}
-        nodes:
-          detector: {implements: detector, timing: {period: 500 ms, wcet: 180 ms}}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              detector:
-                performance: {detection: {execution_time: 200 ms}}
-                outputs: {objects: {type: vision_msgs/msg/Detection3DArray, external: The recording}}
-        nodes:
-          detector: {implements: detector, timing: {period: 500 ms, wcet: 180 ms}}
+    """A component takes longer than it promises: its node than its performance asks for, or what is inside than the
+    whole.
     """
     held_up: dict[str, list[_SlowAnswer]] = {}
     for slow_answer in _find_slow_answers(architecture, analysis, margin):
@@ -163,36 +138,7 @@ def _report_slow_whole(
 
 
 def slow_service(_: Architecture, analysis: Analysis, *, margin: Fraction) -> Iterator[Diagnostic]:
-    """A service takes longer, with all its callers waiting, than one of them has before it runs again.
-
-    Why: Each caller may find the calls of all others before its own: with K callers an answer takes up to K times the
-    server's execution time, and more where others work on the server's host. A periodic caller that waits for its answers
-    is late then, and skips a period. Actions, which nobody waits for, are not meant here.
-
-    Bad:
-        groups:
-          moving:
-            components:
-              planner: {outputs: {plan: nav_msgs/srv/GetPlan}}
-              control: {inputs: {plan: planner.plan}}
-              watch: {inputs: {plan: planner.plan}}
-        nodes:
-          planner: {implements: planner, timing: {wcet: 60 ms}}
-          control: {implements: control, timing: {period: 100 ms}}
-          watch: {implements: watch, timing: {period: 1 s}}
-
-    Good:
-        groups:
-          moving:
-            components:
-              planner: {outputs: {plan: nav_msgs/srv/GetPlan}}
-              control: {inputs: {plan: planner.plan}}
-              watch: {inputs: {plan: planner.plan}}
-        nodes:
-          planner: {implements: planner, timing: {wcet: 60 ms}}
-          control: {implements: control, timing: {period: 200 ms}}
-          watch: {implements: watch, timing: {period: 1 s}}
-    """
+    """A service takes longer, with all its callers waiting, than one of them has before it runs again."""
     examined_pairs: set[tuple[str, str]] = set()
     for arc in analysis.system.arcs:
         if arc.role != "request" or arc.flow != "service" or (arc.source, arc.target) in examined_pairs:

@@ -18,35 +18,7 @@ if TYPE_CHECKING:
 
 
 def broken_chain(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Nothing flows from one element of a chain to the next, not even through others.
-
-    Why: A chain is a path of cause and effect, from a sensor to a reaction, with a deadline. Where no way leads from an
-    element to the next, the reaction never comes; mostly an input is missing, or the order is reversed.
-
-    Bad:
-        groups:
-          driving:
-            components:
-              scanner: {outputs: {scan: sensor_msgs/msg/LaserScan}}
-              brake: {inputs: {scan: scanner.scan}}
-        nodes:
-          scanner: {implements: scanner}
-          brake: {implements: brake}
-        chains:
-          see_and_stop: {through: [driving.brake, driving.scanner], deadline: 100 ms}
-
-    Good:
-        groups:
-          driving:
-            components:
-              scanner: {outputs: {scan: sensor_msgs/msg/LaserScan}}
-              brake: {inputs: {scan: scanner.scan}}
-        nodes:
-          scanner: {implements: scanner}
-          brake: {implements: brake}
-        chains:
-          see_and_stop: {through: [driving.scanner, driving.brake], deadline: 100 ms}
-    """
+    """Nothing flows from one element of a chain to the next, not even through others."""
     if not any(len(chain.through) > 1 for chain in architecture.chains.values()):
         return
     # The graph of components, not of nodes: a chain can be judged before anything is mapped to nodes.

@@ -25,53 +25,7 @@ _MAX_VISITS = 300_000
 
 
 def broken_step(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A step of a use case runs along no connection.
-
-    Why: A use case says in steps what the robot does. A step between two components needs a topic that leads from the one to
-    the other, or a service or action between them; one from or to an actor needs a port with `external`. Where there is
-    none, what the use case tells cannot happen: a connection is missing, or went away, or the step leaves somebody out.
-
-    Bad:
-        use_cases:
-          UC-1:
-            title: Fetching water
-            actors: {resident: The resident}
-            steps:
-              - {from: resident, to: speech, say: asks for water}
-              - {from: speech, to: arm, say: fetch the glass}
-        groups:
-          talking:
-            components:
-              speech:
-                inputs: {voice: {external: The resident speaks, medium: physical}}
-                outputs: {words: std_msgs/msg/String}
-              dialogue: {inputs: {words: speech.words}, outputs: {task: std_msgs/msg/String}}
-          moving:
-            components:
-              arm: {role: sink, inputs: {task: dialogue.task}}
-        nodes: {speech: speech, dialogue: dialogue, arm: arm}
-
-    Good:
-        use_cases:
-          UC-1:
-            title: Fetching water
-            actors: {resident: The resident}
-            steps:
-              - {from: resident, to: speech, say: asks for water}
-              - {from: speech, to: dialogue, say: passes on the words}
-              - {from: dialogue, to: arm, say: fetch the glass}
-        groups:
-          talking:
-            components:
-              speech:
-                inputs: {voice: {external: The resident speaks, medium: physical}}
-                outputs: {words: std_msgs/msg/String}
-              dialogue: {inputs: {words: speech.words}, outputs: {task: std_msgs/msg/String}}
-          moving:
-            components:
-              arm: {role: sink, inputs: {task: dialogue.task}}
-        nodes: {speech: speech, dialogue: dialogue, arm: arm}
-    """
+    """A step of a use case runs along no connection."""
     if not any(use_case.steps for use_case in architecture.use_cases.values()):
         return
     judge = _StepJudge(architecture)

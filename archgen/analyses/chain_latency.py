@@ -22,45 +22,7 @@ if TYPE_CHECKING:
 
 
 def late_chain(architecture: Architecture, analysis: Analysis, *, margin: Fraction) -> Iterator[Diagnostic]:
-    """A chain misses its deadline, or nothing proves that it meets it.
-
-    Why: The bound adds up, for each element of the chain, the longest that a sample waits to be read, the longest
-    response and the link's latency. Where it is above the deadline, or none was found, nothing in the design guarantees
-    the reaction in time: the deadline is "not proven". It is "missed" where the best case is above it already, or a host
-    is overloaded. `archgen timing --chain ID` shows each term, `archgen timing --sensitivity ID` which figure helps most.
-
-    Bad:
-        groups:
-          driving:
-            components:
-              scanner:
-                outputs: {scan: sensor_msgs/msg/LaserScan}
-                timing: {period: 100 ms, wcet: 5 ms}
-              brake:
-                inputs: {scan: scanner.scan}
-                timing: {period: 50 ms, wcet: 2 ms}
-        nodes:
-          scanner: {implements: scanner}
-          brake: {implements: brake}
-        chains:
-          see_and_stop: {through: [driving.scanner, driving.brake], deadline: 100 ms}
-
-    Good:
-        groups:
-          driving:
-            components:
-              scanner:
-                outputs: {scan: sensor_msgs/msg/LaserScan}
-                timing: {period: 50 ms, wcet: 5 ms}
-              brake:
-                inputs: {scan: scanner.scan}
-                timing: {behaviour: event, wcet: 2 ms}
-        nodes:
-          scanner: {implements: scanner}
-          brake: {implements: brake}
-        chains:
-          see_and_stop: {through: [driving.scanner, driving.brake], deadline: 100 ms}
-    """
+    """A chain misses its deadline, or nothing proves that it meets it."""
     if not any(chain.deadline for chain in architecture.chains.values()):
         return
     for late_result in find_unmet_chains(analysis, architecture, margin):

@@ -43,54 +43,7 @@ def list_missing_details(architecture: Architecture, component: Component, *, is
 
 
 def missing_detail(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Something about a component is not written yet.
-
-    Why: A design starts with stubs and is filled in. One note for each component lists what is blank, so that nobody has to
-    look for it. `archgen stats` counts the same by group and partner.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              camera:
-                functionality: Takes pictures of what lies in front of the robot.
-                requirements: []
-                inputs: {}
-                outputs: {image: sensor_msgs/msg/Image}
-                performance: {accuracy: 1280 x 720 pixels}
-              screen:
-                functionality: Shows the pictures to the operator.
-                requirements: []
-                inputs: {image: camera.image}
-                outputs: {}
-                performance: {execution_time: 20 ms}
-                timing: {behaviour: event}
-        nodes:
-          camera: {implements: camera}
-          screen: {implements: screen}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              camera:
-                functionality: Takes pictures of what lies in front of the robot.
-                requirements: []
-                inputs: {}
-                outputs: {image: sensor_msgs/msg/Image}
-                performance: {accuracy: 1280 x 720 pixels}
-                timing: {rate: 30 Hz}
-              screen:
-                functionality: Shows the pictures to the operator.
-                requirements: []
-                inputs: {image: camera.image}
-                outputs: {}
-                performance: {execution_time: 20 ms}
-                timing: {behaviour: event}
-        nodes:
-          camera: {implements: camera}
-          screen: {implements: screen}
-    """
+    """Something about a component is not written yet."""
     # Timing may be written on the component or on any of its nodes.
     timed_components = {component for node in architecture.nodes.values() for component in node.timing}
     for component in architecture.components.values():

@@ -60,39 +60,7 @@ def summarise_ports(architecture: Architecture, component: Component) -> PortSum
 
 
 def role_mismatch(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A component's inputs and outputs do not fit the role that it claims.
-
-    Why: The role tells readers what to expect, and policies and pictures rest on it. A source has an output and takes
-    nothing from other components. A filter takes data from another component and has an output that is not physical. A sink
-    is fed by others (or serves a service or action), and acts on the world outside or sends nothing. A reactive component
-    serves a service or an action. A call that a component makes does not count as data from others.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              camera: {role: source, outputs: {image: sensor_msgs/msg/Image}}
-              detector:
-                role: source
-                inputs: {image: camera.image}
-                outputs: {found: {type: vision_msgs/msg/Detection2DArray, external: The operator's tablet}}
-        nodes:
-          camera: {implements: camera}
-          detector: {implements: detector}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              camera: {role: source, outputs: {image: sensor_msgs/msg/Image}}
-              detector:
-                role: filter
-                inputs: {image: camera.image}
-                outputs: {found: {type: vision_msgs/msg/Detection2DArray, external: The operator's tablet}}
-        nodes:
-          camera: {implements: camera}
-          detector: {implements: detector}
-    """
+    """A component's inputs and outputs do not fit the role that it claims."""
     for component in architecture.components.values():
         if component.role is None or not (component.inputs or component.outputs):
             continue

@@ -13,33 +13,7 @@ if TYPE_CHECKING:
 
 
 def unread_input(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A composed component has an input that nothing inside reads.
-
-    Why: What comes in goes nowhere: the design is not finished inside, or a component there reads something else. Until then the
-    input counts as that of a leaf, so that a design from the outside to the inside can be checked, drawn and timed.
-
-    Bad:
-        groups:
-          driving:
-            components:
-              lidar: {outputs: {scan: sensor_msgs/msg/LaserScan}}
-              base:
-                inputs: {scan: lidar.scan}
-                components:
-                  wheels: {inputs: {speed: {external: The operator}}}
-        nodes: {lidar: {implements: lidar}, base: {implements: base}}
-
-    Good:
-        groups:
-          driving:
-            components:
-              lidar: {outputs: {scan: sensor_msgs/msg/LaserScan}}
-              base:
-                inputs: {scan: lidar.scan}
-                components:
-                  wheels: {inputs: {scan: self.scan, speed: {external: The operator}}}
-        nodes: {lidar: {implements: lidar}, base: {implements: base}}
-    """
+    """A composed component has an input that nothing inside reads."""
     for shell in architecture.shells.values():
         for port in shell.inputs.values():
             if not architecture.shell_ports[f"input {port.id}"]:
@@ -53,33 +27,7 @@ def unread_input(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def unfed_output(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A composed component has an output that nothing inside feeds.
-
-    Why: Its readers wait for what nobody sends: `from` at the output says which component inside gives it. Until then the output
-    counts as that of a leaf.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              localization:
-                outputs: {pose: geometry_msgs/msg/PoseStamped}
-                components:
-                  fusion: {outputs: {pose: {type: geometry_msgs/msg/PoseStamped, external: The log}}}
-              screen: {inputs: {pose: localization.pose}}
-        nodes: {localization: {implements: localization}, screen: {implements: screen}}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              localization:
-                outputs: {pose: {from: fusion.pose}}
-                components:
-                  fusion: {outputs: {pose: {type: geometry_msgs/msg/PoseStamped, external: The log}}}
-              screen: {inputs: {pose: localization.pose}}
-        nodes: {localization: {implements: localization}, screen: {implements: screen}}
-    """
+    """A composed component has an output that nothing inside feeds."""
     for shell in architecture.shells.values():
         for port in shell.outputs.values():
             # What only passes on what comes back to itself has nothing behind it either.

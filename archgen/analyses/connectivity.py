@@ -35,36 +35,7 @@ def find_linked_components(architecture: Architecture) -> frozenset[str]:
 
 
 def disconnected_component(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A component exchanges nothing with any other component, nor with the world outside.
-
-    Why: Such a part was forgotten when the interfaces were agreed, or is not needed. While nothing is known of its inputs
-    and outputs, this is a note, and only once other components are connected. What is on a topic that all nodes share, such
-    as `/tf`, is connected to everybody; a library's type with nothing but services and actions may wait for calls from tools.
-
-    Bad:
-        groups:
-          driving:
-            components:
-              planner: {outputs: {path: nav_msgs/msg/Path}}
-              controller: {inputs: {path: planner.path}}
-              recorder: {title: Recorder, inputs: {}, outputs: {}}
-        nodes:
-          planner: {implements: planner}
-          controller: {implements: controller}
-          recorder: {implements: recorder}
-
-    Good:
-        groups:
-          driving:
-            components:
-              planner: {outputs: {path: nav_msgs/msg/Path}}
-              controller: {inputs: {path: planner.path}}
-              recorder: {title: Recorder, inputs: {path: planner.path}, outputs: {}}
-        nodes:
-          planner: {implements: planner}
-          controller: {implements: controller}
-          recorder: {implements: recorder}
-    """
+    """A component exchanges nothing with any other component, nor with the world outside."""
     # With an unread file, what looks isolated may be connected there.
     if len(architecture.components) == 1 or architecture.partial:
         return
@@ -93,36 +64,7 @@ def disconnected_component(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def unfed_input(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Nothing feeds an input: it has no source, is not fed from outside, and is not optional.
-
-    Why: The component waits for data that nobody sends. Partners find this in the integration week otherwise.
-
-    Bad:
-        groups:
-          driving:
-            components:
-              planner: {outputs: {path: nav_msgs/msg/Path}}
-              controller:
-                inputs:
-                  path: planner.path
-                  odometry:
-        nodes:
-          planner: {implements: planner}
-          controller: {implements: controller}
-
-    Good:
-        groups:
-          driving:
-            components:
-              planner: {outputs: {path: nav_msgs/msg/Path}}
-              controller:
-                inputs:
-                  path: planner.path
-                  odometry: {external: The wheels of the bought base, type: nav_msgs/msg/Odometry}
-        nodes:
-          planner: {implements: planner}
-          controller: {implements: controller}
-    """
+    """Nothing feeds an input: it has no source, is not fed from outside, and is not optional."""
     for entry in architecture.inputs.values():
         if entry.from_written or entry.connections or entry.external or entry.optional:
             continue
@@ -136,35 +78,7 @@ def unfed_input(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def empty_reference(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A reference to a whole component or group brings nothing: no output in it carries messages.
-
-    Why: A reference to a component or group takes every output that carries messages. Services, actions and physical outputs
-    are named one by one, so that such a reference to a pure server leaves the input empty.
-
-    Bad:
-        groups:
-          grasping:
-            components:
-              planner: {outputs: {trigger: std_srvs/srv/Trigger}}
-              button: {inputs: {check: planner.trigger}}
-              hand: {inputs: {plan: planner}}
-        nodes:
-          planner: {implements: planner}
-          button: {implements: button}
-          hand: {implements: hand}
-
-    Good:
-        groups:
-          grasping:
-            components:
-              planner: {outputs: {trigger: std_srvs/srv/Trigger}}
-              button: {inputs: {check: planner.trigger}}
-              hand: {inputs: {plan: planner.trigger}}
-        nodes:
-          planner: {implements: planner}
-          button: {implements: button}
-          hand: {implements: hand}
-    """
+    """A reference to a whole component or group brings nothing: no output in it carries messages."""
     for connection in architecture.connections:
         if connection.outputs or connection.kind == "output":
             continue
@@ -186,38 +100,7 @@ def empty_reference(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def unread_output(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Nobody reads an output, inside the architecture or outside.
-
-    Why: Either a reader is missing, or work is done for nobody. An output for the world outside says so in `external`; what
-    stands on a topic that all nodes share, such as `/tf`, is meant for everybody. A component type of a library gives what
-    some project needs: of an instance whose other outputs are read, not every one has to be.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              camera:
-                outputs:
-                  image: sensor_msgs/msg/Image
-                  depth: sensor_msgs/msg/Image
-              screen: {inputs: {image: camera.image}}
-        nodes:
-          camera: {implements: camera}
-          screen: {implements: screen}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              camera:
-                outputs:
-                  image: sensor_msgs/msg/Image
-                  depth: {type: sensor_msgs/msg/Image, external: The operator's tablet}
-              screen: {inputs: {image: camera.image}}
-        nodes:
-          camera: {implements: camera}
-          screen: {implements: screen}
-    """
+    """Nobody reads an output, inside the architecture or outside."""
     if architecture.partial:
         return
     read_outputs = {edge.output for edge in architecture.edges}

@@ -34,68 +34,14 @@ class _Use(NamedTuple):
 
 
 def deprecated_use(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Something that is going away is still used.
-
-    Why: Its owner says with `deprecated` that an output, a type or a component type will be gone, perhaps from a day on, and
-    what to use instead. Who still uses it has until then to change.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              lidar:
-                outputs:
-                  scan: {type: sensor_msgs/msg/LaserScan, deprecated: {until: 2999-03-01, use: cloud}}
-                  cloud: sensor_msgs/msg/PointCloud2
-              stop: {inputs: {scan: lidar.scan}}
-              mapper: {inputs: {cloud: lidar.cloud}}
-        nodes: {lidar: lidar, stop: stop, mapper: mapper}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              lidar:
-                outputs:
-                  cloud: sensor_msgs/msg/PointCloud2
-              stop: {inputs: {cloud: lidar.cloud}}
-              mapper: {inputs: {cloud: lidar.cloud}}
-        nodes: {lidar: lidar, stop: stop, mapper: mapper}
-    """
+    """Something that is going away is still used."""
     for use in _list_uses(architecture):
         if not use.deprecated.is_past(architecture.commit_day):
             yield _diagnose_use(architecture, use, "deprecated-use")
 
 
 def expired_use(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Something is used whose last day is over.
-
-    Why: Its owner named a day in `deprecated: {until: ...}`, and need not keep it any longer. The day is held against that of
-    the project's newest commit, so that the same commit gives the same findings for ever; outside of a repository no day
-    has passed.
-
-    Bad:
-        # committed on 2020-03-02
-        groups:
-          sensing:
-            components:
-              lidar:
-                outputs:
-                  scan: {type: sensor_msgs/msg/LaserScan, deprecated: {until: 2020-03-01, use: cloud}}
-                  cloud: sensor_msgs/msg/PointCloud2
-              stop: {inputs: {scan: lidar.scan}}
-              mapper: {inputs: {cloud: lidar.cloud}}
-        nodes: {lidar: lidar, stop: stop, mapper: mapper}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              lidar: {outputs: {cloud: sensor_msgs/msg/PointCloud2}}
-              stop: {inputs: {cloud: lidar.cloud}}
-              mapper: {inputs: {cloud: lidar.cloud}}
-        nodes: {lidar: lidar, stop: stop, mapper: mapper}
-    """
+    """Something is used whose last day is over."""
     if architecture.commit_day is None:
         return
     for use in _list_uses(architecture):
@@ -238,30 +184,7 @@ def _list_instances(architecture: Architecture, component_types: Mapping[str, De
 
 
 def circular_replacement(architecture: Architecture) -> Iterator[Diagnostic]:
-    """What is to be used instead of something deprecated is to be replaced by that again.
-
-    Why: Who follows `use` ends where the way began, and knows of nothing that will stay.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              lidar:
-                outputs:
-                  scan: {type: sensor_msgs/msg/LaserScan, deprecated: {use: cloud}, external: The logger}
-                  cloud: {type: sensor_msgs/msg/PointCloud2, deprecated: {use: scan}, external: The logger}
-        nodes: {lidar: lidar}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              lidar:
-                outputs:
-                  scan: {type: sensor_msgs/msg/LaserScan, deprecated: {use: cloud}, external: The logger}
-                  cloud: {type: sensor_msgs/msg/PointCloud2, external: The logger}
-        nodes: {lidar: lidar}
-    """
+    """What is to be used instead of something deprecated is to be replaced by that again."""
     outputs = {
         output.id: (output.deprecated, component.id)
         for component, output in list_described_outputs(architecture)

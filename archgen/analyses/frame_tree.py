@@ -39,29 +39,7 @@ class _NamedFrame(NamedTuple):
 
 
 def unknown_frame(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A frame is named that is not among the project's.
-
-    Why: A pose in a frame that nobody writes cannot be turned into any other: the reader waits for a transform that never
-    comes. It is asked as soon as the project has `frames`; until then a name of a frame is a text for readers.
-
-    Bad:
-        groups:
-          driving:
-            components:
-              lidar: {outputs: {scan: {type: sensor_msgs/msg/LaserScan, frame: lasr}}}
-              stop: {inputs: {scan: lidar.scan}}
-        frames: {base_link: {}, laser: {parent: base_link, static: true, by: lidar}}
-        nodes: {lidar: lidar, stop: stop}
-
-    Good:
-        groups:
-          driving:
-            components:
-              lidar: {outputs: {scan: {type: sensor_msgs/msg/LaserScan, frame: laser}}}
-              stop: {inputs: {scan: lidar.scan}}
-        frames: {base_link: {}, laser: {parent: base_link, static: true, by: lidar}}
-        nodes: {lidar: lidar, stop: stop}
-    """
+    """A frame is named that is not among the project's."""
     # A slice that could not be read may declare any of them.
     if not architecture.frames or architecture.partial or "frames" in architecture.unread_keys:
         return
@@ -106,25 +84,7 @@ def _diagnose_unknown(frames: Mapping[str, Frame], named_frame: _NamedFrame, gue
 
 
 def circular_frames(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Frames stand in one another in a circle.
-
-    Why: Each frame says where it is in its parent. In a circle none says where it is in the world, and TF refuses to look up
-    any of them.
-
-    Bad:
-        groups:
-          driving:
-            components:
-              localiser: {title: Localiser, frames: {odom: base_link, base_link: odom}}
-        nodes: {localiser: localiser}
-
-    Good:
-        groups:
-          driving:
-            components:
-              localiser: {title: Localiser, frames: {odom: {}, base_link: odom}}
-        nodes: {localiser: localiser}
-    """
+    """Frames stand in one another in a circle."""
     judged_names: set[str] = set()
     for name in architecture.frames:
         way: dict[str, Frame] = {}
@@ -160,29 +120,7 @@ def _diagnose_circle(circle: list[Frame]) -> Diagnostic:
 
 
 def unpublished_frame(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Nobody writes a frame.
-
-    Why: A frame is there as long as somebody says where it is in its parent: on `/tf`, or once on `/tf_static`. A root, which
-    has no parent, needs nobody. Of a static frame it is a note: often a description of the robot holds it.
-
-    Bad:
-        groups:
-          driving:
-            components:
-              localiser: {title: Localiser}
-              drive: {title: Drive, frames: {base_link: odom}}
-        frames: {map: {}, odom: {parent: map}}
-        nodes: {localiser: localiser, drive: drive}
-
-    Good:
-        groups:
-          driving:
-            components:
-              localiser: {title: Localiser}
-              drive: {title: Drive, frames: {base_link: odom}}
-        frames: {map: {}, odom: {parent: map, by: localiser}}
-        nodes: {localiser: localiser, drive: drive}
-    """
+    """Nobody writes a frame."""
     for frame in architecture.frames.values():
         if frame.parent is not None and frame.by is None and not frame.by_written:
             yield Diagnostic(
@@ -197,28 +135,7 @@ def unpublished_frame(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def misplaced_frame(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A frame with a name of REP 105 stands elsewhere than REP 105 says.
-
-    Why: What is made for ROS looks for `map`, `odom` and `base_link` in this order, from the root on (and for `earth` above
-    them). Other frames may stand between them, and not all of them need to be there. Names with a prefix
-    (`robot_1/odom`) are taken together.
-
-    Bad:
-        groups:
-          driving:
-            components:
-              localiser: {title: Localiser, frames: {base_link: map, odom: base_link}}
-        frames: {map: {}}
-        nodes: {localiser: localiser}
-
-    Good:
-        groups:
-          driving:
-            components:
-              localiser: {title: Localiser, frames: {odom: map, base_link: odom}}
-        frames: {map: {}}
-        nodes: {localiser: localiser}
-    """
+    """A frame with a name of REP 105 stands elsewhere than REP 105 says."""
     frames = architecture.frames
     for frame in frames.values():
         upper_name = _find_upper_name(frames, frame.id)

@@ -19,33 +19,7 @@ _KEY_MEANINGS = {"plugin": "the class in `plugin`", "container": "the container 
 
 
 def half_written(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A node, a link or a chain lacks its other half.
-
-    Why: A composable node is a class (`plugin`) that a `container` loads; without them nobody can start it. A link joins two
-    hosts or more, and a chain leads from an element to another one: of one alone there is nothing to compute. Nodes with
-    `status: planned` are not asked, nor is a composable node with an `executable` of its own.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image}}
-              screen: {inputs: {image: camera.image}}
-        nodes:
-          camera: {implements: camera, kind: composable, package: usb_cam}
-          screen: {implements: screen}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image}}
-              screen: {inputs: {image: camera.image}}
-        nodes:
-          camera: {implements: camera, kind: composable, package: usb_cam, plugin: "usb_cam::UsbCamNode", container: vision}
-          screen: {implements: screen}
-        containers: {vision: {title: Vision}}
-    """
+    """A node, a link or a chain lacks its other half."""
     # In ROS 1 the kind itself is wrong, which `other-ros-generation` reports.
     for node in architecture.nodes.values() if not is_ros_1(architecture.distro) else ():
         missing_keys = _list_missing_keys(node)
@@ -90,33 +64,7 @@ def _list_missing_keys(node: Node) -> list[str]:
 
 
 def uncomposable_node(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A node stands in a container that loads composable nodes, and is none itself.
-
-    Why: Such a container (`component_container`, a nodelet manager) loads classes. A program of its own runs in a process of
-    its own; what timing computes for the container's threads is then wrong, too.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image}}
-              screen: {inputs: {image: camera.image}}
-        nodes:
-          camera: {implements: camera, kind: composable, plugin: "usb_cam::UsbCamNode", container: vision}
-          screen: {implements: screen, container: vision, executable: image_view}
-        containers: {vision: {title: Vision}}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image}}
-              screen: {inputs: {image: camera.image}}
-        nodes:
-          camera: {implements: camera, kind: composable, plugin: "usb_cam::UsbCamNode", container: vision}
-          screen: {implements: screen, executable: image_view}
-        containers: {vision: {title: Vision}}
-    """
+    """A node stands in a container that loads composable nodes, and is none itself."""
     loaded_nodes = {node.container: node for node in architecture.nodes.values() if _is_loadable(node)}
     for node in architecture.nodes.values():
         loaded_node = loaded_nodes.get(node.container) if node.container else None

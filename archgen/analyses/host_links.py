@@ -18,36 +18,7 @@ HostPair = tuple[str, str]
 
 
 def unlinked_hosts(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Nodes on two hosts exchange messages, and no link joins these hosts.
-
-    Why: Either the link was forgotten, or a node runs on the wrong host. Timing knows no latency between them: whatever
-    depends on such a message stays open. A project without links is only asked if a chain of it has a deadline. A way over
-    a third host does not count: a message takes one link.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image}}
-              screen: {inputs: {image: camera.image}}
-        nodes:
-          camera: {implements: camera, host: head}
-          screen: {implements: screen, host: tablet}
-        hosts: {head: {}, base: {}, tablet: {}}
-        links: {cable: {connects: [head, base]}}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image}}
-              screen: {inputs: {image: camera.image}}
-        nodes:
-          camera: {implements: camera, host: head}
-          screen: {implements: screen, host: tablet}
-        hosts: {head: {}, base: {}, tablet: {}}
-        links: {cable: {connects: [head, base]}, radio: {connects: [head, tablet]}}
-    """
+    """Nodes on two hosts exchange messages, and no link joins these hosts."""
     # A host that a link names wrongly, or a file that could not be read, may hold what is missing.
     if architecture.partial or any(link.unresolved for link in architecture.links.values()):
         return

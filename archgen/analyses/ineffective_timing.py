@@ -36,35 +36,7 @@ _SELF_ACTIVATED = {
 
 
 def idle_timing(architecture: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
-    """A key of timing has no effect where it stands.
-
-    Why: What somebody writes is meant to count. A `trigger`, `every` or `throttle` does not where a period, or a call, fires
-    the element; `calls` does not for an input that is a topic, and `max_gap` does not for an output that is not
-    `conditional`. Nothing is `dropped` without `every` or `throttle`. The times below `inputs` are those of callbacks that
-    only store a message: what fires the element is in its own `wcet`. `freshness` does not count where nothing is sent.
-    Of a composed component only `period`, `rate`, `deadline` and `response` are compared with what is inside. One of the
-    two is a slip.
-
-    Bad:
-        groups:
-          vision:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image}}
-              viewer: {inputs: {image: camera.image}, outputs: {light: {medium: physical, external: A person looks}}}
-        nodes:
-          camera: {implements: camera, timing: {rate: 30 Hz}}
-          viewer: {implements: viewer, timing: {rate: 30 Hz, every: 2}}
-
-    Good:
-        groups:
-          vision:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image}}
-              viewer: {inputs: {image: camera.image}, outputs: {light: {medium: physical, external: A person looks}}}
-        nodes:
-          camera: {implements: camera, timing: {rate: 30 Hz}}
-          viewer: {implements: viewer, timing: {behaviour: event, every: 2}}
-    """
+    """A key of timing has no effect where it stands."""
     has_calls = any(timing.calls for node in architecture.nodes.values() for timing in node.timing.values())
     uses = _port_uses(architecture) if has_calls else {}
     # One `timing` may stand for several components of a node: its faults are reported once.
@@ -208,29 +180,7 @@ def _find_idle_wholes(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def absent_core(architecture: Architecture) -> Iterator[Diagnostic]:
-    """An element is pinned to a core that its host does not have.
-
-    Why: Cores are counted from 0, so that a host with four has 0 to 3. What is pinned to another one does not start, or runs
-    anywhere; timing takes it as not pinned.
-
-    Bad:
-        groups:
-          vision:
-            components:
-              camera: {outputs: {image: {type: sensor_msgs/msg/Image, external: The recording}}}
-        nodes:
-          camera: {implements: camera, host: pc, timing: {rate: 30 Hz, wcet: 8 ms, core: 4}}
-        hosts: {pc: {cores: 4}}
-
-    Good:
-        groups:
-          vision:
-            components:
-              camera: {outputs: {image: {type: sensor_msgs/msg/Image, external: The recording}}}
-        nodes:
-          camera: {implements: camera, host: pc, timing: {rate: 30 Hz, wcet: 8 ms, core: 3}}
-        hosts: {pc: {cores: 4}}
-    """
+    """An element is pinned to a core that its host does not have."""
     # One `timing` may stand for several components of a node: its faults are reported once.
     reported_spans: set[Span] = set()
     for node in architecture.nodes.values():

@@ -18,33 +18,7 @@ if TYPE_CHECKING:
 
 
 def stale_input(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
-    """What an element reads at an input may be older than the input's `freshness` allows.
-
-    Why: The age counts from when the direct source sends a message until the last job that reads it begins: the longest
-    time on the link, and the longest time until the next message takes its place, or until it fires its reader and that
-    has its turn. Whoever works with something older works with a world that has changed. How old what the source itself
-    used was is not in it: for that, write a chain with a deadline.
-
-    Bad:
-        groups:
-          driving:
-            components:
-              localiser: {outputs: {pose: geometry_msgs/msg/PoseStamped}}
-              brake: {inputs: {pose: {from: localiser.pose, freshness: 60 ms}}}
-        nodes:
-          localiser: {implements: localiser, timing: {period: 100 ms, wcet: 5 ms, bcet: 5 ms}}
-          brake: {implements: brake, timing: {period: 20 ms, wcet: 2 ms}}
-
-    Good:
-        groups:
-          driving:
-            components:
-              localiser: {outputs: {pose: geometry_msgs/msg/PoseStamped}}
-              brake: {inputs: {pose: {from: localiser.pose, freshness: 60 ms}}}
-        nodes:
-          localiser: {implements: localiser, timing: {period: 50 ms, wcet: 5 ms, bcet: 5 ms}}
-          brake: {implements: brake, timing: {period: 20 ms, wcet: 2 ms}}
-    """
+    """What an element reads at an input may be older than the input's `freshness` allows."""
     for read_age in find_read_ages(analysis):
         if read_age.is_kept is False:
             yield _report_age(analysis, read_age)

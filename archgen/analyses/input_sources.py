@@ -14,38 +14,7 @@ if TYPE_CHECKING:
 
 
 def repeated_source(architecture: Architecture) -> Iterator[Diagnostic]:
-    """An input names the same source twice.
-
-    Why: Most often the second one was meant to be another: a line was copied, and its word not changed.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              left_camera: {outputs: {image: sensor_msgs/msg/Image}}
-              right_camera: {outputs: {image: sensor_msgs/msg/Image}}
-              stereo: {inputs: {images: [left_camera.image, sensing.left_camera.image]}}
-              screen: {inputs: {image: right_camera.image}}
-        nodes:
-          left_camera: {implements: left_camera}
-          right_camera: {implements: right_camera}
-          stereo: {implements: stereo}
-          screen: {implements: screen}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              left_camera: {outputs: {image: sensor_msgs/msg/Image}}
-              right_camera: {outputs: {image: sensor_msgs/msg/Image}}
-              stereo: {inputs: {images: [left_camera.image, right_camera.image]}}
-              screen: {inputs: {image: right_camera.image}}
-        nodes:
-          left_camera: {implements: left_camera}
-          right_camera: {implements: right_camera}
-          stereo: {implements: stereo}
-          screen: {implements: screen}
-    """
+    """An input names the same source twice."""
     for port in architecture.inputs.values():
         first_connections: dict[str, Connection] = {}
         for connection in port.connections:
@@ -62,31 +31,7 @@ def repeated_source(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def mixed_source(architecture: Architecture) -> Iterator[Diagnostic]:
-    """An input comes from a component and from outside of the system at once.
-
-    Why: `from` says that a component gives the data, `external` that nobody inside does. Where both are true, these are two
-    inputs, with a type and a topic each.
-
-    Bad:
-        groups:
-          driving:
-            components:
-              joystick: {outputs: {velocity: geometry_msgs/msg/Twist}}
-              base: {inputs: {velocity: {from: joystick.velocity, external: A phone}}}
-        nodes:
-          joystick: {implements: joystick}
-          base: {implements: base}
-
-    Good:
-        groups:
-          driving:
-            components:
-              joystick: {outputs: {velocity: geometry_msgs/msg/Twist}}
-              base: {inputs: {velocity: joystick.velocity, phone_velocity: {external: A phone, type: geometry_msgs/msg/Twist}}}
-        nodes:
-          joystick: {implements: joystick}
-          base: {implements: base}
-    """
+    """An input comes from a component and from outside of the system at once."""
     for port in architecture.inputs.values():
         if port.connections and port.external is not None:
             yield Diagnostic(

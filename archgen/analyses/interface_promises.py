@@ -22,28 +22,7 @@ if TYPE_CHECKING:
 
 
 def unpromised_freshness(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A reader needs fresher data than its source promises.
-
-    Why: `freshness` at an input says how old what is read there may be, `max_age` of a promise how old it may become. Where
-    the promise allows more, the source may keep its word and the reader still be wrong. What follows from the figures
-    of timing is another matter: `stale-input` and `broken-promise` hold both against it.
-
-    Bad:
-        groups:
-          driving:
-            components:
-              localiser: {outputs: {pose: {type: geometry_msgs/msg/PoseStamped, promise: {max_age: 200 ms}}}}
-              brake: {inputs: {pose: {from: localiser.pose, freshness: 60 ms}}}
-        nodes: {localiser: localiser, brake: brake}
-
-    Good:
-        groups:
-          driving:
-            components:
-              localiser: {outputs: {pose: {type: geometry_msgs/msg/PoseStamped, promise: {max_age: 50 ms}}}}
-              brake: {inputs: {pose: {from: localiser.pose, freshness: 60 ms}}}
-        nodes: {localiser: localiser, brake: brake}
-    """
+    """A reader needs fresher data than its source promises."""
     if not any(output.promise and output.promise.max_age for _, output in list_described_outputs(architecture)):
         return
     told: set[tuple[str, str]] = set()
@@ -69,29 +48,7 @@ def _diagnose_freshness(counted: ReliedOutput, promise: Promise, max_age: Quanti
 
 
 def contradictory_promise(architecture: Architecture) -> Iterator[Diagnostic]:
-    """What an output promises of its data is not what its type says.
-
-    Why: The unit, the frame and the range of the values stand in the promise for those who read it. Where the output itself,
-    its type or the fields of its message say something else, readers cannot know which one holds.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              sonar: {outputs: {distance: {type: Distance, promise: {unit: cm, range: [0, 300]}}}}
-              stop: {inputs: {distance: sonar.distance}}
-        nodes: {sonar: sonar, stop: stop}
-        types: {Distance: {fields: {value: {type: uint8, unit: m}}}}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              sonar: {outputs: {distance: {type: Distance, promise: {unit: cm, range: [0, 300]}}}}
-              stop: {inputs: {distance: sonar.distance}}
-        nodes: {sonar: sonar, stop: stop}
-        types: {Distance: {fields: {value: {type: uint16, unit: cm}}}}
-    """
+    """What an output promises of its data is not what its type says."""
     for component, output in list_described_outputs(architecture):
         promise = output.promise
         if promise is None:

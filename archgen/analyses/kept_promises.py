@@ -51,33 +51,7 @@ class BrokenPromise(NamedTuple):
 
 
 def broken_promise(architecture: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
-    """What follows from the figures of timing is worse than what an output promises.
-
-    Why: Readers count on the promise, and it changes no figure of the analysis: what is sent follows from the timing of the
-    elements alone. The rate is that at which the output is sent, the gap the longest time between two messages, the age
-    is counted as for `freshness`: from when it is sent until the last job that reads it begins, at the reader that has
-    to wait longest.
-
-    Bad:
-        groups:
-          driving:
-            components:
-              localiser: {outputs: {pose: {type: geometry_msgs/msg/PoseStamped, promise: {rate: 20 Hz, max_age: 60 ms}}}}
-              brake: {inputs: {pose: localiser.pose}}
-        nodes:
-          localiser: {implements: localiser, timing: {period: 100 ms, wcet: 5 ms, bcet: 5 ms}}
-          brake: {implements: brake, timing: {period: 20 ms, wcet: 2 ms}}
-
-    Good:
-        groups:
-          driving:
-            components:
-              localiser: {outputs: {pose: {type: geometry_msgs/msg/PoseStamped, promise: {rate: 20 Hz, max_age: 60 ms}}}}
-              brake: {inputs: {pose: localiser.pose}}
-        nodes:
-          localiser: {implements: localiser, timing: {period: 50 ms, wcet: 5 ms, bcet: 5 ms}}
-          brake: {implements: brake, timing: {period: 20 ms, wcet: 2 ms}}
-    """
+    """What follows from the figures of timing is worse than what an output promises."""
     told: set[tuple[str, str, Span]] = set()
     for broken in find_broken_promises(architecture, analysis):
         # What is passed on as it is promised inside is not told twice.

@@ -19,31 +19,7 @@ if TYPE_CHECKING:
 
 
 def unlisted_medium(architecture: Architecture) -> Iterator[Diagnostic]:
-    """The word for a medium is none that archgen knows, and stands in one place of the project only.
-
-    Why: Any word is accepted, since there are more buses and protocols than anybody can list. One that is written once may be a
-    slip of the pen: `mqqt` is then another medium than the `mqtt` of everything else.
-
-    Bad:
-        groups:
-          fleet:
-            components:
-              drone: {outputs: {pose: {type: Robot pose, medium: mqqt}}}
-              station: {inputs: {pose: drone.pose}, outputs: {}}
-        nodes:
-          drone: {implements: drone}
-          station: {implements: station}
-
-    Good:
-        groups:
-          fleet:
-            components:
-              drone: {outputs: {pose: {type: Robot pose, medium: mqtt}}}
-              station: {inputs: {pose: drone.pose}, outputs: {}}
-        nodes:
-          drone: {implements: drone}
-          station: {implements: station}
-    """
+    """The word for a medium is none that archgen knows, and stands in one place of the project only."""
     places = _find_places(architecture)
     for word, spans in places.items():
         if word in MEDIUM_NAMES or word == architecture.project.middleware or len(spans) > 1:
@@ -74,31 +50,7 @@ def _find_places(architecture: Architecture) -> Mapping[str, Mapping[Span, str]]
 
 
 def unused_ros_setting(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Something is written that only ROS has, at a port or a program that is no ROS.
-
-    Why: Quality of service, a message, the name and the parameters of a node mean nothing to an MQTT broker, a bus or a program
-    of another kind: nobody reads them there, and whoever wrote them counts on them. `topic` is free text there and stays.
-
-    Bad:
-        groups:
-          fleet:
-            components:
-              drone: {outputs: {pose: {type: Robot pose, medium: mqtt}}}
-              station: {inputs: {pose: drone.pose}, outputs: {}}
-        nodes:
-          drone: {implements: drone, publishes: {pose: {topic: fleet/drone_1/pose, qos: sensor_data}}}
-          station: {implements: station, kind: program, command: [station]}
-
-    Good:
-        groups:
-          fleet:
-            components:
-              drone: {outputs: {pose: {type: Robot pose, medium: mqtt}}}
-              station: {inputs: {pose: drone.pose}, outputs: {}}
-        nodes:
-          drone: {implements: drone, publishes: {pose: {topic: fleet/drone_1/pose}}}
-          station: {implements: station, kind: program, command: [station]}
-    """
+    """Something is written that only ROS has, at a port or a program that is no ROS."""
     for node in architecture.nodes.values():
         for key, place, reason in (*_list_port_settings(architecture, node), *_list_program_settings(node)):
             yield Diagnostic(

@@ -70,31 +70,7 @@ def _find_token_fault(token: str, *, may_start_with_digit: bool) -> str | None:
 
 
 def invalid_ros_name(architecture: Architecture) -> Iterator[Diagnostic]:
-    """ROS does not accept the name of a node, a namespace, a topic, a service or an action.
-
-    Why: The node would stop at its start with an exception. Names consist of letters, digits and `_`, in parts divided by `/`,
-    and (in ROS 2) no part begins with a digit.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image}}
-              screen: {inputs: {image: camera.image}}
-        nodes:
-          camera_driver: {implements: camera, publishes: {image: {topic: /front-camera/image}}}
-          image_view: {implements: screen}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image}}
-              screen: {inputs: {image: camera.image}}
-        nodes:
-          camera_driver: {implements: camera, publishes: {image: {topic: /front_camera/image}}}
-          image_view: {implements: screen}
-    """
+    """ROS does not accept the name of a node, a namespace, a topic, a service or an action."""
     ros_1 = is_ros_1(architecture.distro)
     for node in architecture.nodes.values():
         if not node.written:
@@ -157,31 +133,7 @@ def _name_span(node: Node | Container) -> Span:
 
 
 def duplicate_node_name(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Two nodes have one name.
-
-    Why: In ROS 1 the node that starts later shuts the earlier one down; in ROS 2 both run, and nobody can tell them apart
-    (parameters, life cycle and remappings reach one of them by chance). A container whose `name` is written is a node, too.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image}}
-              screen: {inputs: {image: camera.image}}
-        nodes:
-          camera_driver: {implements: camera, name: usb_cam}
-          image_view: {implements: screen, name: usb_cam}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image}}
-              screen: {inputs: {image: camera.image}}
-        nodes:
-          camera_driver: {implements: camera, name: usb_cam}
-          image_view: {implements: screen, name: usb_cam, namespace: /operator}
-    """
+    """Two nodes have one name."""
     first_by_name: dict[str, Node | Container] = {}
     # A container without a name is called by whoever starts it.
     named_containers = [each for each in architecture.containers.values() if each.name is not None]

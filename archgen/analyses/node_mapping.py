@@ -27,30 +27,7 @@ def nodes_of_components(architecture: Architecture) -> Mapping[str, tuple[Node, 
 
 
 def unmapped_component(architecture: Architecture) -> Iterator[Diagnostic]:
-    """No node implements a component.
-
-    Why: Nobody has decided yet which ROS node does this work. Pictures show a planned node in its place. A component of
-    which no input or output is ROS (all are physical, or have another medium such as `mqtt`) needs none.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image}}
-              screen: {inputs: {image: camera.image}}
-        nodes:
-          camera_driver: {implements: camera}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image}}
-              screen: {inputs: {image: camera.image}}
-        nodes:
-          camera_driver: {implements: camera}
-          image_view: {implements: screen}
-    """
+    """No node implements a component."""
     # The node may be in the file that could not be read.
     if architecture.partial:
         return
@@ -68,32 +45,7 @@ def unmapped_component(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def unjustified_node(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A node implements no component.
-
-    Why: A node that serves no function of the design is left over, or a component is missing. Programs that are no ROS, what
-    runs once at the start and who activates other nodes are there for the start-up.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image}}
-              screen: {inputs: {image: camera.image}}
-        nodes:
-          camera_driver: {implements: camera}
-          image_view: {implements: screen}
-          image_relay: {package: topic_tools, executable: relay}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image}}
-              screen: {inputs: {image: camera.image}}
-        nodes:
-          camera_driver: {implements: camera}
-          image_view: {implements: screen}
-    """
+    """A node implements no component."""
     managers = {node.start.by.id for node in architecture.nodes.values() if node.start and node.start.by}
     for node in architecture.nodes.values():
         serves_start = node.id in managers or "program" in node.kinds or (node.start is not None and node.start.once)
@@ -109,33 +61,7 @@ def unjustified_node(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def unpublished_output(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Several nodes implement a component, and none of them publishes (or serves) one of its outputs.
-
-    Why: Where one node implements a component it has all of its inputs and outputs. Several nodes share them, and each names
-    what it carries; an output that none names is one that nobody will write.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image, info: sensor_msgs/msg/CameraInfo}}
-              screen: {inputs: {camera: camera}}
-        nodes:
-          camera_driver: {implements: camera, publishes: {image: }}
-          camera_calibration: {implements: camera}
-          image_view: {implements: screen}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image, info: sensor_msgs/msg/CameraInfo}}
-              screen: {inputs: {camera: camera}}
-        nodes:
-          camera_driver: {implements: camera, publishes: {image: }}
-          camera_calibration: {implements: camera, publishes: {info: }}
-          image_view: {implements: screen}
-    """
+    """Several nodes implement a component, and none of them publishes (or serves) one of its outputs."""
     for component, nodes, carried_ports in _find_shared_components(architecture):
         for output in component.outputs.values():
             if not uses_ros(output) or output.id in carried_ports:
@@ -152,32 +78,7 @@ def unpublished_output(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def unsubscribed_input(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Several nodes implement a component, and none of them subscribes to (or calls) one of its inputs.
-
-    Why: The component counts on data that none of its nodes receives. See `unpublished-output` for who names what.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image, info: sensor_msgs/msg/CameraInfo}}
-              screen: {inputs: {image: camera.image, info: camera.info}}
-        nodes:
-          camera_driver: {implements: camera}
-          image_view: {implements: screen, subscribes: {image: }}
-          overlay: {implements: screen}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image, info: sensor_msgs/msg/CameraInfo}}
-              screen: {inputs: {image: camera.image, info: camera.info}}
-        nodes:
-          camera_driver: {implements: camera}
-          image_view: {implements: screen, subscribes: {image: }}
-          overlay: {implements: screen, subscribes: {info: }}
-    """
+    """Several nodes implement a component, and none of them subscribes to (or calls) one of its inputs."""
     for component, nodes, carried_ports in _find_shared_components(architecture):
         for entry in component.inputs.values():
             if entry.id in carried_ports or not _receives_messages(architecture, entry):

@@ -34,32 +34,7 @@ _MAX_SHOWN = 6
 
 
 def unknown_parameter(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A node is given a parameter that none of its components declares, or an instance one that its type does not.
-
-    Why: A node of ROS ignores what it does not know, without a word: the value that somebody tuned has no effect. It is judged
-    where all components of the node, or the type of the instance, declare `parameters`. What ROS itself declares
-    (`use_sim_time`, `qos_overrides`, ...) is known, and below the names in `open` everything is.
-
-    Bad:
-        groups:
-          driving:
-            components:
-              planner:
-                functionality: Plans the way.
-                parameters: {max_speed: {type: float, value: 0.8, unit: m/s}}
-        nodes:
-          planner: {implements: planner, parameters: {maxspeed: 0.5}}
-
-    Good:
-        groups:
-          driving:
-            components:
-              planner:
-                functionality: Plans the way.
-                parameters: {max_speed: {type: float, value: 0.8, unit: m/s}}
-        nodes:
-          planner: {implements: planner, parameters: {max_speed: 0.5}}
-    """
+    """A node is given a parameter that none of its components declares, or an instance one that its type does not."""
     judges = [_NodeJudge(architecture, node) for node in architecture.nodes.values()]
     known_values: set[tuple[str, Span]] = set()
     unknown_values: dict[tuple[str, Span], tuple[_NodeJudge, ParameterValue]] = {}
@@ -143,32 +118,7 @@ class _NodeJudge:
 
 
 def wrong_parameter(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A parameter is given a value that it cannot have: of another type, outside of its range, or none of its choices.
-
-    Why: A node of ROS 2 stops at its start with an exception; one of ROS 1 goes on with something else. A whole number is a
-    float where a float is wanted. A parameter without `type` has that of its value; what a launch file fills in (`$(...)`) is
-    not judged.
-
-    Bad:
-        groups:
-          driving:
-            components:
-              planner:
-                functionality: Plans the way.
-                parameters: {max_speed: {type: float, value: 0.8, range: [0, 1.5]}}
-        nodes:
-          planner: {implements: planner, parameters: {max_speed: 8}}
-
-    Good:
-        groups:
-          driving:
-            components:
-              planner:
-                functionality: Plans the way.
-                parameters: {max_speed: {type: float, value: 0.8, range: [0, 1.5]}}
-        nodes:
-          planner: {implements: planner, parameters: {max_speed: 1}}
-    """
+    """A parameter is given a value that it cannot have: of another type, outside of its range, or none of its choices."""
     # Composed components first: a value that they hand in is one slip, however many take it.
     reported_values: set[Span] = set()
     for component in architecture.list_described_components():
@@ -211,31 +161,7 @@ def _judge_value(parameter: Parameter, value: object, span: Span, element: str) 
 
 
 def unset_parameter(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A parameter has no value: neither its component nor a node gives it one.
-
-    Why: The node would stop at its start, or go on with a value that the architecture does not say. A node one of whose
-    parameter files archgen cannot read is not judged: the value may be there.
-
-    Bad:
-        groups:
-          driving:
-            components:
-              localisation:
-                functionality: Says where the robot is.
-                parameters: {map_file: {type: string}}
-        nodes:
-          localisation: {implements: localisation}
-
-    Good:
-        groups:
-          driving:
-            components:
-              localisation:
-                functionality: Says where the robot is.
-                parameters: {map_file: {type: string}}
-        nodes:
-          localisation: {implements: localisation, parameters: {map_file: maps/home.yaml}}
-    """
+    """A parameter has no value: neither its component nor a node gives it one."""
     for node in architecture.nodes.values():
         if node.unread_files or not any(map(_needs_value, find_declarations(architecture, node).values())):
             continue
@@ -281,39 +207,7 @@ def _report_unset(architecture: Architecture, node: Node, names: list[str]) -> D
 
 
 def unused_parameter_file(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A parameter file that a node names says nothing to it, or cannot be read.
-
-    Why: ROS 2 reads a file by the full names of nodes, namespace included; a section for another name is ignored without a
-    word. It is judged where a component of the node declares `parameters`.
-
-    Bad:
-        # file: archgen.yaml
-        archgen: 1
-        groups:
-          sensing:
-            components:
-              camera:
-                outputs: {image: {type: sensor_msgs/msg/Image, external: The operator's tablet}}
-                parameters: {exposure: 20}
-        nodes:
-          camera: {implements: camera, namespace: /front, parameter_files: [config/camera.yaml]}
-        # file: config/camera.yaml
-        camera: {ros__parameters: {exposure: 30}}
-
-    Good:
-        # file: archgen.yaml
-        archgen: 1
-        groups:
-          sensing:
-            components:
-              camera:
-                outputs: {image: {type: sensor_msgs/msg/Image, external: The operator's tablet}}
-                parameters: {exposure: 20}
-        nodes:
-          camera: {implements: camera, namespace: /front, parameter_files: [config/camera.yaml]}
-        # file: config/camera.yaml
-        /front/camera: {ros__parameters: {exposure: 30}}
-    """
+    """A parameter file that a node names says nothing to it, or cannot be read."""
     for node in architecture.nodes.values():
         if node.file_remarks and any(each.parameters for each in list_node_components(architecture, node)):
             for remark in node.file_remarks:

@@ -37,42 +37,7 @@ def find_forbidden_flows(
 
 
 def forbidden_flow(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Data flows directly between two parts of the robot that a policy keeps apart.
-
-    Why: The project itself wrote the policy down: that reasoning drives no motor by itself, or that pictures do not leave the
-    robot. A policy speaks of direct connections. To forbid every way, however long, let it select what lies behind:
-    `from: camera+` is the camera with all that it feeds.
-
-    Bad:
-        groups:
-          reasoning:
-            components:
-              reasoner: {outputs: {command: geometry_msgs/msg/Twist}}
-          driving:
-            components:
-              base: {role: sink, inputs: {command: reasoner.command}}
-        nodes:
-          reasoner: {implements: reasoner}
-          base: {implements: base}
-        policies:
-          no_shortcut: {title: Reasoning never drives motors itself, forbid: {from: reasoning, to: "role:sink"}}
-
-    Good:
-        groups:
-          reasoning:
-            components:
-              reasoner: {outputs: {goal: geometry_msgs/msg/PoseStamped}}
-          driving:
-            components:
-              planner: {inputs: {goal: reasoner.goal}, outputs: {command: geometry_msgs/msg/Twist}}
-              base: {role: sink, inputs: {command: planner.command}}
-        nodes:
-          reasoner: {implements: reasoner}
-          planner: {implements: planner}
-          base: {implements: base}
-        policies:
-          no_shortcut: {title: Reasoning never drives motors itself, forbid: {from: reasoning, to: "role:sink"}}
-    """
+    """Data flows directly between two parts of the robot that a policy keeps apart."""
     evaluator = SelectorEvaluator(architecture)
     for policy in architecture.policies.values():
         # A selector with an error selects nothing, and `wrong-selector` reports it.
@@ -102,45 +67,7 @@ def _report_forbidden_flow(
 
 
 def refused_source(architecture: Architecture) -> Iterator[Diagnostic]:
-    """An element takes data from where a policy does not let it take any, and does not guard itself.
-
-    Why: What a robot does safely is as safe as what it listens to. A policy with `require` says it once: inputs of what `of` selects
-    come from what `inputs_from` selects. An input guards itself if it has the property that `guarded_by` names, such as a range
-    check or a watchdog. What comes from outside of the system is not judged. A service or action carries data both ways.
-
-    Bad:
-        properties: {sil: {title: Safety integrity level, of: [component], type: integer, range: [0, 4]}}
-        groups:
-          driving:
-            components:
-              planner: {functionality: Plans the way., properties: {sil: 0}, outputs: {command: geometry_msgs/msg/Twist}}
-              base: {functionality: Turns the wheels., properties: {sil: 2}, inputs: {command: planner.command}}
-        nodes:
-          planner: {implements: planner}
-          base: {implements: base}
-        policies:
-          safe_inputs:
-            title: What is safe listens to what is safe
-            require: {of: "property:sil>=2", inputs_from: "property:sil>=2", guarded_by: guard}
-
-    Good:
-        properties: {sil: {title: Safety integrity level, of: [component], type: integer, range: [0, 4]}}
-        groups:
-          driving:
-            components:
-              planner: {functionality: Plans the way., properties: {sil: 0}, outputs: {command: geometry_msgs/msg/Twist}}
-              base:
-                functionality: Turns the wheels.
-                properties: {sil: 2}
-                inputs: {command: {from: planner.command, properties: {guard: never faster than 0.3 m/s near people}}}
-        nodes:
-          planner: {implements: planner}
-          base: {implements: base}
-        policies:
-          safe_inputs:
-            title: What is safe listens to what is safe
-            require: {of: "property:sil>=2", inputs_from: "property:sil>=2", guarded_by: guard}
-    """
+    """An element takes data from where a policy does not let it take any, and does not guard itself."""
     evaluator = SelectorEvaluator(architecture)
     for policy in architecture.policies.values():
         if policy.require is None:
@@ -203,38 +130,7 @@ def _report_refused_source(policy: Policy, demand: SourceDemand, refused: _Refus
 
 
 def unneeded_exception(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A policy accepts an input that it does not object to.
-
-    Why: The exception was needed once. It would hide the next connection that the policy is there for.
-
-    Bad:
-        groups:
-          reasoning:
-            components:
-              reasoner: {outputs: {command: geometry_msgs/msg/Twist}}
-          driving:
-            components:
-              base: {role: sink, inputs: {command: reasoner.command}}
-        nodes:
-          reasoner: {implements: reasoner}
-          base: {implements: base}
-        policies:
-          no_loop: {forbid: {from: driving, to: reasoning}, accepted: {base.command: it is slow}}
-
-    Good:
-        groups:
-          reasoning:
-            components:
-              reasoner: {outputs: {command: geometry_msgs/msg/Twist}}
-          driving:
-            components:
-              base: {role: sink, inputs: {command: reasoner.command}}
-        nodes:
-          reasoner: {implements: reasoner}
-          base: {implements: base}
-        policies:
-          no_loop: {forbid: {from: driving, to: reasoning}}
-    """
+    """A policy accepts an input that it does not object to."""
     policies = [policy for policy in architecture.policies.values() if policy.accepted]
     evaluator = SelectorEvaluator(architecture)
     for policy in policies:

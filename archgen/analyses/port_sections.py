@@ -22,31 +22,7 @@ _FLOW_PHRASES: Mapping[FlowKind, str] = {"topic": "a topic", "service": "a servi
 
 
 def wrong_section(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A node lists a service or action among its topics, a topic among its services, or a physical port at all.
-
-    Why: The middle part of the message says what flows: `msg` is a topic (`publishes`, `subscribes`), `srv` a service and
-    `action` an action (`serves`, `calls`). Physical ports are not in ROS.
-
-    Bad:
-        groups:
-          grasping:
-            components:
-              planner: {outputs: {stop: std_srvs/srv/Trigger}}
-              button: {inputs: {stop: planner.stop}}
-        nodes:
-          planner: {implements: planner, publishes: {stop: /stop}}
-          button: {implements: button}
-
-    Good:
-        groups:
-          grasping:
-            components:
-              planner: {outputs: {stop: std_srvs/srv/Trigger}}
-              button: {inputs: {stop: planner.stop}}
-        nodes:
-          planner: {implements: planner, serves: {stop: /stop}}
-          button: {implements: button}
-    """
+    """A node lists a service or action among its topics, a topic among its services, or a physical port at all."""
     nodes = [node for node in architecture.nodes.values() if node.uses]
     flows = _flows_of_ports(architecture) if nodes else {}
     for node in nodes:

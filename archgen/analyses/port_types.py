@@ -37,41 +37,7 @@ def is_expected_type(architecture: Architecture, expected_type: str, output: Out
 
 
 def type_mismatch(architecture: Architecture) -> Iterator[Diagnostic]:
-    """An input expects another type than its source sends.
-
-    Why: The two sides mean different things by the same connection. A type on an input is what its author counts on; two
-    types with one ROS message are still two types (a pose of the robot is no pose of an object).
-
-    Bad:
-        groups:
-          driving:
-            components:
-              localisation: {outputs: {pose: Robot pose}}
-              gripper: {inputs: {target: {from: localisation.pose, type: Object pose}}}
-              tracker: {outputs: {pose: {type: Object pose, external: The operator's tablet}}}
-        types:
-          Robot pose: geometry_msgs/msg/PoseStamped
-          Object pose: geometry_msgs/msg/PoseStamped
-        nodes:
-          localisation: {implements: localisation}
-          gripper: {implements: gripper}
-          tracker: {implements: tracker}
-
-    Good:
-        groups:
-          driving:
-            components:
-              localisation: {outputs: {pose: {type: Robot pose, external: The operator's tablet}}}
-              gripper: {inputs: {target: {from: tracker.pose, type: Object pose}}}
-              tracker: {outputs: {pose: Object pose}}
-        types:
-          Robot pose: geometry_msgs/msg/PoseStamped
-          Object pose: geometry_msgs/msg/PoseStamped
-        nodes:
-          localisation: {implements: localisation}
-          gripper: {implements: gripper}
-          tracker: {implements: tracker}
-    """
+    """An input expects another type than its source sends."""
     for connection in architecture.connections:
         entry = architecture.inputs[connection.input]
         expected_type = entry.type
@@ -99,36 +65,8 @@ def type_mismatch(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def medium_mismatch(architecture: Architecture) -> Iterator[Diagnostic]:
-    """An input has another medium than its source: it is physical and the source sends messages, or one is MQTT and the other CAN.
-
-    Why: What can be touched, seen or heard has no topic: the node would not subscribe to the data that is meant for it, or
-    subscribe to a topic that nobody publishes. Who reads a CAN bus finds nothing of what is sent by MQTT: a component that
-    translates is missing, or one side has the wrong word. An input that says nothing has the medium of its sources. What is in
-    memory is read by the same process alone.
-
-    Bad:
-        groups:
-          speech:
-            components:
-              synthesis: {outputs: {words: std_msgs/msg/String}}
-              loudspeaker:
-                inputs: {words: {from: synthesis.words, medium: physical}}
-                outputs: {sound: {type: Speech, medium: physical, external: The user hears the robot}}
-        nodes:
-          synthesis: {implements: synthesis}
-          loudspeaker: {implements: loudspeaker}
-
-    Good:
-        groups:
-          speech:
-            components:
-              synthesis: {outputs: {words: std_msgs/msg/String}}
-              loudspeaker:
-                inputs: {words: synthesis.words}
-                outputs: {sound: {type: Speech, medium: physical, external: The user hears the robot}}
-        nodes:
-          synthesis: {implements: synthesis}
-          loudspeaker: {implements: loudspeaker}
+    """An input has another medium than its source: it is physical and the source sends messages, or one is MQTT and the
+    other CAN.
     """
     readers = [architecture.inputs[connection.input] for connection in architecture.connections]
     pairs = [*zip(architecture.connections, readers, strict=True), *_list_shell_connections(architecture)]

@@ -15,30 +15,7 @@ if TYPE_CHECKING:
 
 
 def idle_executor(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A key of a node that says how its callbacks run has no effect where it stands.
-
-    Why: A node in a container is run by the threads of the container, so that its own `threads` and `scheduling` say nothing.
-    `callback_groups` divide the components of a node; where there is one only, or where all callbacks are `reentrant`, they
-    divide nothing.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: {type: sensor_msgs/msg/Image, external: The recording}}}
-        nodes:
-          camera: {implements: camera, kind: composable, plugin: "cam::Cam", container: box, threads: 4}
-        containers: {box: {threads: 1}}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: {type: sensor_msgs/msg/Image, external: The recording}}}
-        nodes:
-          camera: {implements: camera, kind: composable, plugin: "cam::Cam", container: box}
-        containers: {box: {threads: 4}}
-    """
+    """A key of a node that says how its callbacks run has no effect where it stands."""
     for node in architecture.nodes.values():
         container = architecture.containers.get(node.container or "")
         for key in ("threads", "scheduling") if container else ():
@@ -73,31 +50,7 @@ def _find_idle_groups(node: Node) -> Iterator[Diagnostic]:
 
 
 def remote_resource(architecture: Architecture) -> Iterator[Diagnostic]:
-    """An element uses a resource of another computer.
-
-    Why: A GPU is used from the computer in which it is. One of the two hosts is wrong, or the element asks a server there,
-    which is a node of its own.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: {type: sensor_msgs/msg/Image, external: The recording}}}
-        nodes:
-          camera: {implements: camera, host: arm, timing: {rate: 30 Hz, wcet: 8 ms, uses: {gpu: 12 ms}}}
-        hosts: {pc: {cores: 8}, arm: {cores: 4}}
-        resources: {gpu: {host: pc}}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: {type: sensor_msgs/msg/Image, external: The recording}}}
-        nodes:
-          camera: {implements: camera, host: pc, timing: {rate: 30 Hz, wcet: 8 ms, uses: {gpu: 12 ms}}}
-        hosts: {pc: {cores: 8}, arm: {cores: 4}}
-        resources: {gpu: {host: pc}}
-    """
+    """An element uses a resource of another computer."""
     # One `timing` may stand for several components of a node: its faults are reported once.
     reported_spans: set[Span] = set()
     for node in architecture.nodes.values():

@@ -19,27 +19,8 @@ if TYPE_CHECKING:
 
 
 def wrong_property(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A property is not what the project declares: on another kind of element, of another type, or outside of its range.
-
-    Why: Lists, selectors and policies trust declared properties. `property:sil>=2` does not find what says `sil: two`. A value
-    is compared only in its declared unit. A property that nothing declares is free; one whose name is nearly that of a
-    declared one is a slip, most likely.
-
-    Bad:
-        properties: {trl: {of: [component], type: integer, range: [1, 9]}}
-        groups:
-          sensing:
-            components:
-              camera: {functionality: Takes pictures., properties: {trl: 12}}
-        nodes: {camera: {implements: camera}}
-
-    Good:
-        properties: {trl: {of: [component], type: integer, range: [1, 9]}}
-        groups:
-          sensing:
-            components:
-              camera: {functionality: Takes pictures., properties: {trl: 6}}
-        nodes: {camera: {implements: camera}}
+    """A property is not what the project declares: on another kind of element, of another type, or outside of its
+    range.
     """
     if not architecture.properties:
         return
@@ -95,27 +76,7 @@ def _phrase_element(each: AnnotatedElement) -> str:
 
 
 def missing_property(architecture: Architecture) -> Iterator[Diagnostic]:
-    """An element lacks a property that the project asks of each one of its kind.
-
-    Why: The project declared it with `required: true`: a list of technology readiness, or of safety levels, is worth little
-    with gaps. A component that holds others need not have it, and an instance may have it from its type.
-
-    Bad:
-        properties: {trl: {of: [component], type: integer, required: true}}
-        groups:
-          sensing:
-            components:
-              camera: {functionality: Takes pictures.}
-        nodes: {camera: {implements: camera}}
-
-    Good:
-        properties: {trl: {of: [component], type: integer, required: true}}
-        groups:
-          sensing:
-            components:
-              camera: {functionality: Takes pictures., properties: {trl: 6}}
-        nodes: {camera: {implements: camera}}
-    """
+    """An element lacks a property that the project asks of each one of its kind."""
     required_properties = [each for each in architecture.properties.values() if each.required]
     if not required_properties:
         return

@@ -71,32 +71,7 @@ def find_qos_conflicts(offered: Qos, requested: Qos) -> Iterator[QosConflict]:
 
 
 def incompatible_qos(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A subscriber asks for a quality of service that a publisher on its topic does not offer.
-
-    Why: The two are not connected at all: the subscriber receives no message from this publisher, and both go on running as
-    if nothing were wrong. It is an error where both sides wrote their settings, and a warning where one side left them out
-    (ROS's default counts for it then) or to the middleware (`system_default`).
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              scanner: {outputs: {scan: sensor_msgs/msg/LaserScan}}
-              mapper: {inputs: {scan: scanner.scan}}
-        nodes:
-          scan_driver: {implements: scanner, publishes: {scan: {qos: sensor_data}}}
-          mapper: {implements: mapper, subscribes: {scan: {qos: {reliability: reliable}}}}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              scanner: {outputs: {scan: sensor_msgs/msg/LaserScan}}
-              mapper: {inputs: {scan: scanner.scan}}
-        nodes:
-          scan_driver: {implements: scanner, publishes: {scan: {qos: sensor_data}}}
-          mapper: {implements: mapper, subscribes: {scan: {qos: sensor_data}}}
-    """
+    """A subscriber asks for a quality of service that a publisher on its topic does not offer."""
     if is_ros_1(architecture.distro):
         return  # has no quality of service to agree on
     for topic in architecture.topics.values():

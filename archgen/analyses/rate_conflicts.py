@@ -26,31 +26,7 @@ if TYPE_CHECKING:
 
 
 def period_conflict(architecture: Architecture, analysis: Analysis, *, tolerance: Fraction) -> Iterator[Diagnostic]:
-    """What an element states of its rate is not what its inputs, or the nodes and components that it is made of, give.
-
-    Why: An event-driven element runs when its inputs arrive. Where it states another rate, one of the two is wrong, and so is
-    every figure that follows from it. The stated one is used, so that the rest can be judged meanwhile.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image}}
-              detector: {inputs: {image: camera.image}}
-        nodes:
-          camera: {implements: camera, timing: {rate: 30 Hz}}
-          detector: {implements: detector, timing: {behaviour: event, rate: 10 Hz}}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image}}
-              detector: {inputs: {image: camera.image}}
-        nodes:
-          camera: {implements: camera, timing: {rate: 30 Hz}}
-          detector: {implements: detector, timing: {behaviour: event, every: 3}}
-    """
+    """What an element states of its rate is not what its inputs, or the nodes and components that it is made of, give."""
     for name, derived in analysis.derived.items():
         stated_rate = analysis.paces[name].rate.value
         if stated_rate is None or not _is_impossible_rate(stated_rate, derived.rate, tolerance):
@@ -137,36 +113,7 @@ def _output_ids(component: Component) -> frozenset[str]:
 
 
 def lost_samples(_: Architecture, analysis: Analysis, *, tolerance: Fraction) -> Iterator[Diagnostic]:
-    """An element waits for all of several inputs, and one of them comes more often than it can be used.
-
-    Why: An element that fires when all of its inputs have something new runs as often as the slowest of them. What the
-    others send more often is thrown away, and where the rates have no common measure, the pairs that are put together are
-    of another age each time. An element that samples its inputs by a timer does so on purpose, and is not meant here.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              left: {outputs: {image: sensor_msgs/msg/Image}}
-              right: {outputs: {image: sensor_msgs/msg/Image}}
-              stereo: {inputs: {left: left.image, right: right.image}}
-        nodes:
-          left: {implements: left, timing: {rate: 30 Hz}}
-          right: {implements: right, timing: {rate: 25 Hz}}
-          stereo: {implements: stereo, timing: {trigger: all}}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              left: {outputs: {image: sensor_msgs/msg/Image}}
-              right: {outputs: {image: sensor_msgs/msg/Image}}
-              stereo: {inputs: {left: left.image, right: right.image}}
-        nodes:
-          left: {implements: left, timing: {rate: 30 Hz}}
-          right: {implements: right, timing: {rate: 30 Hz}}
-          stereo: {implements: stereo, timing: {trigger: all}}
-    """
+    """An element waits for all of several inputs, and one of them comes more often than it can be used."""
     for edge in analysis.edges:
         target = analysis.system.activities[edge.arc.target]
         waits_for_all = (
@@ -189,38 +136,7 @@ def lost_samples(_: Architecture, analysis: Analysis, *, tolerance: Fraction) ->
 
 
 def short_queue(_: Architecture, analysis: Analysis, *, margin: Fraction) -> Iterator[Diagnostic]:
-    """An element keeps a queue that overflows before it is read.
-
-    Why: Whoever asks for a queue of several messages means to read all of them. Until a periodic reader has been through once
-    more, its largest gap and its response time pass, and the response of what each message fires; what comes in that time
-    must fit in, or the oldest is lost without a sign. A queue of one (only the newest counts), and a depth that nobody wrote, are not meant here.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              imu: {outputs: {motion: sensor_msgs/msg/Imu}}
-              filter: {inputs: {motion: imu.motion}}
-        nodes:
-          imu: {implements: imu, timing: {rate: 200 Hz, wcet: 1 ms, bcet: 1 ms}}
-          filter:
-            implements: filter
-            subscribes: {motion: {qos: {depth: 5}}}
-            timing: {rate: 20 Hz, wcet: 2 ms}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              imu: {outputs: {motion: sensor_msgs/msg/Imu}}
-              filter: {inputs: {motion: imu.motion}}
-        nodes:
-          imu: {implements: imu, timing: {rate: 200 Hz, wcet: 1 ms, bcet: 1 ms}}
-          filter:
-            implements: filter
-            subscribes: {motion: {qos: {depth: 11}}}
-            timing: {rate: 20 Hz, wcet: 2 ms}
-    """
+    """An element keeps a queue that overflows before it is read."""
     for edge in analysis.edges:
         depth, coming_count = edge.arc.depth, edge.queue.value
         if not edge.arc.depth_written or depth is None or depth < 2 or coming_count is None:  # noqa: PLR2004

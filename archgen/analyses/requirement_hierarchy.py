@@ -19,31 +19,7 @@ _MAX_LISTED = 5
 
 
 def circular_requirement(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Requirements are part of one another in a circle.
-
-    Why: A requirement with parts is served, and verified, if all of its parts are. In a circle each waits for the other, and
-    none is.
-
-    Bad:
-        requirements:
-          R-1: {title: The operator sees what the robot sees, parent: R-2}
-          R-2: {title: The picture is not older than a second, parent: R-1}
-        groups:
-          sensing:
-            components:
-              camera: {requirements: [R-1, R-2], outputs: {image: {type: sensor_msgs/msg/Image, external: The operator's tablet}}}
-        nodes: {camera: camera}
-
-    Good:
-        requirements:
-          R-1: {title: The operator sees what the robot sees}
-          R-2: {title: The picture is not older than a second, parent: R-1}
-        groups:
-          sensing:
-            components:
-              camera: {requirements: [R-2], outputs: {image: {type: sensor_msgs/msg/Image, external: The operator's tablet}}}
-        nodes: {camera: camera}
-    """
+    """Requirements are part of one another in a circle."""
     requirements = architecture.requirements
     judged_ids: set[str] = set()
     told_ids: set[str] = set()
@@ -88,31 +64,7 @@ def _diagnose_circle(requirements: Mapping[str, Requirement], circle: list[str])
 
 
 def unverified_requirement(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Nothing shows that a requirement is met.
-
-    Why: Whoever signs asks which test, trial or use case shows it. The rule is off unless the project asks for it, since at
-    first nobody knows. A requirement with parts is verified by itself, or if all of its parts are.
-
-    Bad:
-        rules: {unverified-requirement: warning}
-        requirements:
-          R-1: The operator sees what the robot sees
-        groups:
-          sensing:
-            components:
-              camera: {requirements: [R-1], outputs: {image: {type: sensor_msgs/msg/Image, external: The operator's tablet}}}
-        nodes: {camera: camera}
-
-    Good:
-        rules: {unverified-requirement: warning}
-        requirements:
-          R-1: {title: The operator sees what the robot sees, verified_by: Trial in the test flat}
-        groups:
-          sensing:
-            components:
-              camera: {requirements: [R-1], outputs: {image: {type: sensor_msgs/msg/Image, external: The operator's tablet}}}
-        nodes: {camera: camera}
-    """
+    """Nothing shows that a requirement is met."""
     if architecture.partial:
         return
     requirements = architecture.requirements

@@ -20,36 +20,7 @@ if TYPE_CHECKING:
 
 
 def unknown_requirement(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A component or chain names a requirement that nobody declares, or a sentence holds nothing but ids.
-
-    Why: The trace from requirements to components has a loose end. Most often it is a slip in the id, or a requirement that
-    was dropped. A requirement of only this component can be written as a sentence in its place; an entry with a blank is one,
-    `R-1, R-4` in quotes too.
-
-    Bad:
-        requirements:
-          R-1: The operator sees what the robot sees
-        groups:
-          sensing:
-            components:
-              camera: {requirements: [R-1], outputs: {image: sensor_msgs/msg/Image}}
-              screen: {requirements: [R-11], inputs: {image: camera.image}}
-        nodes:
-          camera: {implements: camera}
-          screen: {implements: screen}
-
-    Good:
-        requirements:
-          R-1: The operator sees what the robot sees
-        groups:
-          sensing:
-            components:
-              camera: {requirements: [R-1], outputs: {image: sensor_msgs/msg/Image}}
-              screen: {requirements: [R-1, Readable in sunlight], inputs: {image: camera.image}}
-        nodes:
-          camera: {implements: camera}
-          screen: {implements: screen}
-    """
+    """A component or chain names a requirement that nobody declares, or a sentence holds nothing but ids."""
     id_by_title = _index_titles(architecture)
     for component in architecture.list_described_components():
         for use in component.requirements:
@@ -134,37 +105,7 @@ def _report_unknown_requirement(
 
 
 def uncovered_requirement(architecture: Architecture) -> Iterator[Diagnostic]:
-    """No component and no chain serves a requirement.
-
-    Why: What was promised is nobody's task yet. A requirement whose parts (those that name it as `parent`) are all served is
-    served, too; else the parts are reported.
-
-    Bad:
-        requirements:
-          R-1: The operator sees what the robot sees
-          R-2: The operator hears what the robot hears
-        groups:
-          sensing:
-            components:
-              camera: {requirements: [R-1], outputs: {image: sensor_msgs/msg/Image}}
-              screen: {requirements: [R-1], inputs: {image: camera.image}}
-        nodes:
-          camera: {implements: camera}
-          screen: {implements: screen}
-
-    Good:
-        requirements:
-          R-1: The operator sees what the robot sees
-          R-2: The picture is not older than a second
-        groups:
-          sensing:
-            components:
-              camera: {requirements: [R-1], outputs: {image: sensor_msgs/msg/Image}}
-              screen: {requirements: [R-1, R-2], inputs: {image: camera.image}}
-        nodes:
-          camera: {implements: camera}
-          screen: {implements: screen}
-    """
+    """No component and no chain serves a requirement."""
     if architecture.partial:
         return
     named_ids = {use.text for c in architecture.list_described_components() for use in c.requirements if use.is_id}
@@ -198,35 +139,7 @@ def _title_suffix(requirement: Requirement) -> str:
 
 
 def unjustified_component(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A component serves no requirement, though the project declares some.
-
-    Why: Either the component is not needed, or a requirement was never written down. A project without requirements is not
-    asked.
-
-    Bad:
-        requirements:
-          R-1: The operator sees what the robot sees
-        groups:
-          sensing:
-            components:
-              camera: {requirements: [R-1], outputs: {image: sensor_msgs/msg/Image}}
-              screen: {inputs: {image: camera.image}}
-        nodes:
-          camera: {implements: camera}
-          screen: {implements: screen}
-
-    Good:
-        requirements:
-          R-1: The operator sees what the robot sees
-        groups:
-          sensing:
-            components:
-              camera: {requirements: [R-1], outputs: {image: sensor_msgs/msg/Image}}
-              screen: {requirements: [R-1], inputs: {image: camera.image}}
-        nodes:
-          camera: {implements: camera}
-          screen: {implements: screen}
-    """
+    """A component serves no requirement, though the project declares some."""
     if not architecture.requirements:
         return
     for component in architecture.components.values():

@@ -21,34 +21,7 @@ if TYPE_CHECKING:
 
 
 def overloaded_host(architecture: Architecture, analysis: Analysis, *, limit: Fraction) -> Iterator[Diagnostic]:
-    """What runs on a host needs more time than its cores have.
-
-    Why: From a utilisation of 1 on, work is left over in each round, and responses grow without a bound. Cores to which
-    something is pinned are looked at one by one; all else shares the others. Nodes without a host count as having a core of
-    their own, which one of them alone can overload, too. A GPU, or another of the `resources`, works on one use at a time.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image}}
-              detector: {inputs: {image: camera.image}}
-        nodes:
-          camera: {implements: camera, host: pc, timing: {rate: 10 Hz, wcet: 30 ms}}
-          detector: {implements: detector, host: pc, timing: {behaviour: event, wcet: 80 ms}}
-        hosts: {pc: {cores: 1}}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image}}
-              detector: {inputs: {image: camera.image}}
-        nodes:
-          camera: {implements: camera, host: pc, timing: {rate: 10 Hz, wcet: 30 ms}}
-          detector: {implements: detector, host: pc, timing: {behaviour: event, wcet: 80 ms}}
-        hosts: {pc: {cores: 2}}
-    """
+    """What runs on a host needs more time than its cores have."""
     for host, load in analysis.hosts.items():
         for place_name, cores, utilisation in load.core_loads:
             # A utilisation of exactly 1 can be schedulable (strictly periodic, fixed priorities), so the host's verdict
@@ -175,37 +148,7 @@ def _format_cores(count: int) -> str:
 
 
 def saturated_link(architecture: Architecture, analysis: Analysis, *, limit: Fraction) -> Iterator[Diagnostic]:
-    """What is sent over a link is more than its bandwidth carries.
-
-    Why: Each reader on another host has a copy of its own sent. Where the sum is the bandwidth or more, messages queue up
-    until they are dropped, and no latency can be promised.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: Picture}}
-              viewer: {inputs: {image: camera.image}}
-        types: {Picture: {message: sensor_msgs/msg/Image, size: 6 MB}}
-        nodes:
-          camera: {implements: camera, host: head, timing: {rate: 30 Hz}}
-          viewer: {implements: viewer, host: base}
-        hosts: {head: {}, base: {}}
-        links: {cable: {connects: [head, base], bandwidth: 1 Gbit/s}}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: Picture}}
-              viewer: {inputs: {image: camera.image}}
-        types: {Picture: {message: sensor_msgs/msg/CompressedImage, size: 600 kB}}
-        nodes:
-          camera: {implements: camera, host: head, timing: {rate: 30 Hz}}
-          viewer: {implements: viewer, host: base}
-        hosts: {head: {}, base: {}}
-        links: {cable: {connects: [head, base], bandwidth: 1 Gbit/s}}
-    """
+    """What is sent over a link is more than its bandwidth carries."""
     for name, load in analysis.links.items():
         if load.share.value is None or load.share.value < limit:
             continue

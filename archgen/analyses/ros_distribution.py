@@ -15,18 +15,7 @@ if TYPE_CHECKING:
 
 
 def unknown_distro(architecture: Architecture) -> Iterator[Diagnostic]:
-    """The project is for a ROS distribution of which archgen holds no interfaces.
-
-    Why: Most often it is a slip in the name; messages, services and actions are then checked as of the distribution that is
-    meant. Otherwise none is checked, but for those that the project defines itself. For a distribution that is no longer
-    maintained (`foxy`, `melodic`) this is only a warning.
-
-    Bad:
-        ros: {distro: jazy}
-
-    Good:
-        ros: {distro: jazzy}
-    """
+    """The project is for a ROS distribution of which archgen holds no interfaces."""
     distro = architecture.distro
     if distro is None or distro in KNOWN_DISTROS:
         return

@@ -28,33 +28,7 @@ _ROS_2_QOS_KEYS = ("reliability", "history", "deadline", "lifespan", "liveliness
 
 
 def other_ros_generation(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A node uses what only the other generation of ROS has.
-
-    Why: Lifecycle and composable nodes and quality of service came with ROS 2; nodelets are of ROS 1. The node cannot be built
-    as it stands here. Of `qos`, ROS 1 has a queue size (`depth`) and latched topics (`durability: transient_local`).
-
-    Bad:
-        ros: {distro: noetic}
-        groups:
-          sensing:
-            components:
-              scanner: {outputs: {scan: sensor_msgs/msg/LaserScan}}
-              mapper: {inputs: {scan: scanner.scan}}
-        nodes:
-          scan_driver: {implements: scanner, kind: lifecycle}
-          mapper: {implements: mapper}
-
-    Good:
-        ros: {distro: noetic}
-        groups:
-          sensing:
-            components:
-              scanner: {outputs: {scan: sensor_msgs/msg/LaserScan}}
-              mapper: {inputs: {scan: scanner.scan}}
-        nodes:
-          scan_driver: {implements: scanner, kind: driver}
-          mapper: {implements: mapper}
-    """
+    """A node uses what only the other generation of ROS has."""
     distro = guess_distro(architecture.distro)
     if distro not in KNOWN_DISTROS and distro not in PAST_DISTROS:
         return

@@ -62,41 +62,7 @@ def _mentions_with_status(architecture: Architecture, status: InterfaceStatus) -
 
 
 def unknown_message(architecture: Architecture) -> Iterator[Diagnostic]:
-    """No message, service or action of this name exists.
-
-    Why: the name is written for a package whose interfaces archgen holds completely for this distribution, or which the
-    project defines itself, and no such name is among them; or it is one or two letters off a name of a package that archgen
-    holds up to its last patch release. The node that uses it will not build. A name that is still to be defined is marked
-    with `status: planned` at its type, one that archgen does not hold is defined in the project (`ros: {interfaces: ...}`).
-
-    Bad:
-
-        ros: {distro: noetic}
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {colour: Camera picture}}
-              screen: {inputs: {colour: camera.colour}}
-        nodes:
-          camera_driver: {implements: camera}
-          image_view: {implements: screen}
-        types:
-          Camera picture: {message: sensor_msgs/msg/Imgae}
-
-    Good:
-
-        ros: {distro: noetic}
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {colour: Camera picture}}
-              screen: {inputs: {colour: camera.colour}}
-        nodes:
-          camera_driver: {implements: camera}
-          image_view: {implements: screen}
-        types:
-          Camera picture: {message: sensor_msgs/msg/Image}
-    """
+    """No message, service or action of this name exists."""
     interfaces = architecture.interfaces
     for message, span, element in _mentions_with_status(architecture, "wrong"):
         yield Diagnostic(
@@ -119,42 +85,7 @@ def _name_package(message: str, interfaces: Interfaces) -> str:
 
 
 def unchecked_message(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Nobody can tell whether this message, service or action exists.
-
-    Why: nobody holds a complete list of its package for this distribution: neither archgen nor the project. The name may
-    be right; a slip in it would go unseen. With the definition at hand, archgen checks the name and what is in it.
-
-    Bad:
-
-        ros: {distro: jazzy}
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {tags: Tags}}
-              screen: {inputs: {tags: camera.tags}}
-        nodes:
-          camera_driver: {implements: camera}
-          image_view: {implements: screen}
-        types:
-          Tags: {message: demo_msgs/msg/Tags}
-
-    Good:
-
-        ros:
-          distro: jazzy
-          definitions:
-            demo_msgs/msg/Tags: "string[] names"
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {tags: Tags}}
-              screen: {inputs: {tags: camera.tags}}
-        nodes:
-          camera_driver: {implements: camera}
-          image_view: {implements: screen}
-        types:
-          Tags: {message: demo_msgs/msg/Tags}
-    """
+    """Nobody can tell whether this message, service or action exists."""
     interfaces = architecture.interfaces
     if interfaces.distro is not None and not interfaces.has_names:
         return  # `unknown-distro` reports that nothing is checked, once instead of for each message
@@ -224,33 +155,7 @@ def _suggest_definition_file(message: str) -> str:
 
 
 def action_as_message(architecture: Architecture) -> Iterator[Diagnostic]:
-    """The message that describes an action is used as if it were sent on a topic.
-
-    Why: `MoveBaseAction` is how ROS 1 names an action in its programs. Taken for a message, the goal seems to flow from the
-    component that has the output, while in an action the server has it: roles, pictures and timing go the wrong way.
-
-    Bad:
-        ros: {distro: noetic}
-        groups:
-          driving:
-            components:
-              base: {outputs: {go: move_base_msgs/MoveBaseAction}}
-              planner: {inputs: {go: base.go}}
-        nodes:
-          move_base: {implements: base}
-          planner: {implements: planner}
-
-    Good:
-        ros: {distro: noetic}
-        groups:
-          driving:
-            components:
-              base: {outputs: {go: move_base_msgs/action/MoveBase}}
-              planner: {inputs: {go: base.go}}
-        nodes:
-          move_base: {implements: base}
-          planner: {implements: planner}
-    """
+    """The message that describes an action is used as if it were sent on a topic."""
     interfaces = architecture.interfaces
     for message, span, element in _mentions_with_status(architecture, "known"):
         action = interfaces.find_other_kind(message) if message.endswith("Action") else None

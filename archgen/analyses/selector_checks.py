@@ -42,35 +42,7 @@ def list_written_selectors(architecture: Architecture) -> Iterator[WrittenSelect
 
 
 def wrong_selector(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A selector in a view or policy cannot be read, or names what is not there.
-
-    Why: The view would show nothing, the policy forbid nothing. A path that names nothing is an error; a key (`tag:safety`)
-    or a wildcard that nothing fits yet is a warning.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image}}
-              screen: {inputs: {image: camera.image}}
-        nodes:
-          camera: {implements: camera}
-          screen: {implements: screen}
-        views:
-          eyes: {show: "camra+1"}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image}}
-              screen: {inputs: {image: camera.image}}
-        nodes:
-          camera: {implements: camera}
-          screen: {implements: screen}
-        views:
-          eyes: {show: "camera+1"}
-    """
+    """A selector in a view or policy cannot be read, or names what is not there."""
     # One evaluator for all selectors: its look-ups (paths, graphs) are made once, when first needed.
     evaluator = SelectorEvaluator(architecture)
     for written_selector in list_written_selectors(architecture):
@@ -90,35 +62,7 @@ def wrong_selector(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def empty_view(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A view shows nothing, though all that its selector names is there.
-
-    Why: The selector takes away all that it names, or asks for ways between elements that nothing joins. The picture stays
-    empty.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image}}
-              screen: {inputs: {image: camera.image}}
-        nodes:
-          camera: {implements: camera}
-          screen: {implements: screen}
-        views:
-          eyes: {show: "screen..camera"}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image}}
-              screen: {inputs: {image: camera.image}}
-        nodes:
-          camera: {implements: camera}
-          screen: {implements: screen}
-        views:
-          eyes: {show: "camera..screen"}
-    """
+    """A view shows nothing, though all that its selector names is there."""
     evaluator = SelectorEvaluator(architecture)
     for view in architecture.views.values():
         if not view.show or not architecture.components:

@@ -24,31 +24,7 @@ _MAX_LISTED = 6
 
 
 def circular_start(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Something is to start after what starts only after it.
-
-    Why: `after` and the phases never give way: the start-up would wait for ever. Waits that follow from connections do give
-    way where they close a circle; the plan says which ones.
-
-    Bad:
-        groups:
-          driving:
-            components:
-              localiser: {outputs: {pose: geometry_msgs/msg/PoseStamped}}
-              planner: {inputs: {pose: localiser.pose}}
-        nodes:
-          localiser: {implements: localiser, start: {after: planner}}
-          planner: {implements: planner, start: {after: localiser}}
-
-    Good:
-        groups:
-          driving:
-            components:
-              localiser: {outputs: {pose: geometry_msgs/msg/PoseStamped}}
-              planner: {inputs: {pose: localiser.pose}}
-        nodes:
-          localiser: {implements: localiser}
-          planner: {implements: planner, start: {after: localiser}}
-    """
+    """Something is to start after what starts only after it."""
     if any(node.start is not None and node.start.after for node in architecture.nodes.values()):
         for circle in make_start_plan(architecture).circles:
             yield _diagnose_circle(architecture, circle)
@@ -94,36 +70,7 @@ def _find_after_span(architecture: Architecture, node_id: str) -> Span | None:
 
 
 def unmet_ready(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Something is up only when a topic or a service is there that nobody gives, or only somebody who starts later.
-
-    Why: What starts after it waits until the time is over, and then the start-up has failed.
-
-    Bad:
-        groups:
-          driving:
-            components:
-              map_server: {outputs: {map: nav_msgs/msg/OccupancyGrid}}
-              planner: {inputs: {map: map_server.map}}
-        nodes:
-          map_server:
-            implements: map_server
-            publishes: {map: /map}
-            start: {phase: core, ready: {topic: /maps, within: 20 s}}
-          planner: planner
-
-    Good:
-        groups:
-          driving:
-            components:
-              map_server: {outputs: {map: nav_msgs/msg/OccupancyGrid}}
-              planner: {inputs: {map: map_server.map}}
-        nodes:
-          map_server:
-            implements: map_server
-            publishes: {map: /map}
-            start: {phase: core, ready: {topic: /map, within: 20 s}}
-          planner: planner
-    """
+    """Something is up only when a topic or a service is there that nobody gives, or only somebody who starts later."""
     plan: StartPlan | None = None
     for node in architecture.nodes.values():
         if node.start is None or (node.start.ready.topic is None and node.start.ready.service is None):

@@ -24,27 +24,7 @@ _SHELL_OPTIONS = ("-c", "-lc", "-ic", "/c", "-Command")
 
 
 def idle_start(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A key of `start` has no effect where it stands.
-
-    Why: A node that a container loads has no process of its own that could be started again, or have a folder or a user. A
-    state is for lifecycle nodes, a delay for what is started again, and a longest time for what is waited for.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: {type: sensor_msgs/msg/Image, external: The recording}}}
-        nodes:
-          camera: {implements: camera, package: usb_cam, executable: usb_cam_node, start: {respawn_delay: 2 s}}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              camera: {outputs: {image: {type: sensor_msgs/msg/Image, external: The recording}}}
-        nodes:
-          camera: {implements: camera, package: usb_cam, executable: usb_cam_node, start: {respawn: true, respawn_delay: 2 s}}
-    """
+    """A key of `start` has no effect where it stands."""
     for node in architecture.nodes.values():
         if node.command and (node.executable or node.plugin):
             other = "executable" if node.executable else "plugin"
@@ -92,26 +72,7 @@ def _list_idle_keys(node: Node, start: StartUp) -> Iterator[tuple[str, str, str]
 
 
 def endless_once(architecture: Architecture) -> Iterator[Diagnostic]:
-    """What runs `once` never comes to its end.
-
-    Why: Everything that starts after it waits for that end.
-
-    Bad:
-        groups:
-          driving:
-            components:
-              calibration: {outputs: {offsets: {type: sensor_msgs/msg/Imu, external: The table}}, timing: {rate: 10 Hz}}
-        nodes:
-          calibration: {implements: calibration, start: {phase: core, once: true}}
-
-    Good:
-        groups:
-          driving:
-            components:
-              calibration: {outputs: {offsets: {type: sensor_msgs/msg/Imu, external: The table}}, timing: {behaviour: once}}
-        nodes:
-          calibration: {implements: calibration, start: {phase: core, once: true}}
-    """
+    """What runs `once` never comes to its end."""
     for node in architecture.nodes.values():
         reason = _find_endless_reason(node) if node.start and node.start.once else None
         if node.start and reason:
@@ -143,20 +104,7 @@ def _describe_endless_timing(timing: Timing) -> str | None:
 
 
 def indirect_command(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A command asks for another user's rights, or hands a line to a shell.
-
-    Why: A start-up that asks for a password stops there, and rights that are hidden in a command are seen by nobody: `user`
-    says them where the plan shows them. A line for a shell hides what is started, and its quotes and wildcards mean other things
-    on another computer.
-
-    Bad:
-        nodes:
-          can_bus: {kind: program, command: [sudo, ip, link, set, can0, up], start: {phase: network, once: true}}
-
-    Good:
-        nodes:
-          can_bus: {kind: program, command: [ip, link, set, can0, up], start: {phase: network, once: true, user: root}}
-    """
+    """A command asks for another user's rights, or hands a line to a shell."""
     for node in architecture.nodes.values():
         program = node.command[0].replace("\\", "/").rpartition("/")[2].removesuffix(".exe") if node.command else ""
         if program in _RIGHTS_PROGRAMS:

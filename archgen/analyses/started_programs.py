@@ -18,22 +18,7 @@ if TYPE_CHECKING:
 
 
 def shared_port(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Two programs on one host are to listen on the same port.
-
-    Why: The second one that starts finds the port taken and ends, or the first one is taken for the second one.
-
-    Bad:
-        nodes:
-          stage: {kind: program, command: [stage, home.world], host: sim_pc, start: {ready: {port: 6665}}}
-          registry: {kind: program, command: [registry], host: sim_pc, start: {ready: {port: 6665}}}
-        hosts: {sim_pc: {title: Simulation computer}}
-
-    Good:
-        nodes:
-          stage: {kind: program, command: [stage, home.world], host: sim_pc, start: {ready: {port: 6665}}}
-          registry: {kind: program, command: [registry], host: sim_pc, start: {ready: {port: 6666}}}
-        hosts: {sim_pc: {title: Simulation computer}}
-    """
+    """Two programs on one host are to listen on the same port."""
     first_nodes: dict[tuple[str | None, int], Node] = {}
     for node in architecture.nodes.values():
         port = node.start.ready.port if node.start else None
@@ -58,31 +43,7 @@ def _find_port_span(node: Node) -> Span:
 
 
 def unactivated_node(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A lifecycle node is started, and nobody says who activates it.
-
-    Why: A lifecycle node does nothing until it is configured and activated. It is asked as soon as the project says something
-    about its start-up.
-
-    Bad:
-        groups:
-          driving:
-            components:
-              map_server: {outputs: {map: nav_msgs/msg/OccupancyGrid}}
-              planner: {inputs: {map: map_server.map}}
-        nodes:
-          map_server: {implements: map_server, kind: lifecycle, start: {phase: core}}
-          planner: planner
-
-    Good:
-        groups:
-          driving:
-            components:
-              map_server: {outputs: {map: nav_msgs/msg/OccupancyGrid}}
-              planner: {inputs: {map: map_server.map}}
-        nodes:
-          map_server: {implements: map_server, kind: lifecycle, start: {phase: core, state: active}}
-          planner: planner
-    """
+    """A lifecycle node is started, and nobody says who activates it."""
     if not describes_start(architecture):
         return
     managers: dict[str, list[str]] = defaultdict(list)
@@ -103,21 +64,7 @@ def unactivated_node(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def unstarted_program(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A program has no command and no package, and nothing shows that it is up.
-
-    Why: Nobody can start it, and nobody can wait for it. A program that is started elsewhere (a cloud service, another team's
-    computer) says by what one sees that it is up: `ready`.
-
-    Bad:
-        nodes:
-          fleet_server: {kind: program}
-          logger: {kind: program, command: [logger], start: fleet_server}
-
-    Good:
-        nodes:
-          fleet_server: {kind: program, start: {ready: {port: 8080}}}
-          logger: {kind: program, command: [logger], start: fleet_server}
-    """
+    """A program has no command and no package, and nothing shows that it is up."""
     if not describes_start(architecture):
         return
     for node in architecture.nodes.values():

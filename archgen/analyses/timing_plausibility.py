@@ -20,63 +20,12 @@ _NS_PER_SECOND = 10**9
 
 
 def long_execution(architecture: Architecture, *, limit: Fraction) -> Iterator[Diagnostic]:
-    """An execution takes longer, at worst, than the period in which it is to be done.
-
-    Why: The next activation comes before the last one is done. On one core that cannot go on for long, whatever else
-    runs there; on several it can, where one execution may begin while another still runs. It is worth a second look:
-    mostly a unit is wrong, or the worst case is one of start-up.
-
-    Bad:
-        groups:
-          vision:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image}}
-              viewer: {inputs: {image: camera.image}, outputs: {light: {medium: physical, external: A person looks}}}
-        nodes:
-          camera: {implements: camera, host: pc, timing: {rate: 30 Hz, wcet: 80 ms}}
-          viewer: {implements: viewer, host: pc}
-        hosts: {pc: {cores: 4}}
-
-    Good:
-        groups:
-          vision:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image}}
-              viewer: {inputs: {image: camera.image}, outputs: {light: {medium: physical, external: A person looks}}}
-        nodes:
-          camera: {implements: camera, host: pc, timing: {rate: 30 Hz, wcet: 8 ms}}
-          viewer: {implements: viewer, host: pc}
-        hosts: {pc: {cores: 4}}
-    """
+    """An execution takes longer, at worst, than the period in which it is to be done."""
     yield from _find_above_period(architecture, ("wcet", "the worst case execution time"), "long-execution", limit)
 
 
 def large_jitter(architecture: Architecture, *, limit: Fraction) -> Iterator[Diagnostic]:
-    """An activation may come later than the period after which the next one is due.
-
-    Why: With a jitter above the period several activations may fall together, and queues must hold them. That happens
-    where samples come in bursts, from a network for instance; where a timer is meant, a unit may be wrong.
-
-    Bad:
-        groups:
-          vision:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image}}
-              viewer: {inputs: {image: camera.image}, outputs: {light: {medium: physical, external: A person looks}}}
-        nodes:
-          camera: {implements: camera, timing: {period: 40 ms, jitter: 60 ms, wcet: 2 ms}}
-          viewer: {implements: viewer}
-
-    Good:
-        groups:
-          vision:
-            components:
-              camera: {outputs: {image: sensor_msgs/msg/Image}}
-              viewer: {inputs: {image: camera.image}, outputs: {light: {medium: physical, external: A person looks}}}
-        nodes:
-          camera: {implements: camera, timing: {period: 40 ms, jitter: 6 ms, wcet: 2 ms}}
-          viewer: {implements: viewer}
-    """
+    """An activation may come later than the period after which the next one is due."""
     yield from _find_above_period(architecture, ("jitter", "the jitter"), "large-jitter", limit)
 
 

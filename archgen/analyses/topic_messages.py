@@ -11,35 +11,7 @@ from archgen.model.node import Endpoint
 
 
 def topic_type_conflict(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Several messages are named for one topic, service or action.
-
-    Why: under one name all nodes have to use one message. Those that use another one are never connected (ROS 2), or are
-    refused with an error when they meet (ROS 1).
-
-    Bad:
-
-        ros: {distro: jazzy}
-        groups: {sensing: {components: {camera: Camera with preview}}}
-        nodes:
-          camera:
-            implements: sensing.camera
-            internal: {publishes: {colour: {topic: /camera, message: sensor_msgs/msg/Image}}}
-          viewer:
-            implements: sensing.camera
-            internal: {subscribes: {colour: {topic: /camera, message: sensor_msgs/msg/CompressedImage}}}
-
-    Good:
-
-        ros: {distro: jazzy}
-        groups: {sensing: {components: {camera: Camera with preview}}}
-        nodes:
-          camera:
-            implements: sensing.camera
-            internal: {publishes: {colour: {topic: /camera, message: sensor_msgs/msg/Image}}}
-          viewer:
-            implements: sensing.camera
-            internal: {subscribes: {colour: {topic: /camera, message: sensor_msgs/msg/Image}}}
-    """
+    """Several messages are named for one topic, service or action."""
     for topic in architecture.topics.values():
         users = _first_user_by_message((*topic.writers, *topic.readers))
         if len(users) > 1:

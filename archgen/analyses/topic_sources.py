@@ -73,35 +73,7 @@ class _TopicUsers:
 
 
 def unnamed_source(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A topic that a component reads also carries an output that none of the component's inputs names.
-
-    Why: Who reads a topic receives all that is published there, from everybody. The design shows fewer sources than the
-    robot has: two publishers of one command topic are the usual case.
-
-    Bad:
-        groups:
-          driving:
-            components:
-              planner: {outputs: {command: geometry_msgs/msg/Twist}}
-              joystick: {outputs: {command: {type: geometry_msgs/msg/Twist, external: The operator's tablet}}}
-              base: {inputs: {command: planner.command}}
-        nodes:
-          planner: {implements: planner, publishes: {command: /cmd_vel}}
-          joystick: {implements: joystick, publishes: {command: /cmd_vel}}
-          base: {implements: base}
-
-    Good:
-        groups:
-          driving:
-            components:
-              planner: {outputs: {command: geometry_msgs/msg/Twist}}
-              joystick: {outputs: {command: geometry_msgs/msg/Twist}}
-              base: {inputs: {command: [planner.command, joystick.command]}}
-        nodes:
-          planner: {implements: planner, publishes: {command: /cmd_vel}}
-          joystick: {implements: joystick, publishes: {command: /cmd_vel}}
-          base: {implements: base}
-    """
+    """A topic that a component reads also carries an output that none of the component's inputs names."""
     topic_users = _TopicUsers(architecture)
     # Several nodes and ports of a component may read one topic: one finding for each component and topic.
     reported_pairs = set[tuple[str, str]]()
@@ -132,32 +104,7 @@ def unnamed_source(architecture: Architecture) -> Iterator[Diagnostic]:
 
 
 def unaccounted_topic(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A node uses a topic or service that no component's interface accounts for.
-
-    Why: Data flows on the robot that the design does not show, or a name is misspelt and nothing flows. A topic that a
-    reader writes must be one of its sources'. A topic in `internal` connects the nodes of one component; what comes from
-    another component is an input. Topics that all nodes share (`/tf`, `ros: {shared_topics: [...]}`) are left out.
-
-    Bad:
-        groups:
-          sensing:
-            components:
-              scanner: {outputs: {scan: sensor_msgs/msg/LaserScan}}
-              mapper: {inputs: {scan: scanner.scan}}
-        nodes:
-          scan_driver: {implements: scanner, publishes: {scan: /scan}}
-          mapper: {implements: mapper, subscribes: {scan: /scan_front}}
-
-    Good:
-        groups:
-          sensing:
-            components:
-              scanner: {outputs: {scan: sensor_msgs/msg/LaserScan}}
-              mapper: {inputs: {scan: scanner.scan}}
-        nodes:
-          scan_driver: {implements: scanner, publishes: {scan: /scan}}
-          mapper: {implements: mapper, subscribes: {scan: /scan}}
-    """
+    """A node uses a topic or service that no component's interface accounts for."""
     topic_users = _TopicUsers(architecture)
     for reader in topic_users.readers:
         if not architecture.nodes[reader.node].implements:

@@ -17,40 +17,7 @@ if TYPE_CHECKING:
 
 
 def endless_trigger(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
-    """Elements fire one another in a ring: an event that enters it circulates for ever.
-
-    Why: Each element of the ring runs whenever the one before it has published, and publishes in turn. The first event never
-    comes to rest; each further one is added, until a processor or a queue is full. One of the elements must run by a timer,
-    or only sample what comes back (`trigger`). Where nobody has written yet what fires an element, it is a warning.
-
-    Bad:
-        groups:
-          driving:
-            components:
-              remote: {outputs: {wish: geometry_msgs/msg/Twist}}
-              limiter:
-                inputs: {wish: remote.wish, state: motor.state}
-                outputs: {speed: geometry_msgs/msg/Twist}
-              motor: {inputs: {speed: limiter.speed}, outputs: {state: nav_msgs/msg/Odometry}}
-        nodes:
-          remote: {implements: remote, timing: {rate: 20 Hz}}
-          limiter: {implements: limiter, timing: {behaviour: event}}
-          motor: {implements: motor, timing: {behaviour: event}}
-
-    Good:
-        groups:
-          driving:
-            components:
-              remote: {outputs: {wish: geometry_msgs/msg/Twist}}
-              limiter:
-                inputs: {wish: remote.wish, state: motor.state}
-                outputs: {speed: geometry_msgs/msg/Twist}
-              motor: {inputs: {speed: limiter.speed}, outputs: {state: nav_msgs/msg/Odometry}}
-        nodes:
-          remote: {implements: remote, timing: {rate: 20 Hz}}
-          limiter: {implements: limiter, timing: {behaviour: event, trigger: [wish]}}
-          motor: {implements: motor, timing: {behaviour: event}}
-    """
+    """Elements fire one another in a ring: an event that enters it circulates for ever."""
     for ring in analysis.endless:
         members = [analysis.system.activities[name] for name in ring]
         # It is an error only if the behaviour of every member is written: an inferred one may be wrong. The finding is
@@ -74,39 +41,7 @@ def endless_trigger(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]
 
 
 def deadlocked_trigger(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
-    """Elements wait for all of several inputs, one of which never comes: they never run.
-
-    Why: An element with `trigger: all`, or with `match`, runs when each of its inputs has something new. Where one of them only
-    comes after it has run itself, or comes from nowhere, it waits for ever, and all behind it with it.
-
-    Bad:
-        groups:
-          driving:
-            components:
-              remote: {outputs: {wish: geometry_msgs/msg/Twist}}
-              limiter:
-                inputs: {wish: remote.wish, state: motor.state}
-                outputs: {speed: geometry_msgs/msg/Twist}
-              motor: {inputs: {speed: limiter.speed}, outputs: {state: nav_msgs/msg/Odometry}}
-        nodes:
-          remote: {implements: remote, timing: {rate: 20 Hz}}
-          limiter: {implements: limiter, timing: {trigger: all}}
-          motor: {implements: motor, timing: {behaviour: event}}
-
-    Good:
-        groups:
-          driving:
-            components:
-              remote: {outputs: {wish: geometry_msgs/msg/Twist}}
-              limiter:
-                inputs: {wish: remote.wish, state: motor.state}
-                outputs: {speed: geometry_msgs/msg/Twist}
-              motor: {inputs: {speed: limiter.speed}, outputs: {state: nav_msgs/msg/Odometry}}
-        nodes:
-          remote: {implements: remote, timing: {rate: 20 Hz}}
-          limiter: {implements: limiter, timing: {trigger: {all: [wish]}}}
-          motor: {implements: motor, timing: {behaviour: event}}
-    """
+    """Elements wait for all of several inputs, one of which never comes: they never run."""
     arriving_keys = _find_arriving_keys(analysis)
     for ring in analysis.deadlocked:
         members = [analysis.system.activities[name] for name in ring]

@@ -38,36 +38,7 @@ def _spans_by_type(architecture: Architecture) -> dict[str, list[Span]]:
 
 
 def unmapped_type(architecture: Architecture) -> Iterator[Diagnostic]:
-    """No message is named for a conceptual type that carries messages.
-
-    Why: outputs and inputs of this type cannot become topics yet: nobody has decided what is sent. A port that is no message
-    at all (a sound, a push, light) says `medium: physical` instead; one that does not travel over ROS says what it travels over, as in
-    `medium: mqtt`.
-
-    Bad:
-
-        groups:
-          perception:
-            components:
-              tracker: {outputs: {people: Tracked people}}
-              follower: {inputs: {people: tracker.people}}
-        nodes:
-          people_tracker: {implements: tracker}
-          people_follower: {implements: follower}
-
-    Good:
-
-        groups:
-          perception:
-            components:
-              tracker: {outputs: {people: Tracked people}}
-              follower: {inputs: {people: tracker.people}}
-        nodes:
-          people_tracker: {implements: tracker}
-          people_follower: {implements: follower}
-        types:
-          Tracked people: {message: vision_msgs/msg/Detection3DArray}
-    """
+    """No message is named for a conceptual type that carries messages."""
     for name, spans in _spans_by_type(architecture).items():
         type_ = architecture.types.get(name)
         # Why a type with fields has no message, or one that is not bound, is reported with the type.
@@ -98,38 +69,7 @@ def _suggest_mapping(type_name: str, architecture: Architecture) -> str:
 
 
 def unused_type(architecture: Architecture) -> Iterator[Diagnostic]:
-    """Nothing has a type that the project declares.
-
-    Why: the mapping is written for nobody: the port that had this type was renamed or taken away, or the name differs in a
-    letter. Types that stand in another one's `request`, `response` or `feedback`, or in its fields, are used.
-
-    Bad:
-
-        groups:
-          perception:
-            components:
-              camera: {outputs: {colour: Colour picture}}
-              screen: {inputs: {colour: camera.colour}}
-        nodes:
-          camera_driver: {implements: camera}
-          image_view: {implements: screen}
-        types:
-          Colour picture: {message: sensor_msgs/msg/Image}
-          Colour pictures: {message: sensor_msgs/msg/Image}
-
-    Good:
-
-        groups:
-          perception:
-            components:
-              camera: {outputs: {colour: Colour picture}}
-              screen: {inputs: {colour: camera.colour}}
-        nodes:
-          camera_driver: {implements: camera}
-          image_view: {implements: screen}
-        types:
-          Colour picture: {message: sensor_msgs/msg/Image}
-    """
+    """Nothing has a type that the project declares."""
     if architecture.partial:
         return
     # Physical ports count here: their types need no message, but they use the type.

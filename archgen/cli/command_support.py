@@ -17,6 +17,7 @@ from archgen.diagnostics.diagnostic import Diagnostic, Severity, sort_gravest_fi
 
 if TYPE_CHECKING:
     from archgen.diagnostics.source_span import SourceTexts
+    from archgen.model.architecture import Architecture
     from archgen.model.selector_evaluation import Selection
     from archgen.model.selector_parser import SelectorProblem
     from archgen.pipeline import CheckedProject, VersionCache
@@ -258,3 +259,24 @@ def make_progress_printer(label: str = "drawing") -> Callable[[int, int], None] 
         sys.stderr.flush()
 
     return show_progress
+
+
+def require_host(architecture: Architecture, host: str) -> None:
+    """Raise UsageError where a project has no host of this id."""
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.diagnostics.suggestions import did_you_mean
+
+    if host not in architecture.hosts:
+        known = f"the hosts are {', '.join(architecture.hosts)}" if architecture.hosts else "the project has no hosts"
+        raise click.UsageError(
+            make_visible(f"there is no host '{host}'; {did_you_mean(host, architecture.hosts) or known}")
+        )
+
+
+def settle_problems(problems: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
+    """Return what is wrong with files that are no part of the project, with the severities of the rules."""
+    from archgen.diagnostics.diagnostic import settle_diagnostics
+    from archgen.findings.rule_table import index_rules
+    from archgen.pipeline import ALL_RULES
+
+    return settle_diagnostics(problems, index_rules(ALL_RULES), {})

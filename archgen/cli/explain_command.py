@@ -37,7 +37,7 @@ def command(rule: str | None, distro: str | None) -> None:
     rules = index_rules((*pipeline.ALL_RULES, *COMPARISON_RULES, *GENERATION_RULES))
     width = find_width(sys.stdout)
     if rule is None:
-        rows = ((name, str(each.severity), rule_pages.parse_rule_page(each).summary) for name, each in rules.items())
+        rows = ((name, str(each.severity), rule_pages.summarise_rule(each)) for name, each in rules.items())
         for line in align_rows(rows, width, indent=""):
             click.echo(line)
     elif rule in rules:

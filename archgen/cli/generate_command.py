@@ -11,7 +11,6 @@ import click
 from archgen.cli import command_support, shared_options
 
 if TYPE_CHECKING:
-    from archgen.model.architecture import Architecture
     from archgen.products.workspace_product import WorkspaceResult
     from archgen.views.pages.report_outline import DetailLevel
 
@@ -71,7 +70,7 @@ def command(  # noqa: PLR0913 - one for each option
 
     checked_project = command_support.check_before_writing(project, keep_going=keep_going)
     if host is not None:
-        _require_host(checked_project.architecture, host)
+        command_support.require_host(checked_project.architecture, host)
     output_options = OutputOptions(
         command_support.select_or_exit(checked_project, select),
         select or "",
@@ -100,17 +99,6 @@ def _read_settings(settings: tuple[str, ...]) -> dict[str, str]:
             raise click.UsageError(msg)
         values[key.strip()] = value.strip()
     return values
-
-
-def _require_host(architecture: Architecture, host: str) -> None:
-    from archgen.diagnostics.safe_text import make_visible
-    from archgen.diagnostics.suggestions import did_you_mean
-
-    if host not in architecture.hosts:
-        known = f"the hosts are {', '.join(architecture.hosts)}" if architecture.hosts else "the project has no hosts"
-        raise click.UsageError(
-            make_visible(f"there is no host '{host}'; {did_you_mean(host, architecture.hosts) or known}")
-        )
 
 
 def _print_result(result: WorkspaceResult, *, dry_run: bool) -> None:

@@ -14,7 +14,6 @@ from archgen.diagnostics.safe_text import format_json, make_visible
 from archgen.diagnostics.text_columns import find_width, wrap_line
 
 if TYPE_CHECKING:
-    from archgen.diagnostics.diagnostic import Diagnostic
     from archgen.edit.measured_slice import MeasuredSlice
     from archgen.importers.recordings.recorded_names import RecordedNames
     from archgen.importers.recordings.recording_import import ReadRecordings
@@ -37,24 +36,9 @@ def answer_recordings(
 
     `architecture` is the project's with the figures of `--set`. Ends with status 1 where something could not be used.
     """
-    from archgen.importers.recordings.recorded_names import RecordedNames
-    from archgen.timing.chains.chain_bounds import bound_all_chains
-    from archgen.timing.chains.measured_comparison import compare_measured
-    from archgen.timing.run_analysis import analyse_architecture
-
     if slice_path is not None:
         _refuse_target(checked_project, slice_path)
-    analysis = analyse_architecture(architecture)
-    chains = bound_all_chains(analysis, architecture)
-    recordings = _read_recordings(paths, RecordedNames(architecture, analysis.system, chains))
-    # So that excerpts below can show the lines of these files too.
-    for file, text in recordings.texts:
-        checked_project.sources.add_text(file, text)
-    comparisons, unknown = compare_measured(analysis, recordings.observations, chains)
-    problems = _settle_problems((*recordings.diagnostics, *unknown))
-    if problems:
-        command_support.print_findings(problems, checked_project, sys.stderr)
-    has_errors = bool(command_support.exit_status(problems))
+    recordings, comparisons, has_errors = _compare_recordings(checked_project, architecture, paths)
     measured_slice = None
     if slice_path is not None:
         _refuse_errors(checked_project, has_errors=has_errors)
@@ -68,23 +52,32 @@ def answer_recordings(
 
 def read_recorded_files(checked_project: CheckedProject, paths: Sequence[Path]) -> tuple[Observation, ...]:
     """Return what recordings say; what is wrong with them is printed. Ends with status 1 where something cannot be used."""
+    recordings, _, has_errors = _compare_recordings(checked_project, checked_project.architecture, paths)
+    if has_errors:
+        raise click.exceptions.Exit(1)
+    return recordings.observations
+
+
+def _compare_recordings(
+    checked_project: CheckedProject, architecture: Architecture, paths: Sequence[Path]
+) -> tuple[ReadRecordings, tuple[MeasuredComparison, ...], bool]:
+    """Read recordings and hold them against the design; print what is wrong with them, and return whether that is an error."""
     from archgen.importers.recordings.recorded_names import RecordedNames
     from archgen.timing.chains.chain_bounds import bound_all_chains
     from archgen.timing.chains.measured_comparison import compare_measured
     from archgen.timing.run_analysis import analyse_architecture
 
-    analysis = analyse_architecture(checked_project.architecture)
-    chains = bound_all_chains(analysis, checked_project.architecture)
-    recordings = _read_recordings(paths, RecordedNames(checked_project.architecture, analysis.system, chains))
+    analysis = analyse_architecture(architecture)
+    chains = bound_all_chains(analysis, architecture)
+    recordings = _read_recordings(paths, RecordedNames(architecture, analysis.system, chains))
+    # So that excerpts below can show the lines of these files too.
     for file, text in recordings.texts:
         checked_project.sources.add_text(file, text)
-    _, unknown = compare_measured(analysis, recordings.observations, chains)
-    problems = _settle_problems((*recordings.diagnostics, *unknown))
+    comparisons, unknown = compare_measured(analysis, recordings.observations, chains)
+    problems = command_support.settle_problems((*recordings.diagnostics, *unknown))
     if problems:
         command_support.print_findings(problems, checked_project, sys.stderr)
-    if command_support.exit_status(problems):
-        raise click.exceptions.Exit(1)
-    return recordings.observations
+    return recordings, comparisons, bool(command_support.exit_status(problems))
 
 
 def _read_recordings(paths: Sequence[Path], names: RecordedNames) -> ReadRecordings:
@@ -96,14 +89,6 @@ def _read_recordings(paths: Sequence[Path], names: RecordedNames) -> ReadRecordi
             return read_recordings(paths, names)
         except RecordingRefusedError as error:
             raise click.UsageError(make_visible(str(error))) from None
-
-
-def _settle_problems(problems: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
-    from archgen.diagnostics.diagnostic import settle_diagnostics
-    from archgen.findings.rule_table import index_rules
-    from archgen.pipeline import ALL_RULES
-
-    return settle_diagnostics(problems, index_rules(ALL_RULES), {})
 
 
 def _print_answer(

@@ -105,18 +105,12 @@ def _make_slice(checked_project: CheckedProject, imported: ImportedRequirements,
     sections = {"use_cases": imported.use_cases, "requirements": imported.requirements}
     requirement_slice = make_requirement_slice(checked_project, sections, target.relative_to(root).as_posix())
     if requirement_slice.errors:
-        command_support.print_findings(_settle_errors(requirement_slice.errors), checked_project, sys.stderr)
+        command_support.print_findings(
+            command_support.settle_problems(requirement_slice.errors), checked_project, sys.stderr
+        )
         click.echo("Nothing was written: these errors stand in the slice, or would come with it.", err=True)
         raise click.exceptions.Exit(1)
     return requirement_slice
-
-
-def _settle_errors(errors: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
-    from archgen.diagnostics.diagnostic import settle_diagnostics
-    from archgen.findings.rule_table import index_rules
-    from archgen.pipeline import ALL_RULES
-
-    return settle_diagnostics(errors, index_rules(ALL_RULES), {})
 
 
 def _find_target(checked_project: CheckedProject, into: Path | None) -> Path:

@@ -5,15 +5,11 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from archgen.cli import command_support, shared_options
 from archgen.diagnostics.diagnostic import Severity
-
-if TYPE_CHECKING:
-    from archgen.model.architecture import Architecture
 
 
 @click.command("start")
@@ -34,7 +30,7 @@ def command(project: Path | None, host: str | None, form: str) -> None:
     command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
     architecture = checked_project.architecture
     if host is not None:
-        _require_host(architecture, host)
+        command_support.require_host(architecture, host)
     plan = make_start_plan(architecture)
     shown_ids = None if host is None else {step.id for step in plan.steps if step.host == host}
     if form == "json":
@@ -43,14 +39,3 @@ def command(project: Path | None, host: str | None, form: str) -> None:
         # Not wrapped: commands are there to be copied.
         sys.stdout.writelines(f"{line}\n" for line in format_plan(architecture.project.title, plan, shown_ids))
     command_support.exit_by_findings(checked_project)
-
-
-def _require_host(architecture: Architecture, host: str) -> None:
-    from archgen.diagnostics.safe_text import make_visible
-    from archgen.diagnostics.suggestions import did_you_mean
-
-    if host not in architecture.hosts:
-        known = f"the hosts are {', '.join(architecture.hosts)}" if architecture.hosts else "the project has no hosts"
-        raise click.UsageError(
-            make_visible(f"there is no host '{host}'; {did_you_mean(host, architecture.hosts) or known}")
-        )

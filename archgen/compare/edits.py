@@ -22,7 +22,6 @@ from archgen.frozen import dataclass
 from archgen.model.review_settings import BREAK_CATEGORIES, BreakCategory
 
 EditKind = Literal[ChangeKind, "split", "merged", "copied"]
-_NUMBERED_KINDS = frozenset({"requirement", "use_case"})
 _MAX_PAIRS = 6
 """How many old and new ids one sentence names."""
 

@@ -97,9 +97,10 @@ class Diagnostic:
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """A kind of finding: its name, its default severity, its page.
+    """A kind of finding: its name, its default severity, what it finds.
 
-    `doc` is Markdown: a summary sentence, then the sections `Why`, `Bad` and `Good` (see CONTRIBUTING.md). `fixed`
+    `doc` is one sentence: the page of a rule is docs/rules/NAME.md, which is read where it is shown. A rule of another
+    package has no page there, and may have all of it in `doc`: the sentence, then `Why:`, `Bad:` and `Good:`. `fixed`
     rules (reading and linking) cannot be ignored or switched off: all later stages rely on them.
     """
 
@@ -115,9 +116,9 @@ class Rule:
     def from_function(
         cls, function: Callable[..., object], severity: Severity, options: tuple[RuleOption, ...] = ()
     ) -> Rule:
-        """Make a rule from the function that implements it: its name and page are the function's name and docstring."""
-        page = inspect.cleandoc(function.__doc__ or "")
-        return cls(function.__name__.replace("_", "-"), severity, page, options=options)
+        """Make a rule from the function that implements it: `doc` is the function's docstring."""
+        doc = inspect.cleandoc(function.__doc__ or "")
+        return cls(function.__name__.replace("_", "-"), severity, doc, options=options)
 
 
 def diagnose_repetition(  # noqa: PLR0913 - what a diagnostic has

@@ -14,6 +14,8 @@ import re
 from collections import Counter, defaultdict, deque
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
+from archgen.diagnostics.safe_text import replace_surrogates
+
 if TYPE_CHECKING:
     from collections.abc import Hashable, Iterable, Iterator, Sequence
 
@@ -107,15 +109,8 @@ def match_findings(
 
 
 def _make_identity(rule: str, element: str, message: str) -> FindingIdentity:
-    return FindingIdentity(rule, _storable_text(element), _message_subject(_storable_text(message)))
-
-
-def _storable_text(text: str) -> str:
-    """Return a text as it comes back from a UTF-8 file: lone surrogates are replaced by question marks.
-
-    Otherwise the identity of a new finding would differ from that of the same finding in a baseline.
-    """
-    return text.encode("utf-8", "replace").decode("utf-8")
+    # Otherwise the identity of a new finding would differ from that of the same finding in a baseline.
+    return FindingIdentity(rule, replace_surrogates(element), _message_subject(replace_surrogates(message)))
 
 
 def _message_subject(message: str) -> str:

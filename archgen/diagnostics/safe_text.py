@@ -65,3 +65,8 @@ def _character_width(character: str) -> int:
     if character in _JOINERS or unicodedata.category(character) in {"Mn", "Me"}:
         return 0
     return 2 if unicodedata.east_asian_width(character) in "WF" else 1
+
+
+def replace_surrogates(text: str) -> str:
+    """Return a text as it comes back from a UTF-8 file, and as YAML can hold it: lone surrogates become `?`."""
+    return text.encode("utf-8", "replace").decode("utf-8")

@@ -86,6 +86,15 @@ def align_rows(rows: Iterable[TextRow], width: int | None = None, indent: str = 
         yield from _align_row(row, widths[: len(row) - 1], width, indent)
 
 
+def format_section(title: str, rows: Iterable[TextRow], width: int | None = None) -> Iterator[str]:
+    """Yield rows in aligned columns below a title, with an empty line behind them; nothing where there are no rows."""
+    section_rows = list(rows)
+    if section_rows:
+        yield title
+        yield from align_rows(section_rows, width)
+        yield ""
+
+
 def _align_row(row: list[str], widths: list[int], width: int | None, indent: str) -> Iterator[str]:
     used = len(indent) + sum(each + len(_GAP) for each in widths)
     last_width = measure_width(row[-1]) if width is None else width - used

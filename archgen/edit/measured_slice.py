@@ -24,8 +24,6 @@ from archgen.syntax.yaml_tree import node_to_data
 from archgen.syntax.yaml_writer import write_yaml
 from archgen.timing.chains.measured_comparison import Observation
 
-MEASURED_FILE = "measured.yaml"
-
 
 @dataclass(frozen=True, slots=True)
 class MeasuredSlice:

@@ -15,10 +15,7 @@ from archgen.diagnostics.source_span import Span
 BACKEND_ERROR_RULE = Rule(
     "backend-error",
     Severity.ERROR,
-    "A backend of the project cannot be read, or one of its templates fails.\n\n"
-    "Why: a backend is a folder in `backends/` with a manifest `backend.yaml` and templates. Where the manifest does not "
-    "follow its schema, a template names something that does not exist, or needs more time, memory or output than it may "
-    "have, nothing is written for this backend; all other outputs are made.",
+    "A backend of the project cannot be read, or one of its templates fails.",
     fixed=True,
 )
 BACKEND_MANIFEST = "backend.yaml"

@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from archgen.emit import file_tree
 from archgen.emit.picture import Picture
 from archgen.emit.site import page_pictures as drawing
+from archgen.views.shapes import split_anchor
 
 _FOLDER_BY_KIND = {"group": "groups", "component": "components", "view": "views", "chain": "chains", "host": "load"}
 """The folder of an element's picture, by the kind of element."""
@@ -36,7 +37,7 @@ def _picture_bytes(picture: Picture, format_name: str, pictures: Mapping[str, Pi
     prefix = "../" * picture.id.count("/")
 
     def href(anchor: str) -> str | None:
-        kind, _, name = anchor.partition(":")
+        kind, name = split_anchor(anchor)
         target = f"{_FOLDER_BY_KIND.get(kind, kind)}/{name}"
         return f"{prefix}{target}.svg" if target in pictures and target != picture.id else None
 

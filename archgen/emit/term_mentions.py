@@ -7,7 +7,9 @@ from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from typing import NamedTuple
 
-TERM_ANCHOR = "term:"
+from archgen.views.shapes import split_anchor
+
+TERM_KIND = "term"
 """Begins the anchors of terms."""
 
 
@@ -39,7 +41,7 @@ class MentionFinder:
 
 def begin_text(anchors: Iterable[str]) -> MentionFinder | None:
     """Return a finder for one text, of the terms among all anchors of a document; None where there is no term."""
-    term_anchors = tuple(anchor for anchor in anchors if anchor.startswith(TERM_ANCHOR))
+    term_anchors = tuple(anchor for anchor in anchors if split_anchor(anchor)[0] == TERM_KIND)
     if not term_anchors:
         return None
     # The longest first: `fallen object` is not `object`.
@@ -49,7 +51,7 @@ def begin_text(anchors: Iterable[str]) -> MentionFinder | None:
 
 @lru_cache(4)
 def _compile_terms(anchors: tuple[str, ...]) -> re.Pattern[str]:
-    terms = "|".join(f"({_write_pattern(anchor.removeprefix(TERM_ANCHOR))})" for anchor in anchors)
+    terms = "|".join(f"({_write_pattern(split_anchor(anchor)[1])})" for anchor in anchors)
     return re.compile(rf"(?<!\w)(?:{terms})(?!\w)")
 
 

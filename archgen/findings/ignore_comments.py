@@ -38,36 +38,7 @@ LineSet = frozenset[tuple[str, int]]
 UNUSED_IGNORE = Rule(
     "unused-ignore",
     Severity.WARNING,
-    """\
-A comment says to ignore a finding that is not there.
-
-Why: The fault was mended and the comment forgotten, or the comment stands in the wrong line. It stands at the end of the line
-that the finding points at, or of the first line of its element. It would hide the next finding of this kind. Rules about
-reading and linking cannot be ignored.
-
-Bad:
-    groups:
-      sensing:
-        components:
-          camera: {outputs: {image: sensor_msgs/msg/Image}}  # archgen: ignore[unread-output] the screen comes later
-          screen: {inputs: {image: camera.image}}
-    nodes:
-      camera: {implements: camera}
-      screen: {implements: screen}
-
-Good:
-    groups:
-      sensing:
-        components:
-          camera:
-            outputs:
-              image: sensor_msgs/msg/Image
-              depth: sensor_msgs/msg/Image  # archgen: ignore[unread-output] the picking arm comes next year
-          screen: {inputs: {image: camera.image}}
-    nodes:
-      camera: {implements: camera}
-      screen: {implements: screen}
-""",
+    "A comment says to ignore a finding that is not there.",
 )
 
 

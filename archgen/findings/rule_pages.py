@@ -1,5 +1,5 @@
 """A rule's page, for the terminal and as Markdown: what it reports, why, and an example that is reported and one that
-is not.
+is not. Those of archgen's own rules are docs/rules/NAME.md; that of a rule of another package is its docstring.
 """
 
 from __future__ import annotations
@@ -8,6 +8,7 @@ import re
 import textwrap
 from typing import TYPE_CHECKING, NamedTuple
 
+from archgen import resources
 from archgen.diagnostics.text_columns import wrap_line
 
 if TYPE_CHECKING:
@@ -16,7 +17,10 @@ if TYPE_CHECKING:
     from archgen.diagnostics.diagnostic import Rule
 
 _TEXT_WIDTH = 100
-_SECTION_PATTERN = re.compile(r"^(Why|Bad|Good):[ ]?", re.MULTILINE)
+_SECTION_PATTERN = re.compile(
+    r"^(Why:|Bad:|Good:|## (?:Why|Options|Reported|Not reported|To change it)$)", re.MULTILINE
+)
+"""Where a section begins, in a docstring and in Markdown."""
 
 
 class RulePage(NamedTuple):
@@ -28,22 +32,28 @@ class RulePage(NamedTuple):
     good: str
 
 
-def parse_rule_page(rule: Rule) -> RulePage:
-    """Split a rule's page into its parts."""
-    # The pattern has a group, so that names and texts of the sections alternate in the result.
-    summary, *section_parts = _SECTION_PATTERN.split(rule.doc)
+def summarise_rule(rule: Rule) -> str:
+    """Return the sentence that says what a rule finds; its page is not read for that."""
+    return " ".join(_SECTION_PATTERN.split(rule.doc, maxsplit=1)[0].split())
+
+
+def read_rule_page(rule: Rule) -> RulePage:
+    """Read a rule's page and split it into its parts."""
+    path = resources.resource_path("docs", "rules", f"{rule.name}.md")
+    page = path.read_text(encoding="utf-8") if path.is_file() else rule.doc
+    # The pattern has a group, so that headings and texts of the sections alternate in the result.
+    _, *section_parts = _SECTION_PATTERN.split(page)
     sections = dict(zip(section_parts[::2], section_parts[1::2], strict=True))
-    return RulePage(
-        " ".join(summary.split()),
-        sections.get("Why", "").strip(),
-        _dedent_example(sections.get("Bad", "")),
-        _dedent_example(sections.get("Good", "")),
+    why, bad, good = (
+        sections.get(in_docstring) or sections.get(in_markdown, "")
+        for in_docstring, in_markdown in (("Why:", "## Why"), ("Bad:", "## Reported"), ("Good:", "## Not reported"))
     )
+    return RulePage(summarise_rule(rule), why.strip(), _read_example(bad), _read_example(good))
 
 
 def format_rule_page(rule: Rule, *, colour: bool = False, width: int | None = None) -> str:
     """Return a rule's page as text for a terminal; examples keep their lines."""
-    rule_page = parse_rule_page(rule)
+    rule_page = read_rule_page(rule)
     bold = ("\x1b[1m", "\x1b[0m") if colour else ("", "")
     text_width = min(width or _TEXT_WIDTH, _TEXT_WIDTH)
     prose = (
@@ -63,7 +73,7 @@ def format_rule_page(rule: Rule, *, colour: bool = False, width: int | None = No
 
 def rule_page_to_markdown(rule: Rule) -> str:
     """Return a rule's page as Markdown."""
-    rule_page = parse_rule_page(rule)
+    rule_page = read_rule_page(rule)
     blocks = [
         f"# {rule.name}",
         rule_page.summary,
@@ -90,7 +100,7 @@ def rule_page_to_markdown(rule: Rule) -> str:
 def format_rule_index(rules: Mapping[str, Rule]) -> str:
     """Return the list of all rules' pages as Markdown."""
     lines = [
-        f"| [{rule.name}]({rule.name}.md) | {_describe_severity(rule)} | {_escape_cell(parse_rule_page(rule).summary)} |"
+        f"| [{rule.name}]({rule.name}.md) | {_describe_severity(rule)} | {_escape_cell(summarise_rule(rule))} |"
         for rule in rules.values()
     ]
     head = ["# Rules", "", "What archgen reports. `archgen explain NAME` shows a rule's page in the terminal.", ""]
@@ -109,9 +119,11 @@ def _describe_severity(rule: Rule) -> str:
     return f"{rule.severity}, cannot be changed" if rule.fixed else str(rule.severity)
 
 
-def _dedent_example(text: str) -> str:
-    """Remove the indentation of an example."""
+def _read_example(text: str) -> str:
+    """Remove what sets an example off: indentation in a docstring, fences in Markdown."""
     lines = text.strip("\n").rstrip().splitlines()
+    if lines and lines[0].startswith("```"):
+        lines = lines[1:-1]
     indent = min((len(line) - len(line.lstrip()) for line in lines if line.strip()), default=0)
     return "\n".join(line[indent:] for line in lines)
 

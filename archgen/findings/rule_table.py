@@ -28,34 +28,7 @@ def index_rules(rules: Iterable[Rule]) -> Mapping[str, Rule]:
 UNKNOWN_RULE = Rule(
     "unknown-rule",
     Severity.WARNING,
-    """\
-A setting or an ignore comment names a rule that does not exist, or one that cannot be set.
-
-Why: The setting does nothing, and the finding that it was meant for goes on (or is missed). Rules about reading and linking
-are always errors: what comes after them rests on them.
-
-Bad:
-    groups:
-      sensing:
-        components:
-          camera: {outputs: {image: sensor_msgs/msg/Image}}
-          screen: {inputs: {image: camera.image}}
-    nodes:
-      camera: {implements: camera}
-      screen: {implements: screen}
-    rules: {unread-outputs: off}
-
-Good:
-    groups:
-      sensing:
-        components:
-          camera: {outputs: {image: sensor_msgs/msg/Image}}
-          screen: {inputs: {image: camera.image}}
-    nodes:
-      camera: {implements: camera}
-      screen: {implements: screen}
-    rules: {unread-output: off}
-""",
+    "A setting or an ignore comment names a rule that does not exist, or one that cannot be set.",
 )
 
 

@@ -16,46 +16,7 @@ from archgen.syntax.project_files import ProjectFiles
 MISSING_PICTURE = Rule(
     "missing-picture",
     Severity.WARNING,
-    """\
-A chapter of the report shows a picture that is not there.
-
-Why: Report and site show a remark in its place. The path of a picture begins at the folder of its chapter, and stays within the
-project's folder.
-
-Bad:
-
-    # file: archgen.yaml
-    archgen: 1
-    report: {chapters: [introduction.md, groups]}
-    groups:
-      sensing:
-        components:
-          camera: {outputs: {image: {type: sensor_msgs/msg/Image, external: The operator's tablet}}}
-    nodes:
-      camera: {implements: camera}
-    # file: introduction.md
-    # Introduction
-
-    ![The robot from the left](robot.png)
-
-Good:
-
-    # file: archgen.yaml
-    archgen: 1
-    report: {chapters: [introduction.md, groups]}
-    groups:
-      sensing:
-        components:
-          camera: {outputs: {image: {type: sensor_msgs/msg/Image, external: The operator's tablet}}}
-    nodes:
-      camera: {implements: camera}
-    # file: introduction.md
-    # Introduction
-
-    ![The robot from the left](robot.svg)
-    # file: robot.svg
-    <svg xmlns="http://www.w3.org/2000/svg" width="20" height="20"><circle cx="10" cy="10" r="9"/></svg>
-""",
+    "A chapter of the report shows a picture that is not there.",
     # A chapter has no comments of YAML that could silence a line.
     setting="rules: {missing-picture: note}  # off, note, warning or error",
 )

@@ -25,46 +25,7 @@ from archgen.syntax.yaml_tree import MappingNode
 WRONG_HINT = Rule(
     "wrong-hint",
     Severity.ERROR,
-    """\
-A hint is not what the backend that it is for reads.
-
-Why: hints are data for other programs, and mean nothing to archgen. A backend says in its `backend.yaml`, below `hints_schema`, which
-hints it reads, for each kind of element: a slip is found where it is written, and not in what is generated from it.
-
-Bad:
-
-    # file: archgen.yaml
-    archgen: 1
-    groups:
-      driving:
-        components:
-          motor: {functionality: Turns the wheel., hints: {firmware: {pins: A4}}}
-    nodes: {motor: {implements: motor}}
-    # file: backends/firmware/backend.yaml
-    id: firmware
-    title: Firmware
-    emitter: text
-    view: record
-    hints_schema:
-      component: {type: object, additionalProperties: false, properties: {pin: {type: string}}}
-
-Good:
-
-    # file: archgen.yaml
-    archgen: 1
-    groups:
-      driving:
-        components:
-          motor: {functionality: Turns the wheel., hints: {firmware: {pin: A4}}}
-    nodes: {motor: {implements: motor}}
-    # file: backends/firmware/backend.yaml
-    id: firmware
-    title: Firmware
-    emitter: text
-    view: record
-    hints_schema:
-      component: {type: object, additionalProperties: false, properties: {pin: {type: string}}}
-""",
+    "A hint is not what the backend that it is for reads.",
 )
 _MAX_MANIFEST_LETTERS = 65_536
 _ANY_KIND = "any"

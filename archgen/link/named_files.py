@@ -17,38 +17,7 @@ from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 MISSING_FILE = Rule(
     "missing-file",
     Severity.WARNING,
-    """\
-An element names a document or a picture that is not in the project.
-
-Why: Readers of the report and the site would look for it in vain. The path of a document in `urls`, and that of a picture in
-`image`, begins at the project's folder and stays within it. A picture is a PNG, JPEG, SVG, GIF or WebP file of at most 16 MiB.
-
-Bad:
-
-    # file: archgen.yaml
-    archgen: 1
-    groups:
-      driving:
-        components:
-          motor:
-            functionality: Turns the wheel.
-            outputs: {speed: {type: std_msgs/msg/Float32, external: the ground, urls: {bus: motor.dbc}}}
-    nodes: {motor: {implements: motor}}
-
-Good:
-
-    # file: archgen.yaml
-    archgen: 1
-    groups:
-      driving:
-        components:
-          motor:
-            functionality: Turns the wheel.
-            outputs: {speed: {type: std_msgs/msg/Float32, external: the ground, urls: {bus: interfaces/motor.dbc}}}
-    nodes: {motor: {implements: motor}}
-    # file: interfaces/motor.dbc
-    VERSION ""
-""",
+    "An element names a document or a picture that is not in the project.",
 )
 _PICTURE_ENDINGS = (".png", ".jpg", ".jpeg", ".svg", ".gif", ".webp")
 

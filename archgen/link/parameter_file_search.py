@@ -15,43 +15,7 @@ from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 MISSING_PARAMETER_FILE = Rule(
     "missing-parameter-file",
     Severity.OFF,
-    """\
-A parameter file that a node names is not there.
-
-Why: The node would not start, or run with its defaults. The rule is off unless the project asks for it, since many files are
-written or installed only on the robot. A path is looked for below the project's folder, beside the file that
-names it, and in the folder of the node's `package`. Where the project holds neither that package nor the path's first folder,
-the file is the package's affair, and nobody looks. What begins with `/`, `~`, `..`, `$(...)` or `package://` is not looked
-for, nor is what a project of one file names.
-
-Bad:
-
-    # file: archgen.yaml
-    archgen: 1
-    rules: {missing-parameter-file: warning}
-    groups:
-      sensing:
-        components:
-          camera: {outputs: {image: {type: sensor_msgs/msg/Image, external: The operator's tablet}}}
-    nodes:
-      camera: {implements: camera, parameter_files: [config/camera.yml]}
-    # file: config/camera.yaml
-    camera: {ros__parameters: {exposure: 20}}
-
-Good:
-
-    # file: archgen.yaml
-    archgen: 1
-    rules: {missing-parameter-file: warning}
-    groups:
-      sensing:
-        components:
-          camera: {outputs: {image: {type: sensor_msgs/msg/Image, external: The operator's tablet}}}
-    nodes:
-      camera: {implements: camera, parameter_files: [config/camera.yaml]}
-    # file: config/camera.yaml
-    camera: {ros__parameters: {exposure: 20}}
-""",
+    "A parameter file that a node names is not there.",
 )
 _ELSEWHERE = re.compile(r"[/~$\\]|\.\.(/|\Z)|\w+:")
 """How the path of a file begins that does not lie in the project, or whose place only the robot knows."""

@@ -24,35 +24,7 @@ from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode
 MISSING_CHAPTER = Rule(
     "missing-chapter",
     Severity.ERROR,
-    """\
-The report asks for a chapter that is neither one that archgen writes nor a file of the project.
-
-Why: The document would lack what its readers were promised. archgen writes the chapters overview, groups, variants, deployment,
-timing, chains, views, types, connections, requirements, open_points and statistics; every other entry of `report.chapters` is the
-path of a CommonMark file inside the project's folder.
-
-Bad:
-    report: {chapters: [group, connections]}
-    groups:
-      sensing:
-        components:
-          camera: {outputs: {image: sensor_msgs/msg/Image}}
-          screen: {inputs: {image: camera.image}}
-    nodes:
-      camera: {implements: camera}
-      screen: {implements: screen}
-
-Good:
-    report: {chapters: [groups, connections]}
-    groups:
-      sensing:
-        components:
-          camera: {outputs: {image: sensor_msgs/msg/Image}}
-          screen: {inputs: {image: camera.image}}
-    nodes:
-      camera: {implements: camera}
-      screen: {implements: screen}
-""",
+    "The report asks for a chapter that is neither one that archgen writes nor a file of the project.",
     fixed=True,
 )
 

@@ -241,61 +241,13 @@ RULES: tuple[Rule, ...] = (
     Rule(
         "conflicting-values",
         Severity.ERROR,
-        """One value is written in two places of the project.
-
-Why: two files that say the same today say different things tomorrow. Each value has one home.
-
-Bad:
-
-    groups:
-      sensing:
-        title: Sensing
-        components:
-          camera:
-            performance:
-              accuracy: 90 %
-              overall: {accuracy: 95 %}
-    nodes: {camera: {implements: sensing.camera}}
-
-Good:
-
-    groups:
-      sensing:
-        title: Sensing
-        components:
-          camera:
-            performance: {accuracy: 90 %}
-    nodes: {camera: {implements: sensing.camera}}
-""",
+        "One value is written in two places of the project.",
         fixed=True,
     ),
     Rule(
         "undeclared-element",
         Severity.ERROR,
-        """A file adds to a component or a group that no file declares.
-
-Why: files with timing, requirements or tags refer to components by their ids. A slip in such an id would make a second
-component, and the first would stay without its timing.
-
-Bad:
-
-    groups:
-      sensing:
-        title: Sensing
-        components:
-          camera: Camera
-          camra: {timing: {rate: 10 Hz}}
-    nodes: {camera: {implements: sensing.camera}}
-
-Good:
-
-    groups:
-      sensing:
-        title: Sensing
-        components:
-          camera: {title: Camera, timing: {rate: 10 Hz}}
-    nodes: {camera: {implements: sensing.camera}}
-""",
+        "A file adds to a component or a group that no file declares.",
         fixed=True,
     ),
 )

@@ -14,36 +14,7 @@ from archgen.syntax.project_files import ProjectFiles
 MISSING_VERIFICATION = Rule(
     "missing-verification",
     Severity.WARNING,
-    """\
-What is to verify a requirement is not there.
-
-Why: A requirement that a test verifies counts as verified; a test that nobody can run shows nothing. In `verified_by` a word
-is a use case, else a chain, else the path of a file from the project's folder, or from that of the file that names it;
-behind `::` stands the name of a test in the file. What holds a blank is a sentence, and nobody looks for it. Of a project of
-one file only words are looked for that cannot be a path: its files lie elsewhere.
-
-Bad:
-
-    use_cases: {UC-1: The operator drives through a door}
-    requirements:
-      R-1: {title: The operator sees what the robot sees, verified_by: UC-2}
-    groups:
-      sensing:
-        components:
-          camera: {requirements: [R-1], outputs: {image: {type: sensor_msgs/msg/Image, external: The operator's tablet}}}
-    nodes: {camera: camera}
-
-Good:
-
-    use_cases: {UC-1: The operator drives through a door}
-    requirements:
-      R-1: {title: The operator sees what the robot sees, verified_by: UC-1}
-    groups:
-      sensing:
-        components:
-          camera: {requirements: [R-1], outputs: {image: {type: sensor_msgs/msg/Image, external: The operator's tablet}}}
-    nodes: {camera: camera}
-""",
+    "What is to verify a requirement is not there.",
 )
 _MAX_GUESSES = 50
 """So many get a guess; it is looked for among all use cases and chains."""

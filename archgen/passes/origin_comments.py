@@ -18,7 +18,6 @@ from archgen.model.made_elements import ElementPlace, MadeElement
 from archgen.passes.project_tree import list_paths
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
 
-ORIGIN_MARK = "# archgen: "
 _COMMENT = re.compile(r"# archgen: (?:made\[([a-z0-9_., ]{1,2000})\] )?from ([^#\r\n]{1,300})")
 _UNMADE_SECTIONS = frozenset({"libraries", "properties", "variants"})
 """Sections of which no pass makes anything."""

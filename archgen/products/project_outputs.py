@@ -98,11 +98,6 @@ def render_packed(checked_project: CheckedProject) -> bytes:
     return content if isinstance(content, bytes) else b""
 
 
-def write_resolved(checked_project: CheckedProject, options: OutputOptions, target: Path) -> None:
-    """Write the resolved model as YAML for other programs."""
-    write_product_file(checked_project, target, render_resolved(checked_project, options))
-
-
 def render_resolved(checked_project: CheckedProject, options: OutputOptions) -> bytes:
     """Return the resolved model as YAML."""
     from archgen.syntax import yaml_writer

@@ -18,6 +18,7 @@ from ruamel.yaml.representer import RoundTripRepresenter
 from ruamel.yaml.scalarstring import DoubleQuotedScalarString, FoldedScalarString, LiteralScalarString
 from ruamel.yaml.tokens import CommentToken
 
+from archgen.diagnostics.safe_text import replace_surrogates
 from archgen.syntax import yaml_writer
 
 _MAX_WIDTH = 110
@@ -36,7 +37,7 @@ class _DocumentRepresenter(RoundTripRepresenter):
 
     def represent_str(self, data: str) -> ScalarNode:
         """Return a text, quoted by the rule that the other writers have."""
-        text = yaml_writer.replace_surrogates(data)
+        text = replace_surrogates(data)
         style = '"' if yaml_writer.needs_quotes(text) else None
         return self.represent_scalar("tag:yaml.org,2002:str", text, style=style)
 
@@ -133,7 +134,7 @@ def _copy_as_flow(value: object) -> object:
         flow_list.fa.set_flow_style()
         return flow_list
     if isinstance(value, str) and yaml_writer.needs_quotes(value, in_flow=True):
-        return DoubleQuotedScalarString(yaml_writer.replace_surrogates(value))
+        return DoubleQuotedScalarString(replace_surrogates(value))
     return value
 
 

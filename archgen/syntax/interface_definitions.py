@@ -23,30 +23,7 @@ RULES = (
     Rule(
         INVALID_INTERFACE,
         Severity.ERROR,
-        """A definition of a message, a service or an action that ROS would refuse.
-
-Why: archgen reads the project's own `.msg`, `.srv` and `.action` files (`ros: {interfaces: [...]}`), and the `fields` of
-its types, to know which messages exist and what is in them. A definition with a mistake builds nowhere; here it is shown
-before anybody tries. The grammar is that of ROS 1 where the distribution is noetic, and that of ROS 2 everywhere else.
-
-Bad:
-
-    ros:
-      distro: jazzy
-      definitions:
-        demo_msgs/msg/Grasp: |
-          float64 width
-          uint8 QUALITY=300
-
-Good:
-
-    ros:
-      distro: jazzy
-      definitions:
-        demo_msgs/msg/Grasp: |
-          float64 width
-          uint8 QUALITY=255
-""",
+        "A definition of a message, a service or an action that ROS would refuse.",
         fixed=True,
     ),
 )

@@ -8,6 +8,8 @@ import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
 
+from archgen.diagnostics.safe_text import replace_surrogates
+
 ElementPath = tuple[str | int, ...]
 
 
@@ -130,11 +132,6 @@ def needs_quotes(text: str, *, in_flow: bool = False) -> bool:
     if in_flow and "?" in text:
         return True
     return not _PLAIN_SCALAR.match(text) or bool(_AMBIGUOUS_SCALAR.match(text)) or text[-1] in " \t"
-
-
-def replace_surrogates(text: str) -> str:
-    """Return a text without lone surrogates, which YAML cannot hold: they become `?`."""
-    return text.encode("utf-8", "replace").decode("utf-8")
 
 
 def has_unsafe_characters(text: str) -> bool:

@@ -26,6 +26,7 @@ from archgen.model.step_connections import UseCaseSteps
 from archgen.timing.system import message_sizes
 from archgen.views.requirement_trace import RequirementTrace, trace_requirements
 from archgen.views.timing.timing_lookup import TimingLookup
+from archgen.views.type_texts import TypeTexts
 
 T = TypeVar("T")
 
@@ -90,6 +91,8 @@ class Lookup:
     # Computed when somebody asks: most views show no use case.
     steps: UseCaseSteps = field(kw_only=True, compare=False, repr=False)
     """The steps of use cases, with what they run along."""
+    type_texts: TypeTexts = field(kw_only=True, compare=False, repr=False)
+    """Where the texts of component types are."""
     timing: TimingLookup | None = None
     """Results of the timing analysis; None for the many views that need no timing."""
 
@@ -164,32 +167,30 @@ def make_lookup(
     all_findings = tuple(findings)
     nodes = architecture.nodes.values()
     written_connections = tuple(list_written_connections(architecture))
-    components_for_requirement = _group_values(
+    components_for_requirement = group_values(
         (use.text, c) for c in architecture.list_described_components() for use in c.requirements if use.is_id
     )
-    chains_for_requirement = _group_values(
+    chains_for_requirement = group_values(
         (r, chain) for chain in architecture.chains.values() for r in chain.requirements
     )
     return Lookup(
         architecture,
         all_findings,
         scope or DocumentScope(),
-        readers_of=_group_values(
-            (o, connection) for connection in architecture.connections for o in connection.outputs
-        ),
+        readers_of=group_values((o, connection) for connection in architecture.connections for o in connection.outputs),
         written_connections=written_connections,
-        connection_positions=_group_values(_list_ends(architecture, written_connections)),
-        nodes_of=_group_values((component, node) for node in nodes for component in node.implements),
-        endpoints_of=_group_values((endpoint.node, endpoint) for endpoint in architecture.list_endpoints()),
-        findings_of=_group_values((_containing_element(architecture, f.element), f) for f in all_findings if f.element),
+        connection_positions=group_values(_list_ends(architecture, written_connections)),
+        nodes_of=group_values((component, node) for node in nodes for component in node.implements),
+        endpoints_of=group_values((endpoint.node, endpoint) for endpoint in architecture.list_endpoints()),
+        findings_of=group_values((_containing_element(architecture, f.element), f) for f in all_findings if f.element),
         components_for_requirement=components_for_requirement,
         chains_for_requirement=chains_for_requirement,
         requirement_trace=trace_requirements(
             architecture, (*components_for_requirement, *chains_for_requirement), _list_chain_verdicts(timing_lookup)
         ),
-        outputs_of_type=_group_values((o.type, o) for o in architecture.outputs.values() if o.type),
+        outputs_of_type=group_values((o.type, o) for o in architecture.outputs.values() if o.type),
         other_types=_find_other_types(architecture),
-        frames_of=_group_values(
+        frames_of=group_values(
             (frame.by, frame)
             for frame in architecture.frames.values()
             if frame.by and frame.by_kind == "component" and frame.parent is not None
@@ -197,6 +198,7 @@ def make_lookup(
         group_hues={group: hue for hue, group in enumerate(architecture.groups)},
         message_size=message_sizes.make_size_query(architecture),
         steps=UseCaseSteps(architecture),
+        type_texts=TypeTexts(architecture),
         timing=timing_lookup,
     )
 
@@ -248,7 +250,7 @@ def _containing_element(architecture: Architecture, element_id: str) -> str:
     return holder if is_port and not is_component else element_id
 
 
-def _group_values(pairs: Iterable[tuple[str, T]]) -> dict[str, tuple[T, ...]]:
+def group_values(pairs: Iterable[tuple[str, T]]) -> dict[str, tuple[T, ...]]:
     """Collect values by key; keys and values keep the order in which they come."""
     lists_by_key: defaultdict[str, list[T]] = defaultdict(list)
     for key, item in pairs:

@@ -8,9 +8,9 @@ field names are a public interface: templates read them (docs/backends.md), so t
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import field
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 from archgen.frozen import dataclass, replace
 from archgen.views.matrix_shapes import Matrix
@@ -70,13 +70,23 @@ class Text:
 Inlines = tuple[Text, ...]
 
 
+def split_anchor(anchor: str) -> tuple[str, str]:
+    """Return the kind that the anchor of a section or a page begins with, and the id: of `group:sensing`, for instance."""
+    kind, _, subject = anchor.partition(":")
+    return kind, subject
+
+
 @dataclass(frozen=True, slots=True)
 class Column:
-    """A column of a table: its heading, its share of the width and its alignment."""
+    """A column of a table: its heading, its share of the width and its alignment.
+
+    `key` is what code calls it, whatever its heading: a column without one is only shown.
+    """
 
     title: str
     weight: float = 1.0
     align: Literal["left", "right", "centre"] = "left"
+    key: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,15 +106,32 @@ class Table:
     numbered: bool = True
     """The caption has a number, and the table is in the list of tables."""
 
+    @property
+    def kind(self) -> str:
+        """What the table is, of whatever element: `table:inputs` of `table:inputs/sensing.camera`."""
+        return self.anchor.partition("/")[0]
+
+
+def keep_columns(table: Table, indices: Iterable[int]) -> Table:
+    """Return a table with some of its columns."""
+    kept = tuple(indices)
+    return replace(
+        table,
+        columns=tuple(table.columns[index] for index in kept),
+        rows=tuple(tuple(row[index] for index in kept) for row in table.rows),
+    )
+
 
 def drop_empty_columns(table: Table) -> Table:
     """Drop the columns that are empty in every row; the first column always stays."""
-    kept_columns = [index for index in range(len(table.columns)) if index == 0 or any(row[index] for row in table.rows)]
-    return replace(
-        table,
-        columns=tuple(table.columns[index] for index in kept_columns),
-        rows=tuple(tuple(row[index] for index in kept_columns) for row in table.rows),
+    return keep_columns(
+        table, (index for index in range(len(table.columns)) if index == 0 or any(row[index] for row in table.rows))
     )
+
+
+def drop_column(table: Table, key: str) -> Table:
+    """Drop the column of a key."""
+    return keep_columns(table, (index for index, column in enumerate(table.columns) if column.key != key))
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,6 +169,11 @@ class Figure:
     numbered: bool = True
     """The picture has a caption with a number, and is in the list of figures."""
 
+    @property
+    def kind(self) -> str:
+        """What the picture shows, of whatever element: `figure:groups` of `figure:groups/sensing`."""
+        return self.anchor.partition("/")[0]
+
 
 @dataclass(frozen=True, slots=True)
 class Bullets:
@@ -151,12 +183,28 @@ class Bullets:
     ordered: bool = False
 
 
+FactRow = tuple[str, Inlines]
+
+
+class Fact(NamedTuple):
+    """A fact of an element. `key` is what code calls it, whatever documents do; one without a key is only shown."""
+
+    key: str
+    title: str
+    value: Inlines
+
+
 @dataclass(frozen=True, slots=True)
 class Facts:
     """Names and values in two columns (owner, status, host): a definition list or an unnumbered table."""
 
-    rows: tuple[tuple[str, Inlines], ...]
+    rows: tuple[FactRow, ...]
     row_anchors: tuple[str | None, ...] = ()
+
+
+def show_facts(facts: Iterable[Fact], without: Collection[str] = ()) -> Facts:
+    """Return facts as a block, without those of some keys."""
+    return Facts(tuple((fact.title, fact.value) for fact in facts if fact.key not in without))
 
 
 Block = Paragraph | Markdown | Figure | Bullets | Facts | Table
@@ -176,6 +224,16 @@ class Section:
     sections: tuple[Section, ...] = ()
     appendix: bool = False
     page_break: bool = False
+
+    @property
+    def kind(self) -> str:
+        """What the section is about: `group` of `group:sensing`."""
+        return split_anchor(self.anchor)[0]
+
+    @property
+    def subject(self) -> str:
+        """The id of what the section is about: `sensing` of `group:sensing`."""
+        return split_anchor(self.anchor)[1]
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,6 +12,7 @@ from archgen.analyses.ros_messages import RULES, unchecked_message, unknown_mess
 from archgen.analyses.topic_messages import topic_type_conflict
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.diagnostics.source_span import Span
+from archgen.findings.rule_pages import read_rule_page
 from archgen.link.interface_sources import load_interfaces
 from archgen.model.architecture import Architecture, ProjectInfo
 from archgen.model.component import Output
@@ -283,4 +284,4 @@ def test_rules_have_pages() -> None:
         "topic-type-conflict": Severity.ERROR,
     }
     for rule in rules:
-        assert all(section in rule.doc for section in ("\nWhy: ", "\nBad:\n", "\nGood:\n"))
+        assert all(read_rule_page(rule))

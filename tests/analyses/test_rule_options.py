@@ -8,7 +8,7 @@ import jsonschema_rs
 import pytest
 
 from archgen.diagnostics.rule_options import RuleOption, format_percentage
-from archgen.findings.rule_pages import format_rule_page, parse_rule_page, rule_page_to_markdown
+from archgen.findings.rule_pages import format_rule_page, read_rule_page, rule_page_to_markdown
 from archgen.findings.rule_table import index_rules
 from archgen.pipeline import ALL_RULES, check_text
 from archgen.schema.language_schema import load_schema
@@ -19,7 +19,7 @@ OPTIONS = [(rule.name, option) for rule in RULES.values() for option in rule.opt
 
 def _messages(rule: str, example: str, setting: str = "") -> list[str]:
     """Return what a rule reports about an example of its page, with its setting."""
-    page = parse_rule_page(RULES[rule])
+    page = read_rule_page(RULES[rule])
     text = page.good if example == "good" else page.bad
     findings = check_text(f"{text}\nrules: {{{rule}: {setting}}}\n" if setting else text)
     return [finding.message for finding in findings if finding.rule == rule]
@@ -99,13 +99,13 @@ def test_a_threshold_is_loosened(rule: str, silent: str, reported: str) -> None:
 
 @pytest.mark.parametrize(("stated", "tolerance", "count"), [(29, 4, 0), (29, 3, 1), (31, 4, 0), (31, 3, 1), (30, 0, 0)])
 def test_rates_may_differ_by_a_tolerance(stated: int, tolerance: int, count: int) -> None:
-    bad = parse_rule_page(RULES["period-conflict"]).bad.replace("rate: 10 Hz", f"rate: {stated} Hz")
+    bad = read_rule_page(RULES["period-conflict"]).bad.replace("rate: 10 Hz", f"rate: {stated} Hz")
     findings = check_text(f"{bad}\nrules: {{period-conflict: {{tolerance: {tolerance} %}}}}\n")
     assert len([finding for finding in findings if finding.rule == "period-conflict"]) == count
 
 
 def test_a_queue_with_a_margin_says_what_it_must_hold() -> None:
-    good = parse_rule_page(RULES["short-queue"]).good
+    good = read_rule_page(RULES["short-queue"]).good
     (finding,) = (
         finding
         for finding in check_text(f"{good}\nrules: {{short-queue: {{margin: 20 %}}}}\n")
@@ -131,7 +131,7 @@ rules: {overloaded-host: {limit: LIMIT}}
 
 
 def test_an_option_goes_with_a_severity() -> None:
-    good = parse_rule_page(RULES["late-chain"]).good
+    good = read_rule_page(RULES["late-chain"]).good
     findings = check_text(f"{good}\nrules: {{late-chain: {{severity: error, margin: 50 %}}}}\n")
     assert [finding.severity for finding in findings if finding.rule == "late-chain"] == ["error"]
     findings = check_text(f"{good}\nrules: {{late-chain: {{severity: off, margin: 50 %}}}}\n")

@@ -7,6 +7,7 @@ from dataclasses import replace
 from archgen.analyses.type_mapping import RULES, unmapped_type, unused_type
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.diagnostics.source_span import Span
+from archgen.findings.rule_pages import read_rule_page
 from archgen.model.architecture import Architecture, ProjectInfo
 from archgen.model.component import Input, Output
 from archgen.model.known_interfaces import Interfaces
@@ -121,4 +122,4 @@ def test_rules_have_pages() -> None:
         "unused-type": Severity.NOTE,
     }
     for rule in rules:
-        assert all(section in rule.doc for section in ("\nWhy: ", "\nBad:\n", "\nGood:\n"))
+        assert all(read_rule_page(rule))

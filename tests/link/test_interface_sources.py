@@ -12,6 +12,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
+from archgen.findings.rule_pages import read_rule_page
 from archgen.link.interface_sources import interface_name_of, load_interfaces
 from archgen.model.known_interfaces import KNOWN_DISTROS, Interface, InterfaceField, InterfaceStatus
 from archgen.syntax.interface_definitions import RULES
@@ -208,8 +209,9 @@ def test_own_definitions_add_to_a_package_that_is_held_in_part() -> None:
 
 def test_the_rule_page_tells_the_truth() -> None:
     (rule,) = RULES
-    for section, count in (("Bad", 1), ("Good", 0)):
-        example = yaml.safe_load(rule.doc.split(f"{section}:\n")[1].split("\nGood:")[0])
+    page = read_rule_page(rule)
+    for text, count in ((page.bad, 1), (page.good, 0)):
+        example = yaml.safe_load(text)
         place = Span("archgen.yaml", 1, 1, 1, 2)
         inline = {name: (text, place) for name, text in example["ros"]["definitions"].items()}
         assert len(load_interfaces(example["ros"]["distro"], (), inline)[1]) == count

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-import textwrap
 from pathlib import Path
 
 import pytest
 
 from archgen import project, schema
 from archgen.diagnostics.diagnostic import Rule
+from archgen.findings.rule_pages import read_rule_page
 from archgen.link.slice_merging import RULES as MERGING
 from archgen.link.slice_merging import merge_documents
 from archgen.passes.patterns.pattern_registry import find_wrong_passes
@@ -20,9 +20,8 @@ RULES = (*schema.RULES, *project.RULES, *MERGING)
 
 def example(rule: Rule, heading: str) -> dict[str, str]:
     """Give the files of an example: lines `# file: NAME` part them, without any it is archgen.yaml."""
-    match = re.search(rf"^{heading}:\n\n((?:    .*\n|\n)+)", rule.doc + "\n", re.MULTILINE)
-    assert match is not None, rule.name
-    parts = re.split(r"^# file: (\S+)\n", textwrap.dedent(match[1]).strip("\n") + "\n", flags=re.MULTILINE)
+    page = read_rule_page(rule)
+    parts = re.split(r"^# file: (\S+)\n", (page.bad if heading == "Bad" else page.good) + "\n", flags=re.MULTILINE)
     if len(parts) == 1:
         return {"archgen.yaml": parts[0]}
     return dict(zip(parts[1::2], parts[2::2], strict=True))
@@ -42,7 +41,7 @@ def found(root: Path, files: dict[str, str]) -> set[str]:
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
 def test_examples(tmp_path: Path, rule: Rule) -> None:
-    assert "\n\nWhy: " in rule.doc
+    assert all(read_rule_page(rule))
     for heading, expected in (("Bad", {rule.name}), ("Good", set[str]())):
         root = tmp_path / heading
         root.mkdir()

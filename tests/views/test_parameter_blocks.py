@@ -76,7 +76,7 @@ def test_a_component_shows_what_it_declares(tmp_path: Path) -> None:
         [["Operation", "Request", "Response", "Remarks"], ["get", "", "Pose", ""], ["set", "gain: float64", "", "asynchronous"]]
     ]  # fmt: skip
     # On paper they stay tables, behind that of the ports.
-    condensed = condense_component(blocks, "C", "g.c")
+    condensed = condense_component(lookup, component, blocks)
     assert [block.anchor for block in condensed if isinstance(block, Table)] == [
         "table:set/g.c",
         "table:operations/g.c",

@@ -10,12 +10,12 @@ from archgen.pipeline import check_project
 from archgen.views.elements.component_type_blocks import make_type_blocks
 from archgen.views.elements.composed_blocks import make_composed_blocks
 from archgen.views.elements.element_card import make_card
-from archgen.views.elements.port_tables import make_input_blocks, make_output_blocks
+from archgen.views.elements.port_tables import make_port_blocks
 from archgen.views.elements.promise_words import describe_promise
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.pages.context_pages import make_context_pages, make_topic_pages
 from archgen.views.search import make_search_entries
-from archgen.views.shapes import Block, Facts, Table
+from archgen.views.shapes import Facts, Table
 from archgen.views.tables.element_rows import list_element_rows
 from archgen.views.tables.type_tables import make_type_table
 from tests.agreeing import text
@@ -47,31 +47,31 @@ def lookup(tmp_path: Path) -> Lookup:
     return make_lookup(checked.architecture, checked.findings)
 
 
-def _rows(blocks: list[Block], row: int) -> list[str]:
-    table = next(block for block in blocks if isinstance(block, Table))
+def _rows(lookup: Lookup, component: str, kind: str, row: int) -> list[str]:
+    blocks = make_port_blocks(lookup, lookup.architecture.components[component])
+    table = next(block for block in blocks if isinstance(block, Table) and block.kind == kind)
     return [text(cell) for cell in table.rows[row]]
 
 
 def test_outputs_have_badges_and_say_what_they_promise(lookup: Lookup) -> None:
-    blocks = make_output_blocks(lookup, lookup.architecture.components["g.a"])
-    first, last = _rows(blocks, 0), _rows(blocks, 1)
+    outputs = (lookup, "g.a", "table:outputs")
+    first, last = _rows(*outputs, 0), _rows(*outputs, 1)
     assert first[0] == "rows version 2 deprecated"
     assert first[-1] == (
         "promised: 10 Hz, gaps up to 150 ms, no older than 200 ms, 0 to 30 m, in the frame base; "
         "deprecated until 2999-06-01: use new"
     )
     assert (last[0], last[-1]) == ("new", "promised: in cm")
-    assert _rows(blocks, 2)[-1] == "deprecated: use B · x"
-    assert _rows(blocks, 3)[-1] == "deprecated"
+    assert _rows(*outputs, 2)[-1] == "deprecated: use B · x"
+    assert _rows(*outputs, 3)[-1] == "deprecated"
 
 
 def test_readers_are_marked_where_they_name_what_is_going_away(lookup: Lookup) -> None:
-    blocks = make_input_blocks(lookup, lookup.architecture.components["g.b"])
-    assert _rows(blocks, 0)[1] == "A · rows deprecated"
-    assert _rows(blocks, 0)[-1] == "no older than 1 s"
-    assert _rows(blocks, 1)[1] == "A · new"
-    (cell,) = (_rows(make_input_blocks(lookup, lookup.architecture.components["g.c"]), 0)[1],)
-    assert cell.endswith(" deprecated")
+    inputs = (lookup, "g.b", "table:inputs")
+    assert _rows(*inputs, 0)[1] == "A · rows deprecated"
+    assert _rows(*inputs, 0)[-1] == "no older than 1 s"
+    assert _rows(*inputs, 1)[1] == "A · new"
+    assert _rows(lookup, "g.c", "table:inputs", 0)[1].endswith(" deprecated")
 
 
 def test_composed_components_types_and_component_types(lookup: Lookup) -> None:

@@ -107,7 +107,8 @@ def test_without_timing_the_chains_are_listed_with_their_deadlines(view: Lookup)
 
 def test_pages_of_elements_say_the_derived_rate(view: Lookup) -> None:
     node = view.architecture.nodes["floor_watch"]
-    facts = {name: "".join(part.text for part in value) for name, value in element_timing.make_node_facts(view, node)}
+    node_facts = element_timing.make_node_facts(view, node)
+    facts = {fact.title: "".join(part.text for part in fact.value) for fact in node_facts}
     assert facts["Rate"].endswith("event, from object_recognizer, semantic_mapper")
     assert facts["Response"] == "within 12 ms (own core assumed)"
     (first, *_) = element_timing.make_load_blocks(view, "vision_pc")

@@ -84,7 +84,7 @@ def check_github_limits(document: str, results: int) -> Iterator[str]:
 
 def _rule_to_sarif(rule: Rule) -> dict[str, Any]:
     """Describe a rule; its whole page is the help."""
-    page = rule_pages.parse_rule_page(rule)
+    page = rule_pages.read_rule_page(rule)
     return {
         "id": rule.name,
         "name": "".join(word.capitalize() for word in rule.name.split("-")),

@@ -8,10 +8,9 @@ from collections.abc import Sequence
 from archgen.emit.graphviz import layout_engine
 from archgen.emit.graphviz.frame_outline import draw_frame
 from archgen.emit.graphviz.label_places import declutter_labels
-from archgen.emit.graphviz.layout_engine import format_attributes
 from archgen.emit.graphviz.neighbour_columns import unwrap_tall_columns
 from archgen.emit.graphviz.nested_frames import find_rank_distance, read_frames, write_frames
-from archgen.emit.graphviz.placed_scene import Scene, read_scene
+from archgen.emit.graphviz.placed_scene import Scene, format_attributes, read_scene
 from archgen.emit.graphviz.rank_wrapping import WrappedRanks, route_between_rows, wrap_ranks
 from archgen.emit.graphviz.styled_graph import (
     StyledGraph,

@@ -11,8 +11,6 @@ from typing import Any
 from pygraphviz import AGraph
 from pygraphviz import graphviz as library
 
-from archgen.emit.graphviz.placed_scene import DotAttributes
-
 _GRAPHVIZ_CONTEXT = library.gvContextWithBuiltins()
 _PDF_DATE = re.compile(rb"(/CreationDate \(D:)[^)]*\)")
 
@@ -76,8 +74,3 @@ def _blank_date(match: re.Match[bytes]) -> bytes:
     """Overwrite the date in place: the file's offsets must not move, and two runs must give the same bytes."""
     digits = re.sub(rb"[0-9]", b"0", match[0][len(match[1]) :])
     return match[1] + digits.replace(b"00000000", b"20000101", 1)
-
-
-def format_attributes(attributes: DotAttributes) -> str:
-    """Return attributes as DOT writes them."""
-    return " ".join(f"{name}={value}" for name, value in attributes.items())

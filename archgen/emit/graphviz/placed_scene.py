@@ -156,19 +156,19 @@ class Scene:
         # edgesfirst: Graphviz draws edges before nodes, so a box is never crossed by a line that passes below it.
         lines = [
             f"digraph {quote_value(name)} {{",
-            f'graph [outputorder="edgesfirst" {_format_attributes(graph_attributes)}];',
+            f'graph [outputorder="edgesfirst" {format_attributes(graph_attributes)}];',
             DOT_DEFAULTS,
         ]
         lines += [
-            f'subgraph "cluster_{frame.name}" {{ graph [id="{frame.name}" {_format_attributes(frame.attributes)} bb="{_format_numbers(*frame.rectangle)}"]; }}'
+            f'subgraph "cluster_{frame.name}" {{ graph [id="{frame.name}" {format_attributes(frame.attributes)} bb="{_format_numbers(*frame.rectangle)}"]; }}'
             for frame in self.frames
         ]
         lines += [
-            f'{quote_value(part.name)} [id="{part.name}" {_format_attributes(part.attributes)} pos="{_format_numbers(part.x, part.y)}"];'
+            f'{quote_value(part.name)} [id="{part.name}" {format_attributes(part.attributes)} pos="{_format_numbers(part.x, part.y)}"];'
             for part in self.parts
         ]
         lines += [
-            f'{quote_value(line.tail)} -> {quote_value(line.head)} [id="e{line.edge}" {_format_attributes(line.attributes)} pos="{line.spline}"];'
+            f'{quote_value(line.tail)} -> {quote_value(line.head)} [id="e{line.edge}" {format_attributes(line.attributes)} pos="{line.spline}"];'
             for line in self.lines
         ]
         return "\n".join([*lines, "}", ""])
@@ -222,7 +222,8 @@ def _format_numbers(*values: float) -> str:
     return ",".join(f"{value:.2f}" for value in values)
 
 
-def _format_attributes(attributes: DotAttributes) -> str:
+def format_attributes(attributes: DotAttributes) -> str:
+    """Return attributes as DOT writes them."""
     return " ".join(f"{name}={value}" for name, value in attributes.items())
 
 

@@ -13,8 +13,15 @@ from archgen.emit.graphviz import arrow_styles, box_styles, layout_engine, palet
 from archgen.emit.graphviz.box_styles import LinkResolver
 from archgen.emit.graphviz.dot_text import escape_label, quote_value, wrap_text
 from archgen.emit.graphviz.label_places import sample_line
-from archgen.emit.graphviz.layout_engine import format_attributes
-from archgen.emit.graphviz.placed_scene import DOT_DEFAULTS, FONT_NAME, DotAttributes, Scene, ScenePart, read_scene
+from archgen.emit.graphviz.placed_scene import (
+    DOT_DEFAULTS,
+    FONT_NAME,
+    DotAttributes,
+    Scene,
+    ScenePart,
+    format_attributes,
+    read_scene,
+)
 from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 
 

@@ -236,7 +236,7 @@ def _add_findings(comment: LimitedComment, group: FindingGroup) -> None:
 
 def _finding_item(finding: Diagnostic) -> str:
     place_note = f" ({write_code(str(finding.span))})" if finding.span.file else ""
-    severity = comparison_document.severity_of(finding)
+    severity = finding.effective_severity
     item = f"- {severity} {write_code(finding.rule)}: {write_sentence(finding.message)}{place_note}"
     return f"{item}\n  - {_write_holders(finding)}" if finding.variants else item
 

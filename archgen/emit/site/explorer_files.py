@@ -9,7 +9,7 @@ from archgen.emit.site import status_marks
 from archgen.emit.site.html_text import replace_forbidden
 from archgen.emit.site.page_links import SiteLinks
 from archgen.views.explorer.map_shapes import LINKED_TABLES, ExplorerMap, Row
-from archgen.views.shapes import Page
+from archgen.views.shapes import Page, split_anchor
 
 EXPLORER_ANCHOR = "page:explorer"
 """The anchor of the explorer's page."""
@@ -72,7 +72,7 @@ def find_explorer_address(page: Page, links: SiteLinks) -> str | None:
 
     Of a component type all instances are lit.
     """
-    kind, _, element_id = page.anchor.partition(":")
+    kind, element_id = split_anchor(page.anchor)
     if EXPLORER_ANCHOR not in links.pages or kind not in _ELEMENT_KINDS:
         return None
     level = {"node": "nodes", "host": "hosts"}.get(kind, "components")

@@ -6,9 +6,9 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from archgen.emit.safe_names import assign_safe_paths
 from archgen.emit.site.html_text import make_element_id
-from archgen.emit.term_mentions import TERM_ANCHOR
+from archgen.emit.term_mentions import TERM_KIND
 from archgen.frozen import dataclass, replace
-from archgen.views.shapes import Block, Figure, Page, Section, Table
+from archgen.views.shapes import Block, Figure, Page, Section, Table, split_anchor
 
 RESERVED_IDS = ("content", "navigation", "waterfall-hatch")
 """Ids that the page's template uses."""
@@ -66,7 +66,7 @@ def collect_links(pages: Iterable[Page]) -> SiteLinks:
         ids[path] = own_ids = _assign_ids(page)
         for anchor, name in own_ids.items():
             places.setdefault(anchor, f"{path}#{name}")
-    terms = tuple(anchor for anchor in places if anchor.startswith(TERM_ANCHOR))
+    terms = tuple(anchor for anchor in places if split_anchor(anchor)[0] == TERM_KIND)
     return SiteLinks(pages_by_anchor, places, ids, files, terms)
 
 

@@ -131,7 +131,7 @@ def _chain_lines(chain_rows: Sequence[ChainRow], *, colour: bool) -> Iterator[st
 def _finding_lines(finding_group: FindingGroup, *, colour: bool) -> Iterator[str]:
     yield _paint_text(finding_group.heading, "1", colour=colour)
     for finding in finding_group.findings:
-        severity = comparison_document.severity_of(finding)
+        severity = finding.effective_severity
         place_note = f" ({finding.span})" if finding.span.file else ""
         rule = _paint_text(f"{severity}[{finding.rule}]", _SEVERITY_COLOURS[severity], colour=colour)
         yield f"  {rule}: {make_visible(finding.message + place_note)}"

@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import Any
 
 from archgen.diagnostics.safe_text import make_visible
-from archgen.diagnostics.text_columns import TextRow, align_rows
+from archgen.diagnostics.text_columns import TextRow, align_rows, format_section
 from archgen.emit.data import timing_json
 from archgen.emit.terminal.figure_text import format_figure
 from archgen.timing.chains.measured_comparison import MeasuredComparison, Observation
@@ -33,10 +33,9 @@ def format_measured(
         yield from align_rows([("id", "figure", "designed", "measured", ""), *map(_measured_row, shown_rows)], width)
         yield ""
     if statistics:
-        yield "What was seen of each"
         heading = ("id", "of", "count", "least", *PERCENTILES, "largest")
-        yield from align_rows([heading, *(_statistics_row(*entry) for entry in statistics)], width)
-        yield ""
+        rows_seen = [heading, *(_statistics_row(*entry) for entry in statistics)]
+        yield from format_section("What was seen of each", rows_seen, width)
     if unmapped:
         yield from _unmapped_lines(unmapped, width)
         yield ""

@@ -9,7 +9,7 @@ from typing import Any
 from archgen.diagnostics.common_wording import format_transition
 from archgen.diagnostics.safe_text import make_visible
 from archgen.diagnostics.source_span import Span
-from archgen.diagnostics.text_columns import TextRow, align_rows
+from archgen.diagnostics.text_columns import TextRow, align_rows, format_section
 from archgen.emit.data import timing_json
 from archgen.emit.terminal.chain_gaps import describe_gaps
 from archgen.emit.terminal.figure_text import format_figure
@@ -46,20 +46,9 @@ def format_timing_changes(
     (old_analysis, old_chains), (new_analysis, new_chains) = old_timing, new_timing
     yield f"With {', '.join(make_visible(text) for text in changed_figures)}:"
     yield ""
-    rows = list(_changed_chain_rows(old_chains, new_chains))
-    if rows:
-        yield "Chains"
-        yield from align_rows(rows, width)
-        yield ""
-    for title, table_rows in (
-        ("Hosts", _changed_host_rows(old_analysis, new_analysis)),
-        ("Elements", _changed_element_rows(old_analysis, new_analysis)),
-    ):
-        rows = list(table_rows)
-        if rows:
-            yield f"{title} that differ"
-            yield from align_rows(rows, width)
-            yield ""
+    yield from format_section("Chains", _changed_chain_rows(old_chains, new_chains), width)
+    yield from format_section("Hosts that differ", _changed_host_rows(old_analysis, new_analysis), width)
+    yield from format_section("Elements that differ", _changed_element_rows(old_analysis, new_analysis), width)
 
 
 def _changed_chain_rows(old_chains: ChainResults, new_chains: ChainResults) -> Iterator[TextRow]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 
-from archgen.diagnostics.text_columns import TextRow, align_rows
+from archgen.diagnostics.text_columns import TextRow, format_section
 from archgen.emit.terminal import chain_remedies, timing_legend
 from archgen.emit.terminal.chain_gaps import describe_gaps
 from archgen.emit.terminal.figure_text import format_figure, format_missing
@@ -47,18 +47,10 @@ def format_timing(
         ("Loops: latency of one round", _loop_rows(loops)),
         ("What is taken for granted", _assumption_rows(analysis)),
     )
-    lines = [line for title, rows in sections for line in _section_lines(title, rows, width)]
+    lines = [line for title, rows in sections for line in format_section(title, rows, width)]
     yield from lines
-    yield from _section_lines("Words", timing_legend.list_legend(analysis, chains, "\n".join(lines)), width)
+    yield from format_section("Words", timing_legend.list_legend(analysis, chains, "\n".join(lines)), width)
     yield from _fault_lines(analysis)
-
-
-def _section_lines(title: str, rows: Iterable[TextRow], width: int | None) -> Iterator[str]:
-    section_rows = list(rows)
-    if section_rows:
-        yield title
-        yield from align_rows(section_rows, width)
-        yield ""
 
 
 def _chain_rows(analysis: Analysis, chains: Iterable[ChainResult], evidence: ChainEvidence) -> Iterator[TextRow]:

@@ -85,7 +85,7 @@ def _walk_sections(sections: Iterable[Section], path: str) -> Iterator[tuple[Sec
 
 
 def _add_table(sheets: dict[str, SheetContent], table: Table, place: str) -> None:
-    kind = table.anchor.partition("/")[0]
+    kind = table.kind
     title = kind.removeprefix("table:").replace("_", " ").capitalize()
     sheet = sheets.setdefault(kind, SheetContent(title, {_PLACE: False}))
     for column in table.columns:

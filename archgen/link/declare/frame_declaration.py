@@ -125,28 +125,6 @@ def _diagnose_duplicate(second_frame: Frame, first_frame: Frame) -> Diagnostic:
 DUPLICATE_FRAME = Rule(
     "duplicate-frame",
     Severity.ERROR,
-    """A frame is declared twice.
-
-Why: TF keeps one tree, in which a frame has one parent. Where two components write the same frame, what reads it jumps between
-the two, many times in a second. Two slices may add to one frame of the project: `frames` at the top of both files.
-
-Bad:
-    groups:
-      driving:
-        components:
-          wheels: {title: Wheel odometry, frames: {base_link: odom}}
-          filter: {title: Odometry filter, frames: {base_link: odom}}
-    frames: {odom: {}}
-    nodes: {wheels: wheels, filter: filter}
-
-Good:
-    groups:
-      driving:
-        components:
-          wheels: {title: Wheel odometry}
-          filter: {title: Odometry filter, frames: {base_link: odom}}
-    frames: {odom: {}}
-    nodes: {wheels: wheels, filter: filter}
-""",
+    "A frame is declared twice.",
     fixed=True,
 )

@@ -8,10 +8,10 @@ from dataclasses import field
 from archgen.frozen import dataclass
 from archgen.timing.search.chain_budgets import SharedBudget
 from archgen.views.agreement.interface_record import InterfaceRecord
-from archgen.views.agreement.interface_terms import partner_titles
 from archgen.views.agreement.signature_record import SignatureRecord
 from archgen.views.agreement.term_changes import AgreementChanges
 from archgen.views.graph_shapes import Graph
+from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Paragraph
 
@@ -37,4 +37,4 @@ class AgreementContent:
     @property
     def pair_titles(self) -> tuple[str, str]:
         """Return the titles of both partners."""
-        return partner_titles(self.lookup, self.pair[:1]), partner_titles(self.lookup, self.pair[1:])
+        return join_owner_titles(self.lookup, self.pair[:1]), join_owner_titles(self.lookup, self.pair[1:])

@@ -16,11 +16,11 @@ from archgen.views.agreement.agreement_summary import (
 from archgen.views.agreement.budget_section import write_budget_section
 from archgen.views.agreement.frame_section import list_changed_frames, write_frame_section
 from archgen.views.agreement.interface_sections import SectionWriter
-from archgen.views.agreement.interface_terms import partner_titles
 from archgen.views.agreement.setting_section import list_changed_settings, write_setting_section
 from archgen.views.agreement.signature_record import write_signature_table
 from archgen.views.agreement.start_section import write_start_section
 from archgen.views.agreement.use_case_section import write_use_case_section
+from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.shapes import (
     Block,
     Column,
@@ -152,7 +152,7 @@ def _partners_section(content: AgreementContent) -> Section:
 def _direction_section(
     content: AgreementContent, section_writer: SectionWriter, direction: tuple[str, ...]
 ) -> Iterator[Section]:
-    giver_title, taker_title = (partner_titles(content.lookup, [partner_id]) for partner_id in direction)
+    giver_title, taker_title = (join_owner_titles(content.lookup, [partner_id]) for partner_id in direction)
     direction_records = [record for record in content.records if record.terms.interface.pair == direction]
     if direction_records:
         sections = tuple(

@@ -7,11 +7,12 @@ from typing import Literal
 
 from archgen.frozen import dataclass, replace
 from archgen.model.partner_interfaces import PartnerInterface, components_at_ends
-from archgen.views.agreement.interface_terms import interface_title, partner_titles
+from archgen.views.agreement.interface_terms import interface_title
 from archgen.views.elements import element_names
 from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 from archgen.views.graphs import element_boxes, node_boxes
 from archgen.views.graphs.component_flows import FlowStyle
+from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.graphs.graph_folding import fold_graph
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun
@@ -40,7 +41,7 @@ def draw_agreement(lookup: Lookup, name: str, pair: tuple[str, str], interfaces:
     boxes_by_end = {
         box_id: _draw_box(lookup, box_id, pair) for _, tail, head in placed_flows for box_id in (tail, head)
     }
-    titles = partner_titles(lookup, [first]), partner_titles(lookup, [second])
+    titles = join_owner_titles(lookup, [first]), join_owner_titles(lookup, [second])
     graph = Graph(
         name,
         f"What flows between {titles[0]} and {titles[1]}",
@@ -90,7 +91,9 @@ def _draw_box(lookup: Lookup, box_id: str, pair: tuple[str, str]) -> Box:
         box = node_boxes.node_box(lookup, lookup.architecture.nodes[element_id.removeprefix("node ")])
     else:
         component = lookup.architecture.components[element_id]
-        place = partner_titles(lookup, component.owners) if side else lookup.architecture.groups[component.group].title
+        place = (
+            join_owner_titles(lookup, component.owners) if side else lookup.architecture.groups[component.group].title
+        )
         line = " · ".join(filter(None, (place, element_names.join_surrounding_titles(lookup, component))))
         box = element_boxes.component_box(lookup, component, lines=(line,))
     return replace(box, id=box_id, colour=_PARTNER_HUES[partner_index], cluster=cluster, side=side)
@@ -130,7 +133,7 @@ def _alternative_text(lookup: Lookup, pair: tuple[str, str], interfaces: Sequenc
             interface_title(lookup, interface) for interface in interfaces if interface.pair[0] == giver
         ]
         if interface_titles:
-            direction_phrase = f"{partner_titles(lookup, [giver])} to {partner_titles(lookup, [taker])}"
+            direction_phrase = f"{join_owner_titles(lookup, [giver])} to {join_owner_titles(lookup, [taker])}"
             sentences.append(
                 f"{count_noun(len(interface_titles), 'interface')} from {direction_phrase}: {', '.join(interface_titles)}."
             )

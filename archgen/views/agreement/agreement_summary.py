@@ -8,10 +8,11 @@ from archgen.model.partner_interfaces import PartnerInterface
 from archgen.views import inline_text
 from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.interface_record import InterfaceRecord
-from archgen.views.agreement.interface_terms import InterfaceTerms, partner_titles
-from archgen.views.agreement.promise_rows import join_figures
+from archgen.views.agreement.interface_terms import InterfaceTerms
+from archgen.views.agreement.promise_rows import RATE, join_figures
 from archgen.views.agreement.term_changes import NAME_KIND, AgreementChanges, write_signed_kind
 from archgen.views.element_references import message_link
+from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.shapes import Column, Inlines, Paragraph, Section, Table, Text, drop_empty_columns
 
 _MAX_OWN_ROWS = 2
@@ -34,7 +35,7 @@ def write_summary_section(content: AgreementContent) -> Section:
     silent_notes = (
         Paragraph(
             inline_text.to_inlines(
-                f"Nothing flows from {partner_titles(content.lookup, direction[:1])} to {partner_titles(content.lookup, direction[1:])}."
+                f"Nothing flows from {join_owner_titles(content.lookup, direction[:1])} to {join_owner_titles(content.lookup, direction[1:])}."
             )
         )
         for direction in (content.pair, content.pair[::-1])
@@ -47,7 +48,7 @@ def _summary_row(content: AgreementContent, record: InterfaceRecord) -> tuple[In
     interface_terms = record.terms
     return (
         inline_text.to_inlines(Text(interface_terms.title, ref=interface_terms.interface.anchor)),
-        inline_text.to_inlines(partner_titles(content.lookup, interface_terms.interface.pair[:1])),
+        inline_text.to_inlines(join_owner_titles(content.lookup, interface_terms.interface.pair[:1])),
         _carried_runs(interface_terms.interface),
         _rate_runs(interface_terms),
         _version_runs(content, record),
@@ -60,8 +61,8 @@ def _summary_row(content: AgreementContent, record: InterfaceRecord) -> tuple[In
 def _rate_runs(interface_terms: InterfaceTerms) -> Inlines:
     """Return how often it flows, or within what it is answered, and whether that is promised."""
     for row in interface_terms.promise_rows:
-        if row.name.startswith(("Rate", "Answers within")) and (row.promised or row.expected):
-            words = "answered within " if row.name.startswith("Answers") else ""
+        if row.name.key in {RATE.key, "response"} and (row.promised or row.expected):
+            words = "answered within " if row.name.key == "response" else ""
             figure = join_figures(row.promised or row.expected)
             return inline_text.join_lines(
                 [

@@ -11,7 +11,7 @@ from archgen.timing.search.chain_budgets import PartnerShare, SharedBudget
 from archgen.views import inline_text
 from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.interface_record import InterfaceRecord
-from archgen.views.agreement.interface_terms import partner_titles
+from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.shapes import Column, Inlines, Paragraph, Section, Table, Text
 from archgen.views.timing import value_format
 
@@ -51,7 +51,7 @@ def _chain_rows(content: AgreementContent, chain_id: str, budget: SharedBudget) 
     for number, share in enumerate(own_shares):
         yield (
             () if number else _chain_cell(content, chain_id, budget),
-            inline_text.to_inlines(partner_titles(content.lookup, share.owners)),
+            inline_text.to_inlines(join_owner_titles(content.lookup, share.owners)),
             inline_text.to_inlines(Text(share.activity, code=True)),
             inline_text.to_inlines(value_format.display_duration(TimingValue(share.written))),
             inline_text.to_inlines(_write_share(share)),

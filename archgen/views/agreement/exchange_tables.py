@@ -6,16 +6,17 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from archgen.model.partner_interfaces import components_at_ends
 from archgen.views import inline_text
-from archgen.views.agreement.interface_terms import InterfaceTerms, partner_titles
+from archgen.views.agreement.interface_terms import InterfaceTerms
 from archgen.views.agreement.open_points import describe_open_term
 from archgen.views.agreement.partner_exchanges import PartnerExchange
-from archgen.views.agreement.promise_rows import PromiseRow, join_figures
+from archgen.views.agreement.promise_rows import QOS_OFFERED, RATE, PromiseRow, TermName, join_figures
 from archgen.views.element_references import message_link
+from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Column, Inlines, Status, Table, Text, drop_empty_columns
 
-_PACE_ROWS = ("Rate", "Answers within")
-_TERM_WORDS = {"definition of the message": "fields", "QoS offered": "QoS"}
+PACE_TERMS = (RATE.key, "response")
+QOS_TERMS = (QOS_OFFERED.key,)
 _NOT_PROMISED: Inlines = (Text("not promised", muted=True),)
 
 
@@ -47,8 +48,8 @@ def make_given_table(lookup: Lookup, anchor: str, caption: str, interfaces: Sequ
 
 
 def _given_row(lookup: Lookup, terms: InterfaceTerms) -> tuple[Inlines, ...]:
-    pace, qos = _find_row(terms, _PACE_ROWS), _find_row(terms, ("QoS offered",))
-    size, traffic = _find_row(terms, ("Size",)), _find_row(terms, ("Traffic",))
+    pace, qos = _find_row(terms, PACE_TERMS), _find_row(terms, QOS_TERMS)
+    size, traffic = _find_row(terms, ("size",)), _find_row(terms, ("traffic",))
     return (
         inline_text.join_lines([(interface_link(terms),), *_end_lines(lookup, terms)]),
         _carrier_cell(terms),
@@ -61,9 +62,9 @@ def _given_row(lookup: Lookup, terms: InterfaceTerms) -> tuple[Inlines, ...]:
     )
 
 
-def _find_row(terms: InterfaceTerms, starts: tuple[str, ...]) -> PromiseRow | None:
+def _find_row(terms: InterfaceTerms, keys: tuple[str, ...]) -> PromiseRow | None:
     """Return the row of a term; of several (one for each node that gives) the first with a figure."""
-    rows = [row for row in terms.promise_rows if row.name.startswith(starts)]
+    rows = [row for row in terms.promise_rows if row.name.key in keys]
     return next((row for row in rows if row.promised or row.expected), rows[0] if rows else None)
 
 
@@ -98,8 +99,8 @@ def _carrier_cell(terms: InterfaceTerms) -> Inlines:
 
 
 def _list_chips(terms: InterfaceTerms) -> Iterator[Text]:
-    for name in terms.open_terms:
-        yield Text(_TERM_WORDS.get(name, name), status="open")
+    for name in terms.open_names:
+        yield _make_chip(_shorten_name(name), "open")[0]
     if terms.contradictions:
         yield Text(inline_text.count_noun(len(terms.contradictions), "contradiction"), status="error")
     if terms.late_chains:
@@ -128,16 +129,20 @@ def _list_point_rows(lookup: Lookup, exchange: PartnerExchange) -> Iterator[tupl
     for name, interfaces in _group_open_terms(exchange.interfaces).items():
         links = inline_text.join_inlines((interface_link(terms),) for terms in interfaces)
         point = inline_text.join_lines([inline_text.message_to_inlines(describe_open_term(name)), links])
-        yield _make_chip(_TERM_WORDS.get(name, name.lower()), "open"), point, _count_writers(lookup, interfaces)
+        yield _make_chip(_shorten_name(name), "open"), point, _count_writers(lookup, interfaces)
+
+
+def _shorten_name(name: TermName) -> str:
+    return "QoS" if name == QOS_OFFERED else name.words
 
 
 def _make_chip(word: str, status: Status) -> Inlines:
     return (Text(word, status=status),)
 
 
-def _group_open_terms(interfaces: Iterable[InterfaceTerms]) -> Mapping[str, list[InterfaceTerms]]:
+def _group_open_terms(interfaces: Iterable[InterfaceTerms]) -> Mapping[TermName, list[InterfaceTerms]]:
     """Return the open terms by name, that of most interfaces first."""
-    grouped: dict[str, list[InterfaceTerms]] = {}
+    grouped: dict[TermName, list[InterfaceTerms]] = {}
     for terms in interfaces:
         for name in terms.open_names:
             grouped.setdefault(name, []).append(terms)
@@ -155,12 +160,12 @@ def _count_writers(lookup: Lookup, interfaces: Sequence[InterfaceTerms]) -> Inli
     )
 
 
-def count_promised(interfaces: Iterable[InterfaceTerms], starts: tuple[str, ...]) -> tuple[int, int]:
+def count_promised(interfaces: Iterable[InterfaceTerms], keys: tuple[str, ...]) -> tuple[int, int]:
     """Return of how many interfaces a term is promised, and how many have such a term."""
-    rows = [row for terms in interfaces if (row := _find_row(terms, starts))]
+    rows = [row for terms in interfaces if (row := _find_row(terms, keys))]
     return sum(1 for row in rows if row.promised), len(rows)
 
 
 def pair_title(lookup: Lookup, pair: Sequence[str]) -> str:
     """Return the titles of two partners: `CERTH-ITI and FORTH-ICS`."""
-    return " and ".join(partner_titles(lookup, [partner]) for partner in pair)
+    return " and ".join(join_owner_titles(lookup, [partner]) for partner in pair)

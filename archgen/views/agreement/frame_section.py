@@ -8,8 +8,8 @@ from archgen.model.architecture import Architecture
 from archgen.model.frame_sharing import SharedFrame, find_shared_frames
 from archgen.views import inline_text
 from archgen.views.agreement.agreement_content import AgreementContent
-from archgen.views.agreement.interface_terms import partner_titles
 from archgen.views.agreement.term_changes import write_signed_kind
+from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.shapes import Column, Inlines, Paragraph, Section, Table, Text, drop_empty_columns
 from archgen.views.tables.frame_table import link_declared_frame, link_writer
 
@@ -47,7 +47,7 @@ def _frame_row(content: AgreementContent, shared: SharedFrame, mark: Text | None
     frames = (link_declared_frame(architecture, name) for name in shared.frames)
     return (
         (Text(frame.id, code=True),),
-        inline_text.to_inlines(partner_titles(content.lookup, [shared.giver])),
+        inline_text.to_inlines(join_owner_titles(content.lookup, [shared.giver])),
         link_writer(architecture, frame),
         link_declared_frame(architecture, frame.parent or ""),
         rate,

@@ -10,13 +10,14 @@ from archgen.frozen import dataclass
 from archgen.views import inline_text
 from archgen.views.agreement import message_fields
 from archgen.views.agreement.interface_record import InterfaceRecord
-from archgen.views.agreement.interface_terms import InterfaceEnd, InterfaceTerms, partner_titles
+from archgen.views.agreement.interface_terms import InterfaceEnd, InterfaceTerms
 from archgen.views.agreement.promise_rows import write_promise_table
 from archgen.views.agreement.signature_record import SignatureRecord
 from archgen.views.element_references import message_link
 from archgen.views.elements.element_names import join_surrounding_titles
+from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Block, Column, Facts, Inlines, Paragraph, Section, Table, Text
+from archgen.views.shapes import Block, Column, Facts, Inlines, Paragraph, Section, Table, Text, show_facts
 from archgen.views.shapes import drop_empty_columns as tidy
 from archgen.views.timing import timing_tables
 
@@ -47,7 +48,7 @@ class SectionWriter:
                 (
                     *first_facts,
                     ("Version", inline_text.to_inlines(self.signatures.describe_version(record))),
-                    *interface_terms.facts,
+                    *show_facts(interface_terms.facts).rows,
                     *_further_facts(interface_terms),
                 )
             ),
@@ -65,7 +66,8 @@ class SectionWriter:
 
         removed_notice = Paragraph(inline_text.to_inlines(write_signed_kind("removed")), "error")
         interface_terms = record.terms
-        facts = Facts((("Version", inline_text.to_inlines(interface_terms.version)), *interface_terms.facts))
+        version = ("Version", inline_text.to_inlines(interface_terms.version))
+        facts = Facts((version, *show_facts(interface_terms.facts).rows))
         blocks: list[Block] = [
             removed_notice,
             facts,
@@ -105,7 +107,7 @@ class SectionWriter:
             yield write_promise_table(
                 f"table:promises/{interface_terms.interface.key}/{giver}",
                 f"{interface_terms.title}: what is promised, and what is expected",
-                partner_titles(self.lookup, [giver]),
+                join_owner_titles(self.lookup, [giver]),
                 interface_terms.promise_rows,
             )
 

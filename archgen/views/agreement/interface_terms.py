@@ -20,18 +20,23 @@ from archgen.views import inline_text
 from archgen.views.agreement import interface_timing, interface_versions, message_fields, output_promises
 from archgen.views.agreement.missing_data import list_missing_data_duties
 from archgen.views.agreement.open_points import describe_open_term, find_contradictions, find_late_chains
-from archgen.views.agreement.promise_rows import PromiseRow, PromiseStrength, identify_qos, measure_qos
+from archgen.views.agreement.promise_rows import (
+    QOS_OFFERED,
+    RATE,
+    PromiseRow,
+    PromiseStrength,
+    TermName,
+    identify_qos,
+    measure_qos,
+)
 from archgen.views.element_references import message_link
-from archgen.views.graphs.element_boxes import name_in_place
+from archgen.views.graphs.element_boxes import join_owner_titles, name_in_place
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Inlines, Text
+from archgen.views.shapes import Fact, Inlines, Text
 
 _FLOW_NAMES = {"topic": "Topic", "service": "Service", "action": "Action", "physical": ""}
-_SETTLED_FACTS = ("Type", "Message")
-_SETTLED_ROWS = ("Rate", "Size", "Answers within")
-"""Terms without which an interface is not settled, by the beginning of their name: of these somebody has to know something."""
-_PROMISED_ROWS = ("QoS offered",)
-"""Terms that somebody has to promise."""
+_SETTLED_TERMS = {"type", "message", RATE.key, "size", "response"}
+"""Keys of terms without which an interface is not settled: of these somebody has to know something, and promise `qos`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +64,7 @@ class InterfaceTerms:
     interface: PartnerInterface
     title: str
     version: str
-    facts: tuple[interface_timing.TermFact, ...]
+    facts: tuple[Fact, ...]
     promise_rows: tuple[PromiseRow, ...]
     ends: tuple[InterfaceEnd, ...]
     field_rows: tuple[message_fields.FieldRow, ...] | None
@@ -77,8 +82,7 @@ class InterfaceTerms:
     @property
     def open_terms(self) -> tuple[str, ...]:
         """Return the names of the terms that are still to be settled."""
-        names = (name if name.startswith("QoS") else name.lower() for name in self.open_names)
-        return tuple("definition of the message" if name == "fields" else name for name in names)
+        return tuple("definition of the message" if name.key == "fields" else name.words for name in self.open_names)
 
     @property
     def open_points(self) -> tuple[str, ...]:
@@ -86,20 +90,20 @@ class InterfaceTerms:
         return (*map(describe_open_term, self.open_names), *self.contradictions, *self.late_chains)
 
     @property
-    def open_names(self) -> tuple[str, ...]:
+    def open_names(self) -> tuple[TermName, ...]:
         """Return the terms that are still to be settled, as facts and rows name them."""
         return tuple(self._list_open_names())
 
-    def _list_open_names(self) -> Iterator[str]:
-        for name, value in self.facts:
-            if name in _SETTLED_FACTS and all(run.muted for run in value):
-                yield name
+    def _list_open_names(self) -> Iterator[TermName]:
+        for fact in self.facts:
+            if fact.key in _SETTLED_TERMS and all(run.muted for run in fact.value):
+                yield TermName(fact.key, fact.title)
         for row in self.promise_rows:
-            is_open = row.name.startswith(_SETTLED_ROWS) and not (row.promised or row.expected)
-            if is_open or (row.name in _PROMISED_ROWS and not row.promised):
+            is_open = row.name.key in _SETTLED_TERMS and not (row.promised or row.expected)
+            if is_open or (row.name == QOS_OFFERED and not row.promised):
                 yield row.name
         if self.interface.message and self.field_rows is None:
-            yield "Fields"
+            yield TermName("fields", "Fields")
 
 
 def gather_terms(
@@ -107,7 +111,7 @@ def gather_terms(
 ) -> InterfaceTerms:
     """Gather all terms of an interface."""
     chains = tuple(interface_timing.find_chains_through(lookup, activity_names, interface))
-    giver, taker = (partner_titles(lookup, [partner]) for partner in interface.pair)
+    giver, taker = (join_owner_titles(lookup, [partner]) for partner in interface.pair)
     ports = output_promises.list_counted_ports(lookup, interface)
     return InterfaceTerms(
         interface,
@@ -140,42 +144,40 @@ def interface_title(lookup: Lookup, interface: PartnerInterface) -> str:
     )
 
 
-def _list_facts(lookup: Lookup, interface: PartnerInterface) -> Iterator[interface_timing.TermFact]:
+def _list_facts(lookup: Lookup, interface: PartnerInterface) -> Iterator[Fact]:
     flow_name = _FLOW_NAMES[interface.flow]
     if interface.flow == "physical":
-        yield "Kind", inline_text.to_inlines("physical: neither message nor topic")
+        yield Fact("", "Kind", inline_text.to_inlines("physical: neither message nor topic"))
     elif interface.medium:
-        yield "Kind", inline_text.to_inlines(f"{interface.medium}: no ROS")
+        yield Fact("", "Kind", inline_text.to_inlines(f"{interface.medium}: no ROS"))
         names = [endpoint.name.partition(" ")[2] for endpoint in interface.giver_endpoints if endpoint.name_written]
         if names:
-            yield "Name", inline_text.join_lines((Text(name, code=True),) for name in dict.fromkeys(names))
+            yield Fact("", "Name", inline_text.join_lines((Text(name, code=True),) for name in dict.fromkeys(names)))
     else:
-        yield (
-            flow_name,
-            inline_text.join_inlines((inline_text.topic_link(name),) for name in interface.topic_names)
-            or inline_text.UNKNOWN_INLINES,
-        )
+        topics = inline_text.join_inlines((inline_text.topic_link(name),) for name in interface.topic_names)
+        yield Fact("", flow_name, topics or inline_text.UNKNOWN_INLINES)
     # Where no type has a name, the message alone says what flows.
     if interface.type or not interface.message:
-        yield "Type", inline_text.type_link(interface.type)
+        yield Fact("type", "Type", inline_text.type_link(interface.type))
     if interface.output and interface.output.description:
-        yield "Meaning", inline_text.to_inlines(interface.output.description)
+        yield Fact("meaning", "Meaning", inline_text.to_inlines(interface.output.description))
     if interface.output and (frame_name := lookup.architecture.frame_of(interface.output)):
-        yield "Frame", inline_text.to_inlines(Text(frame_name, code=True))
+        yield Fact("", "Frame", inline_text.to_inlines(Text(frame_name, code=True)))
     yield from _list_declared_properties(lookup, interface)
     if interface.flow != "physical" and not interface.medium:
-        yield "Message", _message_runs(lookup, interface)
+        yield Fact("message", "Message", _message_runs(lookup, interface))
     other_components = dict.fromkeys(other_input.component for other_input in interface.other_inputs)
     if other_components:
-        yield "Also read by", inline_text.join_lines(_other_reader(lookup, component) for component in other_components)
+        readers = inline_text.join_lines(_other_reader(lookup, component) for component in other_components)
+        yield Fact("other_readers", "Also read by", readers)
 
 
-def _list_declared_properties(lookup: Lookup, interface: PartnerInterface) -> Iterator[interface_timing.TermFact]:
+def _list_declared_properties(lookup: Lookup, interface: PartnerInterface) -> Iterator[Fact]:
     """Yield the properties of an output that the project declares: what it says freely is no term."""
     own_properties = interface.output.annotations.properties if interface.output else {}
     for declared in lookup.architecture.properties.values():
         if declared.id in own_properties:
-            yield declared.title, inline_text.to_inlines(own_properties[declared.id])
+            yield Fact("", declared.title, inline_text.to_inlines(own_properties[declared.id]))
 
 
 def _message_runs(lookup: Lookup, interface: PartnerInterface) -> Inlines:
@@ -202,7 +204,7 @@ def _promise_qos(endpoints: Sequence[Endpoint]) -> PromiseRow:
     written = [endpoint.qos for endpoint in endpoints if endpoint.qos.written]
     if not written:
         return PromiseRow(
-            "QoS offered", expected=inline_text.to_inlines(f"{inline_text.format_qos(Qos())} (ROS's default)")
+            QOS_OFFERED, expected=inline_text.to_inlines(f"{inline_text.format_qos(Qos())} (ROS's default)")
         )
     lines = dict.fromkeys(map(describe_qos, endpoints))
     measures = list(map(measure_qos, written))
@@ -214,7 +216,7 @@ def _promise_qos(endpoints: Sequence[Endpoint]) -> PromiseRow:
     }
     runs = inline_text.join_lines(map(inline_text.to_inlines, lines))
     identities = sorted({identify_qos(endpoint.qos) for endpoint in endpoints})
-    return PromiseRow("QoS offered", runs, (), strength, "; ".join(identities))
+    return PromiseRow(QOS_OFFERED, runs, (), strength, "; ".join(identities))
 
 
 def describe_qos(endpoint: Endpoint) -> str:
@@ -228,12 +230,6 @@ def _other_reader(lookup: Lookup, component_id: str) -> Inlines:
         inline_text.partner_link(lookup.architecture, owner) for owner in component_model.owners
     )
     return (inline_text.component_link(component_model), *((Text(" ("), *owners, Text(")")) if owners else ()))
-
-
-def partner_titles(lookup: Lookup, owners: Iterable[str]) -> str:
-    """Return partners' titles, comma separated."""
-    known_partners = lookup.architecture.partners
-    return ", ".join(known_partners[owner].title if owner in known_partners else owner for owner in owners)
 
 
 def _list_ends(lookup: Lookup, interface: PartnerInterface) -> Iterator[InterfaceEnd]:
@@ -341,10 +337,10 @@ def _shared_sentences(lookup: Lookup, interface: PartnerInterface) -> Iterator[s
     architecture = lookup.architecture
     for component in _components_of(lookup, interface):
         if len(component.owners) > 1:
-            yield f"{component.title} belongs to {partner_titles(lookup, component.owners)} together: each answers for this interface."
+            yield f"{component.title} belongs to {join_owner_titles(lookup, component.owners)} together: each answers for this interface."
     for node_id in dict.fromkeys(
         endpoint.node for endpoint in (*interface.giver_endpoints, *interface.taker_endpoints)
     ):
         component_titles = [architecture.components[name].title for name in architecture.nodes[node_id].implements]
         if (owners := foreign_owners(architecture, architecture.nodes[node_id])) and component_titles:
-            yield f"{partner_titles(lookup, owners)} implements {', '.join(component_titles)} with the node {node_id}, and answers for this interface too."
+            yield f"{join_owner_titles(lookup, owners)} implements {', '.join(component_titles)} with the node {node_id}, and answers for this interface too."

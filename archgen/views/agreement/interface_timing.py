@@ -17,13 +17,20 @@ from archgen.timing.system import activity_builder
 from archgen.timing.system.message_sizes import MessageSize
 from archgen.timing.system.timing_system import Arc, TimingSystem
 from archgen.views import inline_text
-from archgen.views.agreement.promise_rows import SOURCE_PHRASE, PromiseRow, PromiseStrength, promise_limit
+from archgen.views.agreement.promise_rows import (
+    MAX_GAP,
+    RATE,
+    SOURCE_PHRASE,
+    PromiseRow,
+    PromiseStrength,
+    TermName,
+    promise_limit,
+)
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Inlines, Text
 from archgen.views.timing import rate_phrases, timing_tables, value_format
 from archgen.views.timing.timing_lookup import TimingLookup
 
-TermFact = tuple[str, Inlines]
 _NO_TIMING = Timing()
 _SIZE_PARTS = {
     "topic": (("Size", ""),),
@@ -42,14 +49,14 @@ def promise_timing(
     givers = list_givers(lookup.architecture, interface)
     if timed is not None:
         for endpoint in givers:
-            suffix = f" of {endpoint.node}" if len(givers) > 1 else ""
-            yield from _GivenPace(lookup, timed, activity_names, endpoint, suffix).list_rows()
+            node = endpoint.node if len(givers) > 1 else ""
+            yield from _GivenPace(lookup, timed, activity_names, endpoint, node).list_rows()
     for name, part in _SIZE_PARTS[interface.flow]:
         size = _message_size(lookup, interface, part)
         if size.bytes is not None or interface.flow == "topic":
-            yield _size_row(name, size)
+            yield _size_row(TermName("size", name), size)
     if timed is not None and interface.flow == "topic":
-        yield PromiseRow("Traffic", expected=_traffic_runs(timed, interface))
+        yield PromiseRow(TermName("traffic", "Traffic"), expected=_traffic_runs(timed, interface))
 
 
 def find_giver_timing(lookup: Lookup, endpoint: Endpoint) -> Timing:
@@ -82,13 +89,13 @@ def find_broken_limits(
 
 @dataclass(frozen=True, slots=True)
 class _GivenPace:
-    """What one endpoint gives, and how often. `suffix` names its node where several give."""
+    """What one endpoint gives, and how often. `node` is its node where several give."""
 
     lookup: Lookup
     timed: TimingLookup
     activity_names: activity_builder.ActivityNames
     endpoint: Endpoint
-    suffix: str
+    node: str
 
     @property
     def activity(self) -> str:
@@ -106,14 +113,16 @@ class _GivenPace:
         output_timing = self.timing.outputs.get(self.endpoint.port or "", OutputTiming())
         yield self._rate_row(pace, output_timing)
         if output_timing.conditional:
-            yield PromiseRow(f"Sent{self.suffix}", inline_text.to_inlines("only when there is something to send"))
+            yield PromiseRow(
+                TermName("sent", "Sent", self.node), inline_text.to_inlines("only when there is something to send")
+            )
         if self.timing.jitter:
-            yield promise_limit(f"Jitter{self.suffix}", self.timing.jitter, "jitter", "up to {}")
+            yield promise_limit(TermName("jitter", "Jitter", self.node), self.timing.jitter, "jitter", "up to {}")
         if pace.behaviour not in {"once", "on_demand"}:
             yield self._gap_row(pace, output_timing)
 
     def _rate_row(self, pace: EventPace, output_timing: OutputTiming) -> PromiseRow:
-        name, words = f"Rate{self.suffix}", _spell_rate(pace)
+        name, words = replace(RATE, node=self.node), _spell_rate(pace)
         if pace.rate.value is not None and not pace.inferred:
             # "At each activation" is a promise of its own: an output that becomes conditional promises less.
             strength: PromiseStrength = {"rate": pace.rate.value, "each activation": int(not output_timing.conditional)}
@@ -146,12 +155,12 @@ class _GivenPace:
         words = _spell_duration(pace.gap)
         is_known = words != value_format.UNKNOWN_FIGURE and "promised" not in pace.gap.assumptions
         source = f"{SOURCE_PHRASE}when {self.activity} is activated and how long it takes" if pace.gap.value else ""
-        name = f"Largest gap{self.suffix}"
+        name = replace(MAX_GAP, node=self.node)
         row = promise_limit(name, limit, "gap") if limit else PromiseRow(name)
         return replace(row, expected=inline_text.to_inlines(f"{words}{source}") if is_known else ())
 
     def _answer_row(self) -> PromiseRow:
-        name, limit = f"Answers within{self.suffix}", self.timing.response
+        name, limit = TermName("response", "Answers within", self.node), self.timing.response
         if limit:
             return promise_limit(name, limit, "response")
         response = self.timed.analysis.responses.get(self.activity)
@@ -185,7 +194,7 @@ def _message_size(lookup: Lookup, interface: PartnerInterface, part: str) -> Mes
     return lookup.message_size(message, None if part else interface.type)
 
 
-def _size_row(name: str, size: MessageSize) -> PromiseRow:
+def _size_row(name: TermName, size: MessageSize) -> PromiseRow:
     if size.bytes is None:
         return PromiseRow(name)
     amount = value_format.display_bytes(TimingValue(Fraction(size.bytes)))

@@ -10,13 +10,13 @@ from archgen.model.partner_interfaces import PartnerInterface, list_givers
 from archgen.timing.chains.measured_comparison import Observation
 from archgen.timing.figures.figure_wording import format_duration, format_rate
 from archgen.timing.system import activity_builder
-from archgen.views.agreement.promise_rows import PromiseRow
+from archgen.views.agreement.promise_rows import MAX_AGE, MAX_GAP, RATE, PromiseRow
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Inlines, Text
 
 _NS_PER_SECOND = 10**9
-_ROW_ASPECTS = {"Rate": "rate", "Largest gap": "gap", "Greatest age": "max_age"}
-_PROMISED_ASPECTS = {"Largest gap": ("gap", "max_gap"), "Rate": ("rate",), "Greatest age": ("max_age",)}
+_ROW_ASPECTS = {RATE.key: "rate", MAX_GAP.key: "gap", MAX_AGE.key: "max_age"}
+_PROMISED_ASPECTS = {MAX_GAP.key: ("gap", "max_gap"), RATE.key: ("rate",), MAX_AGE.key: ("max_age",)}
 
 
 def add_measured(
@@ -39,14 +39,14 @@ def add_measured(
     topic_figures = _collect_figures(observations, set(interface.topic_names))
     all_figures = topic_figures or _collect_figures(observations, set(givers.values()) if len(givers) == 1 else set())
     figures_by_row = {
-        row.name: _collect_figures(observations, {givers.get(row.name.partition(" of ")[2], "")})
-        if " of " in row.name and row.name.partition(" of ")[0] in _ROW_ASPECTS
+        row.name: _collect_figures(observations, {givers.get(row.name.node, "")})
+        if row.name.node and row.name.key in _ROW_ASPECTS
         else all_figures
         for row in rows
     }
     measured_rows = [_measure_row(row, figures_by_row[row.name]) for row in rows]
-    if "max_age" in all_figures and not any(row.name == "Greatest age" for row in rows):
-        measured_rows.append(_measure_row(PromiseRow("Greatest age"), all_figures))
+    if "max_age" in all_figures and not any(row.name == MAX_AGE for row in rows):
+        measured_rows.append(_measure_row(PromiseRow(MAX_AGE), all_figures))
     return tuple(measured_rows)
 
 
@@ -73,19 +73,19 @@ def _list_figures(observation: Observation) -> Iterator[tuple[str, Fraction]]:
 
 
 def _measure_row(row: PromiseRow, figures: dict[str, Fraction]) -> PromiseRow:
-    head = row.name.partition(" of ")[0]
-    value = figures.get(_ROW_ASPECTS.get(head, ""))
-    return row if value is None else replace(row, measured=_write_figure(row, head, value))
+    value = figures.get(_ROW_ASPECTS.get(row.name.key, ""))
+    return row if value is None else replace(row, measured=_write_figure(row, value))
 
 
-def _write_figure(row: PromiseRow, head: str, value: Fraction) -> Inlines:
+def _write_figure(row: PromiseRow, value: Fraction) -> Inlines:
     """Return a measured figure, marked where it is worse than what is promised."""
-    promised = next((row.strength[each] for each in _PROMISED_ASPECTS[head] if each in row.strength), None)
-    if head == "Rate":
+    key = row.name.key
+    promised = next((row.strength[each] for each in _PROMISED_ASPECTS[key] if each in row.strength), None)
+    if key == RATE.key:
         text, is_worse = format_rate(value), promised is not None and value < promised
     else:
         text, is_worse = format_duration(value), promised is not None and value > -promised
-    words = f"{text} on arrival" if head == "Greatest age" else text
+    words = f"{text} on arrival" if key == MAX_AGE.key else text
     if is_worse:
         return (Text(f"{words}, worse than promised", status="missed", sort_number=str(value)),)
     return (Text(words, sort_number=str(value)),)

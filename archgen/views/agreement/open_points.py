@@ -15,30 +15,25 @@ from archgen.model.ros_distro import is_ros_1
 from archgen.timing.analysis import ChainResult
 from archgen.timing.system.activity_builder import ActivityNames
 from archgen.views.agreement.interface_timing import find_broken_limits
+from archgen.views.agreement.promise_rows import QOS_OFFERED, RATE, TermName
 from archgen.views.lookup import Lookup
 from archgen.views.timing import value_format
 
-_OPEN_SENTENCES = (
-    ("Type", "The type of what flows is not agreed."),
-    ("Message", "The message is not agreed."),
-    ("Fields", "The fields of the message are not stated here: its definition is not at hand."),
-    ("Rate", "No rate is promised{of_node}, and none can be expected from what is known."),
-    ("Size", "The size of a message is not known."),
-    (
-        "Answers within",
-        "Nobody promises within what time{of_node} an answer comes, and it cannot be told from what is known.",
-    ),
-    ("QoS offered", "No quality of service is promised: ROS's default counts."),
-)
-"""What to say of a term that is open, by the beginning of its name."""
+_OPEN_SENTENCES = {
+    "type": "The type of what flows is not agreed.",
+    "message": "The message is not agreed.",
+    "fields": "The fields of the message are not stated here: its definition is not at hand.",
+    RATE.key: "No rate is promised{of_node}, and none can be expected from what is known.",
+    "size": "The size of a message is not known.",
+    "response": "Nobody promises within what time{of_node} an answer comes, and it cannot be told from what is known.",
+    QOS_OFFERED.key: "No quality of service is promised: ROS's default counts.",
+}
+"""What to say of a term that is open, by its key."""
 
 
-def describe_open_term(name: str) -> str:
-    """Return a sentence about a term that is not settled, such as `Rate` or `Rate of lidar_driver`."""
-    head, _, node_id = name.partition(" of ")
-    is_of_node = head in {"Rate", "Answers within"} and node_id
-    sentence = next(text for start, text in _OPEN_SENTENCES if name.startswith(start))
-    return sentence.format(of_node=f" by `{node_id}`" if is_of_node else "")
+def describe_open_term(name: TermName) -> str:
+    """Return a sentence about a term that is not settled, such as the rate or the rate of one of several nodes."""
+    return _OPEN_SENTENCES[name.key].format(of_node=f" by `{name.node}`" if name.node else "")
 
 
 def find_contradictions(lookup: Lookup, activity_names: ActivityNames, interface: PartnerInterface) -> Iterator[str]:

@@ -18,12 +18,19 @@ from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import is_boundless
 from archgen.timing.system import activity_builder
 from archgen.views import inline_text
-from archgen.views.agreement.promise_rows import SOURCE_PHRASE, PromiseRow, PromiseStrength
+from archgen.views.agreement.promise_rows import (
+    MAX_AGE,
+    MAX_GAP,
+    RATE,
+    SOURCE_PHRASE,
+    PromiseRow,
+    PromiseStrength,
+    TermName,
+)
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Inlines, Text
+from archgen.views.shapes import Fact, Inlines, Text
 from archgen.views.timing import value_format
 
-_ROW_NAMES = {"rate": "Rate", "max_gap": "Largest gap", "max_age": "Greatest age"}
 _WORDS = {"rate": "at least {}", "max_gap": "at most {}", "max_age": "no older than {}"}
 _Value = TypeVar("_Value")
 
@@ -55,7 +62,7 @@ def list_counted_ports(lookup: Lookup, interface: PartnerInterface) -> tuple[Cou
     return tuple(ports.values()) or (CountedPort(interface.output, ()),)
 
 
-def list_word_facts(ports: Sequence[CountedPort]) -> Iterator[tuple[str, Inlines]]:
+def list_word_facts(ports: Sequence[CountedPort]) -> Iterator[Fact]:
     """Yield the version that the owner counts, and until when it may be used."""
     yield from _list_fact("Version by its owner", ports, lambda each: each.port.version)
     yield from _list_fact("Deprecated", ports, lambda each: _deprecation_text(each.port))
@@ -67,10 +74,10 @@ def _deprecation_text(port: Output) -> str | None:
 
 def _list_fact(
     name: str, ports: Sequence[CountedPort], read_text: Callable[[CountedPort], str | None]
-) -> Iterator[tuple[str, Inlines]]:
+) -> Iterator[Fact]:
     texts = _group_values(ports, read_text)
     if texts:
-        yield name, _write_values(texts, str, is_several=len(ports) > 1)
+        yield Fact("", name, _write_values(texts, str, is_several=len(ports) > 1))
 
 
 def add_promises(
@@ -85,7 +92,8 @@ def add_promises(
         yield from rows
         return
     rows_by_name = {row.name: row for row in rows}
-    for key, name in _ROW_NAMES.items():
+    for name in (RATE, MAX_GAP, MAX_AGE):
+        key = name.key
         row = rows_by_name.pop(name, PromiseRow(name))
         if key == "max_age":
             row = replace(row, expected=_write_age(lookup, activity_names, interface))
@@ -155,14 +163,16 @@ def _list_value_rows(ports: Sequence[CountedPort]) -> Iterator[PromiseRow]:
     """Yield the promised unit, frame and range of the values."""
     is_several = len(ports) > 1
     for name, read_text in (
-        ("Range of values", lambda each: _range_text(each.promise)),
-        ("Unit", lambda each: each.promise.unit if each.promise.range is None else None),
-        ("Frame", lambda each: each.promise.frame),
+        (TermName("range", "Range of values"), lambda each: _range_text(each.promise)),
+        (TermName("unit", "Unit"), lambda each: each.promise.unit if each.promise.range is None else None),
+        (TermName("frame", "Frame"), lambda each: each.promise.frame),
     ):
         texts = _group_values(ports, read_text)
         if texts:
             yield PromiseRow(
-                name, _write_values(texts, str, is_several=is_several), strength=_measure_range(ports, name)
+                name,
+                _write_values(texts, str, is_several=is_several),
+                strength=_measure_range(ports) if name.key == "range" else {},
             )
 
 
@@ -170,10 +180,10 @@ def _range_text(promise: Promise) -> str | None:
     return format_range(promise.range, promise.unit) if promise.range else None
 
 
-def _measure_range(ports: Sequence[CountedPort], name: str) -> Mapping[str, Fraction]:
+def _measure_range(ports: Sequence[CountedPort]) -> Mapping[str, Fraction]:
     limits = [each.promise.range for each in ports]
     finite = [limit for limit in limits if limit is not None and not {float("inf"), float("-inf")} & set(limit)]
-    if name != "Range of values" or len(finite) != len(ports):
+    if len(finite) != len(ports):
         return {}
     least, greatest = min(limit[0] for limit in finite), max(limit[1] for limit in finite)
     return {"least": Fraction(least), "greatest": -Fraction(greatest)}

@@ -13,14 +13,15 @@ from dataclasses import field
 from archgen.compare.matched_ids import MatchedIds
 from archgen.frozen import dataclass
 from archgen.timing.analysis import ChainResult
-from archgen.views.agreement.interface_terms import InterfaceEnd, InterfaceTerms, partner_titles
-from archgen.views.agreement.promise_rows import PromiseRow, PromiseStrength
+from archgen.views.agreement.interface_terms import InterfaceEnd, InterfaceTerms
+from archgen.views.agreement.promise_rows import MAX_GAP, RATE, PromiseRow, PromiseStrength
+from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Inlines
 from archgen.views.timing import value_format
 
-_NODE_FACTS = ("Rate", "Largest gap", "Answers within")
-"""Facts that name their node where several nodes give (`Rate of camera_driver`)."""
+_NODE_TERMS = {RATE.key, MAX_GAP.key, "response"}
+"""Keys of terms that stay the same where their node is renamed."""
 CONTRADICTION_KIND = "contradictions"
 _FIGURE = re.compile(r"[0-9]+(?:\.[0-9]+)? [A-Za-z]+")
 
@@ -48,7 +49,7 @@ def list_plain_terms(
     terms = {"": _unchanged_term("title", "Title", interface_terms.title)}
     terms |= _fact_terms(interface_terms, matched_ids)
     for promise_row in interface_terms.promise_rows:
-        terms |= _promise_terms(lookup, promise_row, matched_ids)
+        terms |= _promise_terms(promise_row, matched_ids)
     terms |= dict(_end_term(lookup, end, matched_ids) for end in interface_terms.ends)
     for row in interface_terms.field_rows or ():
         terms[f"field {row.path}"] = _unchanged_term("fields", f"Field {row.path}", row.terms)
@@ -76,42 +77,38 @@ def _unchanged_term(kind: str, name: str, text: str) -> PlainTerm:
 
 def _fact_terms(interface_terms: InterfaceTerms, matched_ids: MatchedIds) -> Iterator[tuple[str, PlainTerm]]:
     interface = interface_terms.interface
-    for name, value in interface_terms.facts:
+    for key, title, value in interface_terms.facts:
         text = _plain_text(value)
         identity = text
-        if name == "Type" and interface.type:
+        if key == "type" and interface.type:
             identity = matched_ids.common_id("type", interface.type)
-        elif name == "Message" and interface.message:
+        elif key == "message" and interface.message:
             identity = text.replace(interface.message, matched_ids.common_id("message", interface.message), 1)
-        elif name == "Meaning":
+        elif key == "meaning":
             identity = " ".join(text.split())
-        elif name == "Also read by":
+        elif key == "other_readers":
             other_ids = {matched_ids.common_id("component", port.component) for port in interface.other_inputs}
             identity = ", ".join(sorted(other_ids))
         # Who else reads it binds neither of the two.
-        yield name, PlainTerm(name.lower(), name, text, identity, is_expected=name == "Also read by")
+        yield key or title, PlainTerm(title.lower(), title, text, identity, is_expected=key == "other_readers")
 
 
-def _promise_terms(lookup: Lookup, row: PromiseRow, matched_ids: MatchedIds) -> Iterator[tuple[str, PlainTerm]]:
-    key = _fact_key(lookup, row.name, matched_ids)
-    kind = row.name if row.name.startswith("QoS") else row.name.lower()
+def _promise_terms(row: PromiseRow, matched_ids: MatchedIds) -> Iterator[tuple[str, PlainTerm]]:
+    node = row.name.node
+    if node and row.name.key in _NODE_TERMS:
+        node = matched_ids.common_id("node", node)
+    key = f"{row.name.title} of {node}"
+    name, kind = row.name.text, row.name.words
     if row.promised:
         text = _plain_text(row.promised)
         identity = row.promise_identity or text
-        yield f"promised {key}", PlainTerm(kind, f"{row.name} (promised)", text, identity, strength=row.strength)
+        yield f"promised {key}", PlainTerm(kind, f"{name} (promised)", text, identity, strength=row.strength)
     if row.expected:
         # "follows from the rate of NODE". A topic that is called after a renamed component is not treated so: whoever
         # subscribes to it has to follow.
         text = _plain_text(row.expected)
         identity = matched_ids.rename_in_text(text)
-        yield f"expected {key}", PlainTerm(kind, f"{row.name} (expected)", text, identity, is_expected=True)
-
-
-def _fact_key(lookup: Lookup, name: str, matched_ids: MatchedIds) -> str:
-    head, separator, node_id = name.rpartition(" of ")
-    if separator and name.startswith(_NODE_FACTS) and node_id in lookup.architecture.nodes:
-        return f"{head} of {matched_ids.common_id('node', node_id)}"
-    return name
+        yield f"expected {key}", PlainTerm(kind, f"{name} (expected)", text, identity, is_expected=True)
 
 
 def _end_term(lookup: Lookup, end: InterfaceEnd, matched_ids: MatchedIds) -> tuple[str, PlainTerm]:
@@ -130,7 +127,7 @@ def _end_term(lookup: Lookup, end: InterfaceEnd, matched_ids: MatchedIds) -> tup
     text, identity = (
         "; ".join(filter(None, parts))
         for parts in (
-            (end.role, partner_titles(lookup, end.owners), qos),
+            (end.role, join_owner_titles(lookup, end.owners), qos),
             (end.role, owner_ids, qos_identity),
         )
     )

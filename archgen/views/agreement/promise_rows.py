@@ -23,13 +23,40 @@ _UNLIMITED = 10**30
 
 
 @dataclass(frozen=True, slots=True)
+class TermName:
+    """What a term is called. `key` is what code calls it; `node` is whose term it is, where several nodes give."""
+
+    key: str
+    title: str
+    node: str = ""
+
+    @property
+    def text(self) -> str:
+        """The name as it stands alone: `Rate of lidar_driver`."""
+        return f"{self.title} of {self.node}" if self.node else self.title
+
+    @property
+    def words(self) -> str:
+        """The name as it stands inside of a sentence."""
+        return self.text if self.key == "qos" else self.text.lower()
+
+
+RATE, MAX_GAP, MAX_AGE = (
+    TermName("rate", "Rate"),
+    TermName("max_gap", "Largest gap"),
+    TermName("max_age", "Greatest age"),
+)
+QOS_OFFERED = TermName("qos", "QoS offered")
+
+
+@dataclass(frozen=True, slots=True)
 class PromiseRow:
     """A term with what is promised, expected and was measured of it, each empty where there is nothing.
 
     `promise_identity` is the same for whatever promises the same, in other units or words; left out, it is the text.
     """
 
-    name: str
+    name: TermName
     promised: Inlines = ()
     expected: Inlines = ()
     strength: PromiseStrength = field(default_factory=dict)
@@ -37,7 +64,7 @@ class PromiseRow:
     measured: Inlines = ()
 
 
-def promise_limit(name: str, limit: Quantity, aspect: str, words: str = "{}") -> PromiseRow:
+def promise_limit(name: TermName, limit: Quantity, aspect: str, words: str = "{}") -> PromiseRow:
     """Return the promise to stay below a limit; `words` has a place for it."""
     strength = {aspect: -limit.value}
     promised = (Text(words.format(limit), sort_number=str(limit.value)),)
@@ -82,7 +109,7 @@ def write_promise_table(anchor: str, caption: str, giver_title: str, rows: tuple
     )
     cells: tuple[tuple[Inlines, ...], ...] = tuple(
         (
-            inline_text.to_inlines(row.name),
+            inline_text.to_inlines(row.name.text),
             row.promised or inline_text.to_inlines(Text("nothing", muted=True)),
             row.expected or (() if row.promised else inline_text.to_inlines(Text("not known", muted=True))),
         )

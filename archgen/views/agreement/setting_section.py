@@ -16,9 +16,9 @@ from archgen.model.setting_sharing import (
 )
 from archgen.views import inline_text
 from archgen.views.agreement.agreement_content import AgreementContent
-from archgen.views.agreement.interface_terms import partner_titles
 from archgen.views.agreement.term_changes import write_signed_kind
 from archgen.views.elements.parameter_blocks import describe_limits, describe_types
+from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.shapes import Block, Column, Inlines, Paragraph, Section, Table, Text, drop_empty_columns
 
 _LEAD = "One of the two declares these at a component, and the other one sets them, or may call them."
@@ -45,7 +45,7 @@ def _make_parameter_table(content: AgreementContent, marks: Mapping[str, Text]) 
         (
             (Text(shared.parameter.name, code=True),),
             (inline_text.component_link(shared.component),),
-            inline_text.to_inlines(partner_titles(content.lookup, [shared.giver])),
+            inline_text.to_inlines(join_owner_titles(content.lookup, [shared.giver])),
             inline_text.to_inlines(shared.parameter.type or ""),
             inline_text.to_inlines(shared.parameter.unit or ""),
             inline_text.to_inlines(describe_limits(shared.parameter)),
@@ -83,7 +83,7 @@ def _make_operation_table(content: AgreementContent, marks: Mapping[str, Text]) 
         (
             (Text(shared.operation.id, code=True),),
             (inline_text.component_link(shared.component),),
-            inline_text.to_inlines(partner_titles(content.lookup, [shared.giver])),
+            inline_text.to_inlines(join_owner_titles(content.lookup, [shared.giver])),
             inline_text.to_inlines(describe_types(shared.operation.request or "")),
             inline_text.to_inlines(describe_types(shared.operation.response or "")),
             inline_text.to_inlines(shared.operation.call or ""),

@@ -8,7 +8,7 @@ from archgen.bringup.plan_shapes import StartStep
 from archgen.bringup.start_plan import describes_start, make_start_plan
 from archgen.views import inline_text, start_phrases
 from archgen.views.agreement.agreement_content import AgreementContent
-from archgen.views.agreement.interface_terms import partner_titles
+from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.shapes import Column, Inlines, Paragraph, Section, Table, Text, drop_empty_columns
 from archgen.views.tables.start_table import link_step
 
@@ -49,9 +49,9 @@ def _list_rows(
             sign = until or start_phrases.describe_ready(awaited) or "it is started"
             yield (
                 (link_step(step),),
-                inline_text.to_inlines(partner_titles(content.lookup, pair[:1])),
+                inline_text.to_inlines(join_owner_titles(content.lookup, pair[:1])),
                 (link_step(awaited),),
-                inline_text.to_inlines(partner_titles(content.lookup, pair[1:])),
+                inline_text.to_inlines(join_owner_titles(content.lookup, pair[1:])),
                 inline_text.to_inlines(sign),
                 (Text("; ".join(named.reasons), muted=True),),
             )

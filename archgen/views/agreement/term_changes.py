@@ -159,7 +159,7 @@ def _compare_terms(old_terms: Mapping[str, PlainTerm], new_terms: Mapping[str, P
             term_changes.append(_describe_change("added", new_term, None, new_term))
         elif old_term.identity != new_term.identity or is_weaker(old_term.strength, new_term.strength):
             term_changes.append(_describe_change("changed", new_term, old_term, new_term))
-        elif old_term.text != new_term.text and new_term.name in {"Type", "Message"}:
+        elif old_term.text != new_term.text and key in {"type", "message"}:
             term_changes.append(_describe_change("renamed", new_term, old_term, new_term))
     gone_terms = (old_term for key, old_term in old_terms.items() if key not in new_terms)
     return [*term_changes, *(_describe_change("removed", old_term, old_term, None) for old_term in gone_terms)]

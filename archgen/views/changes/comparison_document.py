@@ -213,12 +213,7 @@ def describe_comparison(
 
 def sort_by_severity(findings: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
     """Return findings, gravest first; those of one severity keep the order of the files."""
-    return tuple(sorted(findings, key=lambda finding: _SEVERITY_ORDER[severity_of(finding)]))
-
-
-def severity_of(finding: Diagnostic) -> Severity:
-    """Return the severity of a finding; one that is not settled is an error."""
-    return finding.severity or Severity.ERROR
+    return tuple(sorted(findings, key=lambda finding: _SEVERITY_ORDER[finding.effective_severity]))
 
 
 def _group_findings(
@@ -283,7 +278,7 @@ def _count_differences(edits: Sequence[Edit], finding_groups: Sequence[FindingGr
 def _count_findings(finding_groups: Sequence[FindingGroup]) -> Iterator[str]:
     for group in finding_groups:
         if group.kind == "new":
-            severities = Counter(map(severity_of, group.findings))
+            severities = Counter(finding.effective_severity for finding in group.findings)
             counts = [count_noun(severities[name], str(name)) for name in _SEVERITY_ORDER if severities[name]]
             yield f"new: {', '.join(counts)}"
         else:

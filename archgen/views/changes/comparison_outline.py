@@ -54,10 +54,11 @@ def _document_facts(document: ComparisonDocument) -> Iterator[tuple[str, Inlines
     yield "From", inline_text.to_inlines(Text(document.before.name, code=True))
     yield "To", inline_text.to_inlines(Text(document.after.name, code=True))
     yield "Changes", inline_text.to_inlines("none" if document.is_empty else document.counts)
-    for name, partners in (("Breaks", document.broken_partners), ("Concerns", document.concerned_partners)):
-        if partners:
-            runs = text_runs(", ".join(partners))
-            yield name, tuple(replace(run, strong=True, change="removed") for run in runs) if name == "Breaks" else runs
+    if document.broken_partners:
+        runs = text_runs(", ".join(document.broken_partners))
+        yield "Breaks", tuple(replace(run, strong=True, change="removed") for run in runs)
+    if document.concerned_partners:
+        yield "Concerns", text_runs(", ".join(document.concerned_partners))
 
 
 def _document_notices(document: ComparisonDocument) -> Iterator[Paragraph]:
@@ -167,7 +168,7 @@ def _chain_section(chain_rows: Sequence[ChainRow]) -> Section | None:
 def _findings_section(group: FindingGroup) -> Section:
     rows = tuple(
         (
-            inline_text.to_inlines(str(comparison_document.severity_of(finding))),
+            inline_text.to_inlines(str(finding.effective_severity)),
             inline_text.to_inlines(Text(finding.rule, code=True)),
             text_runs(finding.message),
             inline_text.to_inlines(Text(str(finding.span), code=True)) if finding.span.file else (),

@@ -17,7 +17,7 @@ from archgen.views.changes.comparison_document import ComparisonDocument
 from archgen.views.changes.comparison_outline import write_comparison_outline
 from archgen.views.chart_shapes import Drawing
 from archgen.views.graph_shapes import Box, ElementChange, Graph
-from archgen.views.shapes import Block, Bullets, Column, Facts, Inlines, Page, Section, Table, Text
+from archgen.views.shapes import Block, Bullets, Column, Facts, Inlines, Page, Section, Table, Text, split_anchor
 
 CHANGES_ANCHOR = "page:changes"
 _PAGE_KINDS = frozenset(
@@ -75,17 +75,14 @@ class SiteChanges:
     @cached_property
     def changed_groups(self) -> frozenset[str]:
         """The anchors of the groups that changed, or in which something did."""
-        names = (
-            anchor.partition(":")[2].partition(".")[0]
-            for anchor in self.kinds_by_page
-            if anchor.startswith("component:")
-        )
+        changed = [(anchor, *split_anchor(anchor)) for anchor in self.kinds_by_page]
+        names = (name.partition(".")[0] for _, kind, name in changed if kind == "component")
         removed = (
             change.element_id.partition(".")[0]
             for change in self.comparison.changes
             if change.element_kind == "component" and change.kind == "removed"
         )
-        own = (anchor for anchor in self.kinds_by_page if anchor.startswith("group:"))
+        own = (anchor for anchor, kind, _ in changed if kind == "group")
         return frozenset((*own, *(f"group:{name}" for name in (*names, *removed))))
 
     @cached_property
@@ -144,7 +141,7 @@ def add_changes(pages: Iterable[Page], site_changes: SiteChanges, drawings: Mapp
 def _make_changes_page(
     site_changes: SiteChanges, first_page: Page, drawings: Mapping[str, Drawing], anchors: Collection[str]
 ) -> Page:
-    ids = {anchor.partition(":")[2]: anchor for anchor in sorted(anchors) if anchor.partition(":")[0] in _PAGE_KINDS}
+    ids = {split_anchor(anchor)[1]: anchor for anchor in sorted(anchors) if split_anchor(anchor)[0] in _PAGE_KINDS}
     names = site_changes.document.element_titles
     # A port's id leads to its component.
     pages = {name: page for name in names if (page := ids.get(name) or ids.get(name.rpartition(".")[0]))}

@@ -6,11 +6,9 @@ from collections.abc import Iterable
 
 from archgen.model.component import Component, ComponentType
 from archgen.views import inline_text
-from archgen.views.element_references import place_run
 from archgen.views.elements.annotation_facts import list_annotation_facts, list_contact_facts, make_image_blocks
 from archgen.views.elements.element_names import join_surrounding_titles
-from archgen.views.elements.functional_level import describe_purpose
-from archgen.views.elements.instance_values import OwnValue, TypeTexts
+from archgen.views.elements.functional_level import describe_purpose, list_own_values
 from archgen.views.elements.parameter_blocks import make_parameter_blocks
 from archgen.views.elements.promise_words import write_badges, write_deprecation
 from archgen.views.lookup import Lookup
@@ -143,13 +141,12 @@ def _shown_instances(lookup: Lookup, component_type: ComponentType) -> list[Comp
 
 
 def _make_instance_table(lookup: Lookup, component_type: ComponentType) -> list[Block]:
-    texts = TypeTexts(lookup.architecture)
     rows = tuple(
         (
             (inline_text.component_link(each),),
             inline_text.to_inlines(_join_places(lookup, each)),
             (link_type(lookup.architecture, each),),
-            _make_own_cell(lookup, each, texts),
+            _make_own_cell(lookup, each),
         )
         for each in _shown_instances(lookup, component_type)
     )
@@ -163,25 +160,7 @@ def _join_places(lookup: Lookup, component: Component) -> str:
     return " · ".join(filter(None, (group_title, join_surrounding_titles(lookup, component))))
 
 
-def _make_own_cell(lookup: Lookup, component: Component, texts: TypeTexts) -> Inlines:
+def _make_own_cell(lookup: Lookup, component: Component) -> Inlines:
     if component.is_reference:
         return inline_text.to_inlines(Text("a reference: exactly its type", muted=True))
-    return make_own_value_lines(lookup, texts.list_own_values(component), max_letters=_MAX_VALUE)
-
-
-def make_own_value_fact(lookup: Lookup, component: Component, texts: TypeTexts) -> tuple[str, Inlines] | None:
-    """Return what an instance says otherwise than its type as a fact; None where it says nothing."""
-    lines = make_own_value_lines(lookup, texts.list_own_values(component))
-    return ("Otherwise than its type", lines) if lines else None
-
-
-def make_own_value_lines(lookup: Lookup, own_values: Iterable[OwnValue], max_letters: int | None = None) -> Inlines:
-    """Return what an instance says otherwise, each on a line with its place."""
-    lines = []
-    for value in own_values:
-        text = " ".join(value.text.split())
-        is_long = max_letters is not None and len(text) > max_letters
-        shown_text = f"{text[:max_letters]} ..." if is_long else text
-        place = place_run(lookup, value.at)
-        lines.append((Text(f"{value.name}: {shown_text}"), *((Text(" "), place) if place else ())))
-    return inline_text.join_lines(lines)
+    return list_own_values(lookup, component, max_letters=_MAX_VALUE)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from fractions import Fraction
 
 from archgen.model.component import Component, Group
 from archgen.model.component_nesting import list_surrounding
 from archgen.views import inline_marks, inline_text, timing_words
+from archgen.views.element_references import place_run
 from archgen.views.elements import port_tables
 from archgen.views.elements.annotation_facts import list_annotation_facts, list_contact_facts, make_image_blocks
 from archgen.views.elements.parameter_blocks import make_parameter_blocks
@@ -18,13 +19,14 @@ from archgen.views.shapes import (
     Block,
     Bullets,
     Column,
-    Facts,
+    Fact,
     Figure,
     Inlines,
     Markdown,
     Paragraph,
     Table,
     Text,
+    show_facts,
 )
 from archgen.views.timing import element_timing
 from archgen.views.type_names import link_type
@@ -33,10 +35,10 @@ _MAX_NODES = 4
 """With more nodes inside of a composed component a table counts them."""
 
 
-def make_group_blocks(lookup: Lookup, group: Group) -> tuple[Block, ...]:
-    """Describe a group: its owner, its purpose, its picture and its components."""
+def make_group_blocks(lookup: Lookup, group: Group, without: Collection[str] = ()) -> tuple[Block, ...]:
+    """Describe a group: its owner, its purpose, its picture and its components, without the facts of some keys."""
     components = lookup.shown_members(group.id)
-    blocks: list[Block] = [Facts(tuple(_group_facts(lookup, group)))]
+    blocks: list[Block] = [show_facts(list_group_facts(lookup, group), without)]
     if group.description:
         blocks.append(Markdown(group.description))
     blocks.append(
@@ -57,15 +59,15 @@ def make_group_blocks(lookup: Lookup, group: Group) -> tuple[Block, ...]:
     return tuple(blocks)
 
 
-def _group_facts(lookup: Lookup, group: Group) -> list[tuple[str, Inlines]]:
-    rows = [("Owner", inline_text.owner_links(lookup.architecture, group.owners))]
-    rows.append(("Components", inline_text.to_inlines(_count_components(lookup, group))))
+def list_group_facts(lookup: Lookup, group: Group) -> Iterator[Fact]:
+    """Yield the facts above a group's description."""
+    yield Fact("owner", "Owner", inline_text.owner_links(lookup.architecture, group.owners))
+    yield Fact("components", "Components", inline_text.to_inlines(_count_components(lookup, group)))
     if group.tags:
-        rows.append(("Tags", inline_text.to_inlines(", ".join(group.tags))))
+        yield Fact("", "Tags", inline_text.to_inlines(", ".join(group.tags)))
     if group.urls:
-        rows.append(("Links", inline_text.link_urls(group.urls.items(), lookup.repository)))
-    rows += list_annotation_facts(lookup, group)
-    return rows
+        yield Fact("links", "Links", inline_text.link_urls(group.urls.items(), lookup.repository))
+    yield from (Fact("", *row) for row in list_annotation_facts(lookup, group))
 
 
 def _count_components(lookup: Lookup, group: Group) -> str:
@@ -91,7 +93,7 @@ def make_component_table(
         )
         for component in components
     )
-    columns = (Column("Component", 1.1), Column("Purpose", 2.4), Column("Role", 0.6), Column("Nodes", 1.1))
+    columns = (Column("Component", 1.1), Column("Purpose", 2.4), Column("Role", 0.6), Column("Nodes", 1.1, key="nodes"))
     if any(component.component_type for component in components):
         return Table(anchor, caption, (columns[0], Column("Type", 0.9), *columns[1:]), rows)
     return Table(anchor, caption, columns, tuple((row[0], *row[2:]) for row in rows))
@@ -134,10 +136,12 @@ def describe_purpose(markdown: str | None) -> Inlines:
     return inline_marks.read_marks(sentence) if sentence else inline_text.UNKNOWN_INLINES
 
 
-def make_component_blocks(lookup: Lookup, component: Component) -> tuple[Block, ...]:
-    """Describe a component: facts, functionality, picture, requirements, performance, ports, parameters, operations."""
+def make_component_blocks(lookup: Lookup, component: Component, without: Collection[str] = ()) -> tuple[Block, ...]:
+    """Describe a component: facts without those of some keys, functionality, picture, requirements, performance, ports,
+    parameters, operations.
+    """
     blocks: list[Block] = [
-        Facts(tuple(list_component_facts(lookup, component))),
+        show_facts(list_component_facts(lookup, component), without),
         make_functionality_block(component),
         *make_image_blocks(lookup, component),
     ]
@@ -153,8 +157,7 @@ def make_component_blocks(lookup: Lookup, component: Component) -> tuple[Block, 
     )
     blocks += make_requirement_blocks(lookup, component)
     blocks += make_performance_blocks(component)
-    blocks += port_tables.make_input_blocks(lookup, component)
-    blocks += port_tables.make_output_blocks(lookup, component)
+    blocks += port_tables.make_port_blocks(lookup, component)
     blocks += make_parameter_blocks(component)
     return tuple(blocks)
 
@@ -166,57 +169,59 @@ def make_functionality_block(component: Component) -> Block:
     return Paragraph(inline_text.to_inlines(Text("What it does is not described yet.", muted=True)))
 
 
-def list_component_facts(lookup: Lookup, component: Component) -> list[tuple[str, Inlines]]:
-    """Return the facts above a component's description."""
+def list_component_facts(lookup: Lookup, component: Component) -> Iterator[Fact]:
+    """Yield the facts above a component's description."""
     architecture = lookup.architecture
-    rows = [
-        ("Group", inline_text.to_inlines(inline_text.group_link(architecture, component.group))),
-        *_list_composition_facts(lookup, component),
-        ("Owner", inline_text.owner_links(architecture, component.owners)),
-    ]
+    yield Fact("group", "Group", inline_text.to_inlines(inline_text.group_link(architecture, component.group)))
+    yield from _list_composition_facts(lookup, component)
+    yield Fact("owner", "Owner", inline_text.owner_links(architecture, component.owners))
     if component.role or not component.children:
-        rows.append(("Role", inline_text.value_or_unknown(component.role)))
-    timing = timing_words.format_timing_sentence(component.timing)
-    if timing:
-        rows.append(("Timing", inline_text.to_inlines(timing)))
+        yield Fact("role", "Role", inline_text.value_or_unknown(component.role))
+    if timing := timing_words.format_timing_sentence(component.timing):
+        yield Fact("", "Timing", inline_text.to_inlines(timing))
     if worst_way := element_timing.make_whole_fact(lookup, component.id):
-        rows.append(("Worst way through it", worst_way))
+        yield Fact("", "Worst way through it", worst_way)
     nodes = lookup.nodes_inside(component.id)
     if rate := element_timing.make_rate_fact(lookup, nodes, component.id):
-        rows.append(("Rate", rate))
-    rows.append(
-        (
-            "Implemented by",
-            inline_text.join_inlines((inline_text.node_link(node),) for node in nodes) or inline_text.UNKNOWN_INLINES,
-        )
-    )
+        yield Fact("", "Rate", rate)
+    node_links = inline_text.join_inlines((inline_text.node_link(node),) for node in nodes)
+    yield Fact("", "Implemented by", node_links or inline_text.UNKNOWN_INLINES)
     if written_frames := lookup.frames_of.get(component.id):
-        rows.append(
-            (
-                "Writes the frames",
-                inline_text.join_inlines(inline_text.frame_link(frame.id) for frame in written_frames),
-            )
-        )
+        frame_links = inline_text.join_inlines(inline_text.frame_link(frame.id) for frame in written_frames)
+        yield Fact("", "Writes the frames", frame_links)
     if use_cases := link_use_cases(lookup, component.id):
-        rows.append(("Takes part in", use_cases))
+        yield Fact("", "Takes part in", use_cases)
     if component.tags:
-        rows.append(("Tags", inline_text.to_inlines(", ".join(component.tags))))
+        yield Fact("", "Tags", inline_text.to_inlines(", ".join(component.tags)))
     if component.urls:
-        rows.append(("Links", inline_text.link_urls(component.urls.items(), lookup.repository)))
-    rows += list_contact_facts(component)
-    rows += list_annotation_facts(lookup, component)
-    return rows
+        yield Fact("links", "Links", inline_text.link_urls(component.urls.items(), lookup.repository))
+    yield from (Fact("", *row) for row in list_contact_facts(component))
+    yield from (Fact("", *row) for row in list_annotation_facts(lookup, component))
 
 
-def _list_composition_facts(lookup: Lookup, component: Component) -> Iterator[tuple[str, Inlines]]:
-    """Yield what a component is inside of, and of which type it is; nothing for one that is neither."""
+def _list_composition_facts(lookup: Lookup, component: Component) -> Iterator[Fact]:
+    """Yield what a component is inside of, of which type it is, and what it says otherwise than that type."""
     architecture = lookup.architecture
     if around := list_surrounding(architecture, component.id):
         links = ((inline_text.component_link(architecture.shells[name]),) for name in around)
-        yield "Inside of", inline_text.join_inlines(links, " · ")
+        yield Fact("inside_of", "Inside of", inline_text.join_inlines(links, " · "))
     if component.component_type:
         words = Text(", exactly (a reference)" if component.is_reference else "", muted=True)
-        yield "Type", (link_type(architecture, component), *((words,) if words.text else ()))
+        yield Fact("", "Type", (link_type(architecture, component), *((words,) if words.text else ())))
+    if own_values := list_own_values(lookup, component):
+        yield Fact("", "Otherwise than its type", own_values)
+
+
+def list_own_values(lookup: Lookup, component: Component, max_letters: int | None = None) -> Inlines:
+    """Return what an instance says otherwise than its type, each on a line with its place; empty where it says nothing."""
+    lines = []
+    for value in lookup.type_texts.list_own_values(component):
+        text = " ".join(value.text.split())
+        is_long = max_letters is not None and len(text) > max_letters
+        shown_text = f"{text[:max_letters]} ..." if is_long else text
+        place = place_run(lookup, value.at)
+        lines.append((Text(f"{value.name}: {shown_text}"), *((Text(" "), place) if place else ())))
+    return inline_text.join_lines(lines)
 
 
 def make_requirement_blocks(lookup: Lookup, component: Component) -> list[Block]:

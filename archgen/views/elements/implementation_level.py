@@ -11,7 +11,7 @@ from archgen.views import element_references, inline_text, timing_words
 from archgen.views.elements.annotation_facts import list_annotation_facts
 from archgen.views.elements.parameter_blocks import make_effective_table
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Block, Column, Facts, Figure, Inlines, Markdown, Paragraph, Table, Text
+from archgen.views.shapes import Block, Column, Fact, Figure, Inlines, Markdown, Paragraph, Table, Text, show_facts
 from archgen.views.start_phrases import describe_start
 from archgen.views.timing import element_timing
 
@@ -44,7 +44,7 @@ def make_node_blocks(lookup: Lookup, node: Node) -> tuple[Block, ...]:
                 "note",
             )
         )
-    blocks.append(Facts(tuple(_node_facts(lookup, node))))
+    blocks.append(show_facts(list_node_facts(lookup, node)))
     if node.description:
         blocks.append(Markdown(node.description))
     endpoints = lookup.endpoints_of.get(node.id, ())
@@ -57,40 +57,45 @@ def make_node_blocks(lookup: Lookup, node: Node) -> tuple[Block, ...]:
     return tuple(blocks)
 
 
-def _node_facts(lookup: Lookup, node: Node) -> list[tuple[str, Inlines]]:
+def list_node_facts(lookup: Lookup, node: Node) -> list[Fact]:
     """Return a node's facts, without those that have no value."""
     architecture = lookup.architecture
     kind = ", ".join(inline_text.NODE_KIND_WORDS[kind] for kind in node.kinds)
-    rows = [
-        (
-            "Implements",
-            inline_text.join_inlines(
-                (inline_text.component_link(architecture.components[c]),) for c in node.implements
-            ),
+    components = (architecture.components[name] for name in node.implements)
+    facts = [
+        Fact(
+            "implements", "Implements", inline_text.join_inlines((inline_text.component_link(c),) for c in components)
         ),
-        ("ROS name", () if node.is_program else inline_text.to_inlines(Text(node.full_name, code=True))),
-        ("Kind, status", inline_text.to_inlines(f"{kind}, ", *inline_text.value_or_unknown(node.status))),
-        ("Package", (*inline_text.value_or_unknown(node.package), *_program_parts(node))),
-        ("Command", inline_text.to_inlines(Text(shlex.join(node.command), code=True)) if node.command else ()),
-        ("Arguments", inline_text.to_inlines(Text(shlex.join(node.arguments), code=True)) if node.arguments else ()),
-        ("Language", inline_text.to_inlines(_LANGUAGE_TITLES[node.language]) if node.language else ()),
-        ("Remaps", _remap_facts(lookup, node)),
-        ("Start", _start_facts(node)),
-        ("Owner", inline_text.owner_links(architecture, node.owners) if node.owners else ()),
-        ("Runs on", _location_cell(lookup, node)),
-        ("Callbacks", inline_text.to_inlines(callbacks) if (callbacks := _describe_callbacks(node)) else ()),
-        ("Parameter files", inline_text.join_inlines((Text(name, code=True),) for name in node.parameter_files)),
-        ("Tags", inline_text.to_inlines(", ".join(node.tags)) if node.tags else ()),
-        ("Links", inline_text.link_urls(node.urls.items(), lookup.repository)),
-        *list_annotation_facts(lookup, node),
+        Fact("ros_name", "ROS name", () if node.is_program else _to_code(node.full_name)),
+        Fact("kind", "Kind, status", inline_text.to_inlines(f"{kind}, ", *inline_text.value_or_unknown(node.status))),
+        Fact("package", "Package", (*inline_text.value_or_unknown(node.package), *_program_parts(node))),
+        Fact("", "Command", _to_code(shlex.join(node.command))),
+        Fact("", "Arguments", _to_code(shlex.join(node.arguments))),
+        Fact("", "Language", inline_text.to_inlines(_LANGUAGE_TITLES[node.language]) if node.language else ()),
+        Fact("", "Remaps", _remap_facts(lookup, node)),
+        Fact("", "Start", _start_facts(node)),
+        Fact("owner", "Owner", inline_text.owner_links(architecture, node.owners) if node.owners else ()),
+        Fact("host", "Runs on", _location_cell(lookup, node)),
+        Fact("activity", "Callbacks", inline_text.to_inlines(_describe_callbacks(node))),
+        Fact(
+            "", "Parameter files", inline_text.join_inlines((Text(name, code=True),) for name in node.parameter_files)
+        ),
+        Fact("", "Tags", inline_text.to_inlines(", ".join(node.tags))),
+        Fact("links", "Links", inline_text.link_urls(node.urls.items(), lookup.repository)),
+        *(Fact("", *row) for row in list_annotation_facts(lookup, node)),
     ]
     for component, timing in node.timing.items():
         # One timing for each activity; the key is "" for a node that implements no component.
-        name = f"Timing of {component.rsplit('.', 1)[-1]}" if len(node.timing) > 1 and component else "Timing"
+        is_one_of_several = len(node.timing) > 1 and bool(component)
+        title = f"Timing of {component.rsplit('.', 1)[-1]}" if is_one_of_several else "Timing"
         sentence = timing_words.format_timing_sentence(timing)
-        rows.append((name, inline_text.to_inlines(sentence) if sentence else ()))
-    rows += element_timing.make_node_facts(lookup, node)
-    return [(name, value) for name, value in rows if value]
+        facts.append(Fact("activity" if is_one_of_several else "timing", title, inline_text.to_inlines(sentence)))
+    facts += element_timing.make_node_facts(lookup, node)
+    return [fact for fact in facts if any(run.text for run in fact.value)]
+
+
+def _to_code(text: str) -> Inlines:
+    return (Text(text, code=True),) if text else ()
 
 
 def _remap_facts(lookup: Lookup, node: Node) -> Inlines:

@@ -1,7 +1,13 @@
-"""The ports of components in documents: where each input comes from, and who reads each output."""
+"""The ports of components in documents: where each input comes from, who reads each output, and what stands behind those of
+composed ones.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Literal, NamedTuple
+
+from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Input, Output
 from archgen.model.component_nesting import find_component
 from archgen.model.port_media import label_of_medium
@@ -11,59 +17,89 @@ from archgen.views.elements.annotation_facts import list_annotation_facts
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Inlines, Paragraph, Table, Text, drop_empty_columns
 
-
-def make_input_blocks(lookup: Lookup, component: Component) -> list[Block]:
-    """Return the table of a component's inputs, or a sentence that it has none."""
-    if not component.inputs:
-        message = "It has no inputs." if component.inputs_known else "Its inputs are not known yet."
-        return [Paragraph(inline_text.to_inlines(Text("Inputs. ", strong=True), Text(message, muted=True)))]
-    rows = tuple(
-        (
-            _port_name(port),
-            make_source_cell(lookup, port),
-            make_input_type_cell(lookup, port),
-            _medium_cell(port),
-            _remarks_cell(lookup, port),
-        )
-        for port in component.inputs.values()
-    )
-    columns = (Column("Input"), Column("From", 1.9), Column("Type", 1.2), Column("Medium", 0.8), Column("Remarks", 1.3))
-    table = Table(f"table:inputs/{component.id}", f"{component.title}: inputs", columns, rows)
-    return [drop_empty_columns(table)]
+PortKind = Literal["input", "output"]
 
 
-def make_output_blocks(lookup: Lookup, component: Component) -> list[Block]:
-    """Return the table of a component's outputs, or a sentence that it has none."""
-    if not component.outputs:
-        message = "It has no outputs." if component.outputs_known else "Its outputs are not known yet."
-        return [Paragraph(inline_text.to_inlines(Text("Outputs. ", strong=True), Text(message, muted=True)))]
-    rows = tuple(
-        (
-            _port_name(port),
+class PortCells(NamedTuple):
+    """What documents say of a port: `ends` where an input comes from and who reads an output, `inside` what stands behind
+    the port of a composed component.
+    """
+
+    name: Inlines
+    ends: Inlines
+    type: Inlines
+    inside: Inlines
+    medium: Inlines
+    remarks: Inlines
+
+
+def list_port_cells(lookup: Lookup, component: Component, kind: PortKind) -> list[PortCells]:
+    """Return what is said of each input or output of a component, composed or not."""
+    shell = lookup.architecture.shells.get(component.id)
+    if kind == "input":
+        return [
+            PortCells(
+                inline_text.to_inlines(Text(port.name, code=True)),
+                _source_cell(lookup, port),
+                _input_type_cell(lookup, port),
+                _list_behind(lookup, kind, port) if shell else (),
+                inline_text.to_inlines(label_of_medium(port) or "digital"),
+                _remarks_cell(lookup, port),
+            )
+            for port in component.inputs.values()
+        ]
+    return [
+        PortCells(
+            inline_text.to_inlines(Text(port.name, code=True), *promise_words.write_badges(port)),
+            _outer_reader_cell(lookup, port) if shell else _reader_cell(lookup, port),
             inline_text.type_link(port.type),
-            _reader_cell(lookup, port),
-            _medium_cell(port),
+            _list_behind(lookup, kind, port) if shell else (),
+            inline_text.to_inlines(label_of_medium(port) or "digital"),
             _remarks_cell(lookup, port),
         )
         for port in component.outputs.values()
+    ]
+
+
+def make_port_blocks(lookup: Lookup, component: Component) -> Iterator[Block]:
+    """Yield the tables of the inputs and the outputs of a component, a sentence in place of an empty one."""
+    is_composed = component.id in lookup.architecture.shells
+    ends, remarks = (1.6, 1.2) if is_composed else (1.9, 1.3)
+    last = (Column("Medium", 0.8), Column("Remarks", remarks))
+    inputs = list_port_cells(lookup, component, "input")
+    columns = (Column("Input"), Column("From", ends), Column("Type", 1.2), Column("Read inside by", 1.6), *last)
+    yield _make_port_block(component, "input", columns, inputs) or _say_missing(
+        "input", is_known=component.inputs_known
     )
-    columns = (Column("Output"), Column("Type", 1.2), Column("To", 1.9), Column("Medium", 0.8), Column("Remarks", 1.3))
-    table = Table(f"table:outputs/{component.id}", f"{component.title}: outputs", columns, rows)
-    return [drop_empty_columns(table)]
+    outputs = [
+        (each.name, each.type, each.inside, each.ends, each.medium, each.remarks)
+        for each in list_port_cells(lookup, component, "output")
+    ]
+    columns = (Column("Output"), Column("Type", 1.2), Column("Given on from", 1.6), Column("To", ends), *last)
+    yield _make_port_block(component, "output", columns, outputs) or _say_missing(
+        "output", is_known=component.outputs_known
+    )
 
 
-def _port_name(port: Input | Output) -> Inlines:
-    badges = promise_words.write_badges(port) if isinstance(port, Output) else ()
-    return inline_text.to_inlines(Text(port.name, code=True), *badges)
+def _make_port_block(
+    component: Component, kind: PortKind, columns: tuple[Column, ...], rows: Sequence[tuple[Inlines, ...]]
+) -> Table | None:
+    table = Table(f"table:{kind}s/{component.id}", f"{component.title}: {kind}s", columns, tuple(map(tuple, rows)))
+    return drop_empty_columns(table) if rows else None
 
 
-def make_source_cell(lookup: Lookup, port: Input) -> Inlines:
+def _say_missing(kind: PortKind, *, is_known: bool) -> Paragraph:
+    message = f"It has no {kind}s." if is_known else f"Its {kind}s are not known yet."
+    return Paragraph(inline_text.to_inlines(Text(f"{kind.capitalize()}s. ", strong=True), Text(message, muted=True)))
+
+
+def _source_cell(lookup: Lookup, port: Input) -> Inlines:
     """Return the sources of an input, one on each line, with partners other than the component's own."""
     sources = [
         (
             *inline_text.describe_source(lookup.architecture, connection),
             *promise_words.mark_source(lookup, connection),
-            *_other_owners(lookup, port.component, connection.outputs),
+            *_other_owners(lookup, port.component, _list_owners(lookup.architecture, connection.outputs)),
         )
         for connection in port.connections
     ]
@@ -72,32 +108,19 @@ def make_source_cell(lookup: Lookup, port: Input) -> Inlines:
     return inline_text.join_lines(sources) or inline_text.UNKNOWN_INLINES
 
 
-def _other_owners(lookup: Lookup, component_id: str, output_ids: tuple[str, ...]) -> Inlines:
-    """Return the owners of the outputs who do not own the component, in brackets; empty where there are none."""
-    architecture = lookup.architecture
-    own_partners = find_component(architecture, component_id).owners
-    owners = dict.fromkeys(
-        p for o in output_ids for p in architecture.components[architecture.outputs[o].component].owners
-    )
+def _other_owners(lookup: Lookup, component_id: str, other_owners: Iterable[str]) -> Inlines:
+    """Return those owners who do not own the component, in brackets; empty where there are none."""
+    own_partners = find_component(lookup.architecture, component_id).owners
     # Only a flow that crosses from one partner to another names them: the component's own are in its facts.
-    other_partners = [owner for owner in owners if owner not in own_partners]
-    return (
-        (
-            Text(" ("),
-            *inline_text.join_inlines(inline_text.partner_link(architecture, o) for o in other_partners),
-            Text(")"),
-        )
-        if other_partners
-        else ()
+    links = inline_text.join_inlines(
+        inline_text.partner_link(lookup.architecture, owner)
+        for owner in dict.fromkeys(other_owners)
+        if owner not in own_partners
     )
+    return (Text(" ("), *links, Text(")")) if links else ()
 
 
-def make_last_cells(lookup: Lookup, port: Input | Output) -> tuple[Inlines, Inlines]:
-    """Return the medium of a port, and the remarks on it."""
-    return _medium_cell(port), _remarks_cell(lookup, port)
-
-
-def make_input_type_cell(lookup: Lookup, port: Input) -> Inlines:
+def _input_type_cell(lookup: Lookup, port: Input) -> Inlines:
     """Return the types of an input: its own first, then those of the outputs it reads."""
     outputs = (lookup.architecture.outputs[o] for connection in port.connections for o in connection.outputs)
     types = dict.fromkeys([port.type, *(output.type for output in outputs)] if port.type else (o.type for o in outputs))
@@ -106,36 +129,54 @@ def make_input_type_cell(lookup: Lookup, port: Input) -> Inlines:
     )
 
 
+def _list_owners(architecture: Architecture, output_ids: Iterable[str]) -> Iterator[str]:
+    return (owner for o in output_ids for owner in architecture.components[architecture.outputs[o].component].owners)
+
+
 def _reader_cell(lookup: Lookup, port: Output) -> Inlines:
     """Return the readers of an output, one on each line."""
     architecture = lookup.architecture
     readers = [architecture.inputs[connection.input] for connection in lookup.readers_of.get(port.id, ())]
-    cells = [
-        (*inline_text.port_link(architecture, reader), *_reader_owners(lookup, port, reader)) for reader in readers
-    ]
-    if port.external:
-        cells.append(inline_text.to_inlines(Text("outside: ", muted=True), port.external))
-    return inline_text.join_lines(cells) or inline_text.to_inlines(Text("nobody yet", muted=True))
-
-
-def _reader_owners(lookup: Lookup, port: Output, reader: Input) -> Inlines:
-    """Return the owners of a reader who do not own the output's component, in brackets."""
-    architecture = lookup.architecture
-    own_partners = architecture.components[port.component].owners
-    other_partners = [owner for owner in architecture.components[reader.component].owners if owner not in own_partners]
-    return (
-        (
-            Text(" ("),
-            *inline_text.join_inlines(inline_text.partner_link(architecture, o) for o in other_partners),
-            Text(")"),
-        )
-        if other_partners
-        else ()
+    return _join_readers(
+        port,
+        [
+            (
+                *inline_text.port_link(architecture, reader),
+                *_other_owners(lookup, port.component, architecture.components[reader.component].owners),
+            )
+            for reader in readers
+        ],
     )
 
 
-def _medium_cell(port: Input | Output) -> Inlines:
-    return inline_text.to_inlines(label_of_medium(port) or "digital")
+def _outer_reader_cell(lookup: Lookup, port: Output) -> Inlines:
+    """Return the readers of a composed component's output that are outside of it, one on each line."""
+    readers = {
+        reader.id: reader
+        for reader, connection in lookup.connections_at(port.component)
+        if port.id in (connection.shell_port, *connection.outputs) and not reader.id.startswith(f"{port.component}.")
+    }
+    return _join_readers(port, [inline_text.port_link(lookup.architecture, reader) for reader in readers.values()])
+
+
+def _join_readers(port: Output, lines: list[Inlines]) -> Inlines:
+    outside = [inline_text.to_inlines(Text("outside: ", muted=True), port.external)] if port.external else []
+    return inline_text.join_lines([*lines, *outside]) or inline_text.to_inlines(Text("nobody yet", muted=True))
+
+
+def _list_behind(lookup: Lookup, kind: PortKind, port: Input | Output) -> Inlines:
+    """Return what stands behind a port, each on a line."""
+    lines = []
+    for inner_id in lookup.architecture.shell_ports.get(f"{kind} {port.id}", ()):
+        holder, _, name = inner_id.rpartition(".")
+        if holder == port.component:
+            words = "its own output " if kind == "input" else "its own input "
+            lines.append(inline_text.to_inlines(Text(words, muted=True), Text(name, code=True)))
+        else:
+            component = find_component(lookup.architecture, holder)
+            made_words = (Text(" (autoconnect)", muted=True),) if isinstance(port, Output) and port.is_made else ()
+            lines.append((inline_text.component_link(component), Text(" · "), Text(name, code=True), *made_words))
+    return inline_text.join_lines(lines) or inline_text.to_inlines(Text("nothing inside yet", muted=True))
 
 
 def _remarks_cell(lookup: Lookup, port: Input | Output) -> Inlines:

@@ -13,29 +13,7 @@ from archgen.views.generation.generation_context import GenerationContext
 UNMET_NEED = Rule(
     "unmet-need",
     Severity.ERROR,
-    """\
-A generator takes something for granted that does not hold.
-
-Why: What is generated would be wrong, so nothing is written. A generator says in `needs` of its `backend.yaml` what it relies on:
-that an input has one source, that no component holds others. A pass may change an architecture so that it holds;
-`archgen transform --list` shows them. Only `archgen generate` finds it.
-
-Bad:
-    groups:
-      arm:
-        components:
-          left: {functionality: Feels., outputs: {force: geometry_msgs/Wrench}}
-          right: {functionality: Feels., outputs: {force: geometry_msgs/Wrench}}
-          guard: {functionality: Stops., inputs: {force: [left.force, right.force]}}
-
-Good:
-    groups:
-      arm:
-        components:
-          left: {functionality: Feels., outputs: {force: geometry_msgs/Wrench}}
-          right: {functionality: Feels., outputs: {force: geometry_msgs/Wrench}}
-          guard: {functionality: Stops., inputs: {left: left.force, right: right.force}}
-""",
+    "A generator takes something for granted that does not hold.",
     fixed=True,
 )
 """What `archgen generate` says where `needs` of a backend do not hold. `archgen check` never says it."""

@@ -25,22 +25,7 @@ if TYPE_CHECKING:
 NOT_GENERATED = Rule(
     "not-generated",
     Severity.ERROR,
-    """\
-Something of the architecture cannot be generated.
-
-Why: A generator leaves out what it has no words for, and makes the rest. That is an error of the run, since the workspace is not
-what the architecture says. Only `archgen generate` finds it.
-
-Bad:
-    types:
-      Grip: {comment: how wide it is}
-    groups: {arm: {components: {gripper: {functionality: Grips., outputs: {grip: Grip}}}}}
-
-Good:
-    types:
-      Grip: {comment: how wide it is, fields: {width: {type: float64, unit: m}}}
-    groups: {arm: {components: {gripper: {functionality: Grips., outputs: {grip: Grip}}}}}
-""",
+    "Something of the architecture cannot be generated.",
     fixed=True,
 )
 """What `archgen generate` says of an element that is left out. `archgen check` never says it."""

@@ -84,11 +84,14 @@ def _subject_box(lookup: Lookup, component: Component) -> Box:
 
 
 def _port_row(port: Input | Output) -> tuple[str, str]:
-    return _port_key(port), port.name
+    return port_key(port), port.name
 
 
-def _port_key(port: Input | Output) -> str:
-    # Inputs and outputs may have the same name.
+def port_key(port: Input | Output) -> str:
+    """Return what tells a port from the others of its component: an input and an output may have one name.
+
+    With a blank, so that it is no component's id.
+    """
     return f"{'in' if isinstance(port, Input) else 'out'} {port.name}"
 
 
@@ -199,7 +202,7 @@ def _draw_external(lookup: Lookup, port: Input | Output, component: Component) -
         tooltip=f"{port.external}\noutside the architecture",
     )
     ends = (box.id, component.id) if side == "left" else (component.id, box.id)
-    key = _port_key(port)
+    key = port_key(port)
     arrow = Arrow(
         f"external {side} {port.id}",
         *ends,

@@ -20,6 +20,7 @@ from archgen.views.graphs.component_flows import (
     merge_flows,
     port_style,
 )
+from archgen.views.graphs.component_graph import port_key
 from archgen.views.graphs.drawn_level import DrawnLevel
 from archgen.views.graphs.graph_folding import fold_graph
 from archgen.views.graphs.legend_keys import add_legend_keys
@@ -155,7 +156,7 @@ class _ComposedDrawing:
             names = self._list_outside(port)
             use, word = ("input", "from") if isinstance(port, Input) else ("output", "to")
             yield Box(
-                _port_box_id(port),
+                port_key(port),
                 port.name,
                 (*self._list_types(port), *_shorten_names(word, names)),
                 style="port",
@@ -209,12 +210,12 @@ class _ComposedDrawing:
         """Return the arrow between a port and one that stands behind it; None where the input's port has it already."""
         holder, _, name = inner_id.rpartition(".")
         inner = find_drawn(self.lookup.architecture, holder, self.opened)
-        style, box_id = self._find_style(port), _port_box_id(port)
+        style, box_id = self._find_style(port), port_key(port)
         if holder == self.shell.id:
             if isinstance(port, Output):
                 return None
             # What comes in goes out again.
-            other, is_made, optional = _port_box_id(inner.outputs[name]), inner.outputs[name].is_made, False
+            other, is_made, optional = port_key(inner.outputs[name]), inner.outputs[name].is_made, False
         elif isinstance(port, Output):
             other, is_made, optional = holder, port.is_made, False
         else:
@@ -269,8 +270,3 @@ def _shorten_names(word: str, names: Sequence[str]) -> tuple[str, ...]:
     """Return who is at the other end of a port, each on a line; of many the first, and how many more there are."""
     shown_names = names if len(names) <= _MAX_NAMED + 1 else [*names[:_MAX_NAMED], f"{len(names) - _MAX_NAMED} more"]
     return tuple(f"{word} {name}" for name in shown_names)
-
-
-def _port_box_id(port: Input | Output) -> str:
-    # With a blank, so that it is no component's id; an input and an output may have one name.
-    return f"{'in' if isinstance(port, Input) else 'out'} {port.name}"

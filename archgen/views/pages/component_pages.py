@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
-from functools import cached_property
 
 from archgen.model.component import Component, ComponentType, Group
 from archgen.model.component_nesting import find_component, list_surrounding
 from archgen.views import inline_text
-from archgen.views.elements.component_type_blocks import (
-    make_component_type_table,
-    make_own_value_fact,
-    make_type_blocks,
-)
+from archgen.views.elements.component_type_blocks import make_component_type_table, make_type_blocks
 from archgen.views.elements.composed_blocks import make_composed_blocks
 from archgen.views.elements.functional_level import make_component_blocks, make_group_blocks
 from archgen.views.elements.implementation_level import make_implementation_blocks
-from archgen.views.elements.instance_values import TypeTexts, add_own_value
 from archgen.views.lookup import Lookup
 from archgen.views.pages import context_pages
 from archgen.views.pages.context_pages import HOME_CRUMB, FigureFilter
-from archgen.views.shapes import Block, Facts, Page, Section
+from archgen.views.shapes import Block, Page, Section
 
 Crumbs = tuple[tuple[str, str], ...]
 FindingSections = Callable[[str], list[Section]]
@@ -29,12 +23,9 @@ FindingSections = Callable[[str], list[Section]]
 TYPES_CRUMB = ("Types of components", "page:component_types")
 
 
-def drop_facts(blocks: Iterable[Block], names: Collection[str]) -> tuple[Block, ...]:
-    """Drop the facts that the line below the title, or the way to the page, says already."""
-    return tuple(
-        Facts(tuple(row for row in block.rows if row[0] not in names)) if isinstance(block, Facts) else block
-        for block in blocks
-    )
+def _list_repeated_facts(component: Component) -> Collection[str]:
+    """Return the keys of the facts that the line below the title, or the way to the page, says already."""
+    return {"group", "inside_of", "role"} if component.role else {"group", "inside_of"}
 
 
 @dataclass(frozen=True)
@@ -45,10 +36,6 @@ class ComponentPages:
     keep_drawn: FigureFilter
     find_findings: FindingSections
     shows_nodes: bool
-
-    @cached_property
-    def _type_texts(self) -> TypeTexts:
-        return TypeTexts(self.lookup.architecture)
 
     def make_pages(self) -> Iterator[Page]:
         """Yield a page for each shown group, followed by its shown components, those inside of others behind them."""
@@ -81,24 +68,21 @@ class ComponentPages:
 
     def make_group_page(self, group: Group) -> Page:
         """Make the page of a group."""
-        blocks = make_group_blocks(self.lookup, group)
         # With composed components the line below the title says less.
         is_composed = any(shell.group == group.id for shell in self.lookup.architecture.shells.values())
-        shown_blocks = drop_facts(self.keep_drawn(blocks), () if is_composed else {"Components"})
-        section = Section(f"group:{group.id}", group.title, shown_blocks)
+        blocks = self.keep_drawn(make_group_blocks(self.lookup, group, () if is_composed else {"components"}))
+        section = Section(f"group:{group.id}", group.title, blocks)
         lead = f"Group of {inline_text.count_noun(len(group.components), 'component')}"
         return Page(f"groups/{group.id}.html", section.anchor, group.title, "groups", section, (HOME_CRUMB,), lead)
 
     def _make_component_page(self, component: Component, crumbs: Crumbs) -> Page:
-        repeated_facts = {"Group", "Inside of", "Role"} if component.role else {"Group", "Inside of"}
-        blocks = drop_facts(self.keep_drawn(make_component_blocks(self.lookup, component)), repeated_facts)
+        blocks = self.keep_drawn(make_component_blocks(self.lookup, component, _list_repeated_facts(component)))
         # Not the owner: the facts below have it, as a link.
         lead = f"Component{f' · {component.role}' if component.role else ''}"
         return self._make_page(component, blocks, crumbs, lead)
 
     def _make_composed_page(self, shell: Component, crumbs: Crumbs) -> Page:
-        repeated_facts = {"Group", "Inside of", "Role"} if shell.role else {"Group", "Inside of"}
-        blocks = drop_facts(self.keep_drawn(make_composed_blocks(self.lookup, shell)), repeated_facts)
+        blocks = self.keep_drawn(make_composed_blocks(self.lookup, shell, _list_repeated_facts(shell)))
         leaves = [leaf for leaf in self.lookup.architecture.leaves_of(shell.id) if leaf != shell.id]
         count = inline_text.count_noun(len(leaves), "component")
         lead = f"Composed component with {count} inside{f' · {shell.role}' if shell.role else ''}"
@@ -115,7 +99,6 @@ class ComponentPages:
                 anchor = f"implementation:{component.id}"
                 sections = [Section(anchor, "Implementation", (*figures, *table))]
         sections += self.find_findings(component.id)
-        blocks = add_own_value(blocks, make_own_value_fact(self.lookup, component, self._type_texts))
         section = Section(f"component:{component.id}", component.title, blocks, tuple(sections))
         path = f"components/{component.id}.html"
         return Page(path, section.anchor, component.title, "components", section, crumbs, lead)

@@ -4,20 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 from archgen.model.component import Component, Group
 from archgen.model.component_nesting import list_surrounding
 from archgen.views import inline_text
-from archgen.views.elements.component_type_blocks import (
-    make_component_type_table,
-    make_own_value_fact,
-    make_type_blocks,
-)
+from archgen.views.elements.component_type_blocks import make_component_type_table, make_type_blocks
 from archgen.views.elements.composed_blocks import make_composed_blocks
 from archgen.views.elements.functional_level import make_component_blocks, make_component_table, make_group_blocks
 from archgen.views.elements.implementation_level import make_implementation_blocks, make_node_blocks
-from archgen.views.elements.instance_values import TypeTexts, add_own_value
 from archgen.views.elements.parameter_blocks import list_equal_settings
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Markdown, Paragraph, Section
@@ -34,10 +28,6 @@ class ReportSections:
     lookup: Lookup
     keep_drawn: Callable[[Iterable[Block]], tuple[Block, ...]]
     shows_nodes: bool
-
-    @cached_property
-    def _type_texts(self) -> TypeTexts:
-        return TypeTexts(self.lookup.architecture)
 
     def make_sections(self) -> list[Section]:
         """Make one section for each group, with its components and their nodes; then one for all component types."""
@@ -87,7 +77,7 @@ class ReportSections:
         return (*blocks[:-1], replace(table, row_anchors=tuple(f"component:{each.id}" for each in leaves)))
 
     def _say_type_once(self, component: Component, blocks: Iterable[Block]) -> tuple[Block, ...]:
-        """Leave out what the section of the component's type has, and add what the instance says otherwise."""
+        """Leave out what the section of the component's type has."""
         component_type = find_component_type(self.lookup.architecture, component)
         if component_type is None:
             return tuple(blocks)
@@ -98,7 +88,7 @@ class ReportSections:
             for block in blocks
             if not (isinstance(block, Markdown) and block.text in type_texts) and block not in known_tables
         ]
-        return add_own_value(own_blocks, make_own_value_fact(self.lookup, component, self._type_texts))
+        return tuple(own_blocks)
 
     def _make_implementation(self, component: Component) -> Iterable[Section]:
         """Yield the section with a component's nodes; nothing where it has none, and at the functional level."""

@@ -53,7 +53,7 @@ def make_context_pages(lookup: Lookup, keep_drawn: FigureFilter) -> Iterator[Pag
 def make_page(section: Section, folder: str, crumb: tuple[str, str] | None, lead: str) -> Page:
     """Make a page below a folder; its name is the anchor without the kind before the colon."""
     crumbs = (HOME_CRUMB, crumb) if crumb else (HOME_CRUMB,)
-    path = f"{folder}/{make_page_slug(section.anchor.partition(':')[2])}.html"
+    path = f"{folder}/{make_page_slug(section.subject)}.html"
     return Page(path, section.anchor, section.title, folder, section, crumbs, lead)
 
 

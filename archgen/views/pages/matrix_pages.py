@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from archgen.frozen import replace
 from archgen.model.feedback_order import MAX_EXACT, FeedbackOrder, order_by_feedback
 from archgen.model.partner_interfaces import PartnerPair
-from archgen.views.agreement.interface_terms import partner_titles
+from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.lookup import Lookup
 from archgen.views.matrix_shapes import Matrix, MatrixEntry, MatrixFlow
 from archgen.views.pages.context_pages import HOME_CRUMB
@@ -73,12 +73,12 @@ def make_component_matrix(lookup: Lookup) -> Matrix:
         name: MatrixEntry(
             architecture.components[name].title,
             f"component:{name}",
-            partner_titles(lookup, architecture.components[name].owners),
+            join_owner_titles(lookup, architecture.components[name].owners),
         )
         for name in shown_ids
     }
     group_entries = {
-        name: MatrixEntry(group.title, f"group:{name}", partner_titles(lookup, group.owners))
+        name: MatrixEntry(group.title, f"group:{name}", join_owner_titles(lookup, group.owners))
         for name, group in architecture.groups.items()
     }
     return _make_square(
@@ -118,7 +118,7 @@ def make_partner_matrix(
     return Matrix(
         "partners",
         "Who owes whom",
-        tuple(MatrixEntry(partner_titles(lookup, [name]), f"partner:{name}") for name in partners),
+        tuple(MatrixEntry(join_owner_titles(lookup, [name]), f"partner:{name}") for name in partners),
         tuple(flows),
         row_word="partner",
         flow_word="interface",

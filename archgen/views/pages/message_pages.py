@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import TypeVar
 
@@ -14,7 +13,7 @@ from archgen.model.node import Topic
 from archgen.views import inline_text
 from archgen.views.agreement.message_fields import field_type_run
 from archgen.views.element_references import message_link
-from archgen.views.lookup import Lookup
+from archgen.views.lookup import Lookup, group_values
 from archgen.views.shapes import (
     Block,
     Column,
@@ -25,6 +24,7 @@ from archgen.views.shapes import (
     Section,
     Table,
     Text,
+    drop_column,
     drop_empty_columns,
 )
 from archgen.views.tables import deployment_tables
@@ -45,9 +45,9 @@ class MessagePages:
         self._lookup = lookup
         self._types, self._topics = tuple(types), tuple(topics)
         self._users = collect_messages(lookup.architecture, self._types, self._topics)
-        self._types_by_message = _group_by_message((each.message, each) for each in self._types if each.message)
-        self._topics_by_message = _group_by_message((name, each) for each in self._topics for name in each.messages)
-        self._containers = _group_by_message(
+        self._types_by_message = group_values((each.message, each) for each in self._types if each.message)
+        self._topics_by_message = group_values((name, each) for each in self._topics for name in each.messages)
+        self._containers = group_values(
             (inner, message)
             for message in self._users
             for inner in dict.fromkeys(field.type for field in list_fields(lookup.architecture, message))
@@ -185,13 +185,7 @@ class MessagePages:
             self._lookup, topics, f"table:carriers/{message}", "Topics, services and actions that carry it"
         )
         if topic_table:
-            without_message = (column for column in topic_table.columns if column.title != "Message")
-            yield Table(
-                topic_table.anchor,
-                topic_table.caption,
-                tuple(without_message),
-                tuple((name, *ends) for name, _message, *ends in topic_table.rows),
-            )
+            yield drop_column(topic_table, "carried")
         outputs = [output for each in self._types_of(message) for output in self._shown_outputs(each)]
         if outputs:
             yield self._make_port_table(message, outputs)
@@ -246,11 +240,3 @@ def _make_constant_table(anchor: str, title: str, constants: tuple[InterfaceCons
 
 def _count_cell(count: int) -> Inlines:
     return (Text(str(count), sort_number=str(count)),)
-
-
-def _group_by_message(pairs: Iterable[tuple[str, T]]) -> Mapping[str, tuple[T, ...]]:
-    """Collect what belongs to each message."""
-    collected: defaultdict[str, list[T]] = defaultdict(list)
-    for message, item in pairs:
-        collected[message].append(item)
-    return {message: tuple(items) for message, items in collected.items()}

@@ -11,11 +11,12 @@ from archgen.views.agreement import exchange_tables
 from archgen.views.agreement.exchange_tables import pair_title
 from archgen.views.agreement.interface_record import InterfaceRecord
 from archgen.views.agreement.interface_sections import SectionWriter
-from archgen.views.agreement.interface_terms import InterfaceTerms, partner_titles
+from archgen.views.agreement.interface_terms import InterfaceTerms
 from archgen.views.agreement.partner_exchanges import PartnerExchange, gather_exchanges
 from archgen.views.agreement.signature_record import SignedTag, write_signature_table
 from archgen.views.elements.annotation_facts import list_annotation_facts
 from archgen.views.elements.functional_level import make_component_table
+from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.lookup import Lookup
 from archgen.views.matrix_shapes import Matrix
 from archgen.views.pages.context_pages import HOME_CRUMB, FigureFilter, make_node_table, make_page, make_page_slug
@@ -126,8 +127,8 @@ def _make_number(count: int) -> Inlines:
 
 
 def _promised_cells(exchange: PartnerExchange) -> Iterator[Inlines]:
-    for starts in (("Rate", "Answers within"), ("QoS offered",)):
-        promised, total = exchange_tables.count_promised(exchange.interfaces, starts)
+    for keys in (exchange_tables.PACE_TERMS, exchange_tables.QOS_TERMS):
+        promised, total = exchange_tables.count_promised(exchange.interfaces, keys)
         yield (Text(f"{promised} of {total}", sort_number=f"{promised}/{total}"),) if total else ()
 
 
@@ -168,12 +169,12 @@ def _pair_page(
 
 def _list_figures(lookup: Lookup, exchange: PartnerExchange) -> Iterator[KeyFigure]:
     for giver, taker in (exchange.pair, exchange.pair[::-1]):
-        giver_title, taker_title = partner_titles(lookup, [giver]), partner_titles(lookup, [taker])
+        giver_title, taker_title = join_owner_titles(lookup, [giver]), join_owner_titles(lookup, [taker])
         count = len(exchange.list_given(giver))
         note = inline_text.to_inlines(Text(f"interfaces to {taker_title}", muted=True))
         yield KeyFigure(f"{giver_title} gives", str(count), "", note, f"given:{giver}" if count else "")
-    for name, starts in (("Rates promised", ("Rate", "Answers within")), ("QoS promised", ("QoS offered",))):
-        promised, total = exchange_tables.count_promised(exchange.interfaces, starts)
+    for name, keys in (("Rates promised", exchange_tables.PACE_TERMS), ("QoS promised", exchange_tables.QOS_TERMS)):
+        promised, total = exchange_tables.count_promised(exchange.interfaces, keys)
         if total:
             left = total - promised
             note = (Text(f"{left} still to be written" if left else "all of them", status="open" if left else "met"),)
@@ -194,7 +195,7 @@ def _point_card(lookup: Lookup, exchange: PartnerExchange) -> DashboardCard:
 def _list_direction_sections(lookup: Lookup, exchange: PartnerExchange) -> Iterator[Section]:
     for giver, taker in (exchange.pair, exchange.pair[::-1]):
         interfaces = exchange.list_given(giver)
-        title = f"{partner_titles(lookup, [giver])} gives {partner_titles(lookup, [taker])}"
+        title = f"{join_owner_titles(lookup, [giver])} gives {join_owner_titles(lookup, [taker])}"
         nothing = Paragraph(inline_text.to_inlines(Text("Nothing.", muted=True)))
         table = (
             exchange_tables.make_given_table(lookup, f"table:given/{giver}", title, interfaces) if interfaces else None
@@ -237,7 +238,7 @@ def _interface_page(
     giver, taker = interface.pair
     path = f"partners/{make_page_slug(giver)}/{make_page_slug(taker)}/{make_page_slug(interface.key)}.html"
     crumbs = (HOME_CRUMB, _OVERVIEW_CRUMB, (pair_title(lookup, exchange.pair), pair_reference(exchange.pair)))
-    lead = f"Interface · {partner_titles(lookup, [giver])} gives, {partner_titles(lookup, [taker])} takes"
+    lead = f"Interface · {join_owner_titles(lookup, [giver])} gives, {join_owner_titles(lookup, [taker])} takes"
     return Page(path, section.anchor, section.title, "interfaces", section, crumbs, lead)
 
 
@@ -273,7 +274,11 @@ def _exchange_table(lookup: Lookup, partner: Partner, exchanges: Sequence[Partne
     """List with whom a partner has interfaces, most open points first."""
     rows = tuple(
         (
-            (Text(partner_titles(lookup, [_other_of(exchange.pair, partner.id)]), ref=pair_reference(exchange.pair)),),
+            (
+                Text(
+                    join_owner_titles(lookup, [_other_of(exchange.pair, partner.id)]), ref=pair_reference(exchange.pair)
+                ),
+            ),
             *_count_cells((partner.id, _other_of(exchange.pair, partner.id)), exchange),
             _open_cell(exchange),
         )

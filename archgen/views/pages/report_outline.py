@@ -18,6 +18,7 @@ from archgen.views.graph_shapes import GraphKind
 from archgen.views.lookup import Lookup
 from archgen.views.pages import timing_chapter, variant_chapter
 from archgen.views.pages.component_sections import ReportSections
+from archgen.views.pages.timing_chapter import make_figures
 from archgen.views.pages.variant_chapter import VariantDifference
 from archgen.views.sequences.sequence_blocks import make_use_case_sections
 from archgen.views.shapes import Block, Figure, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
@@ -143,15 +144,9 @@ class _ChapterMaker:
         """Make the overview: what the project says of itself, and its pictures."""
         project = self.lookup.architecture.project
         blocks: list[Block] = [Markdown(project.description)] if project.description else []
-        blocks += self._make_figures("overview", "components")
+        blocks += make_figures(self.edition.drawings, "overview", "components")
         # Anchors are the same as the site's, so that references in shared blocks work in both.
         return [Section("page:index", "Overview", tuple(blocks), page_break=True)] if blocks else []
-
-    def _make_figures(self, *names: str) -> Iterator[Figure]:
-        for name in names:
-            graph = self.edition.drawings.get(name)
-            if graph:
-                yield Figure(f"figure:{name}", name, graph.title, graph.alt)
 
     def make_groups(self) -> list[Section]:
         """Make one section for each group, with its components and their nodes; then one for all component types."""
@@ -173,7 +168,10 @@ class _ChapterMaker:
 
     def make_frames(self) -> list[Section]:
         """Make the chapter of coordinate frames."""
-        blocks = [*self._make_figures("frames"), *_drop_missing(frame_table.make_frame_table(self.lookup))]
+        blocks = [
+            *make_figures(self.edition.drawings, "frames"),
+            *_drop_missing(frame_table.make_frame_table(self.lookup)),
+        ]
         return [Section("page:frames", "Frames", tuple(blocks), page_break=True)] if blocks else []
 
     def make_variants(self) -> list[Section]:
@@ -191,7 +189,7 @@ class _ChapterMaker:
         if self.edition.level == "functional":
             return []
         blocks = [
-            *self._make_figures("hosts", "ros"),
+            *make_figures(self.edition.drawings, "hosts", "ros"),
             *_drop_missing(
                 deployment_tables.make_host_table(self.lookup), deployment_tables.make_link_table(self.lookup)
             ),
@@ -202,7 +200,10 @@ class _ChapterMaker:
         """Make the chapter of the start-up."""
         if self.edition.level == "functional":
             return []
-        blocks = (*self._make_figures("start_up"), *start_table.make_start_blocks(self.lookup))
+        blocks = (
+            *make_figures(self.edition.drawings, "start_up"),
+            *start_table.make_start_blocks(self.lookup),
+        )
         return [Section("page:start_up", "Start-up", blocks, page_break=True)] if blocks else []
 
     def make_timing(self) -> list[Section]:
@@ -227,7 +228,9 @@ class _ChapterMaker:
         project_views = self.lookup.architecture.views.values()
         sections = [
             Section(
-                f"view:{project_view.id}", project_view.title, tuple(self._make_figures(f"views/{project_view.id}"))
+                f"view:{project_view.id}",
+                project_view.title,
+                tuple(make_figures(self.edition.drawings, f"views/{project_view.id}")),
             )
             for project_view in project_views
         ]

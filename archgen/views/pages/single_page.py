@@ -18,7 +18,7 @@ from archgen.views.pages import (
 )
 from archgen.views.pages.report_outline import DocumentEdition
 from archgen.views.pages.site_pages import PageMaker
-from archgen.views.shapes import Page
+from archgen.views.shapes import Page, split_anchor
 
 
 def make_page_at(lookup: Lookup, edition: DocumentEdition, anchor: str) -> Page | None:
@@ -37,7 +37,7 @@ def make_page_at(lookup: Lookup, edition: DocumentEdition, anchor: str) -> Page 
 def _list_candidates(page_maker: PageMaker, anchor: str) -> Iterable[Page]:  # noqa: PLR0911 - one for each kind
     """Return pages of which one may be that of the anchor: as few as can be where there are many of a kind."""
     architecture, lookup = page_maker.architecture, page_maker.lookup
-    kind, _, name = anchor.partition(":")
+    kind, name = split_anchor(anchor)
     match kind:
         case "component" if name in architecture.components or name in architecture.shells:
             return (page_maker.component_pages().make_single_page(name),)

@@ -26,11 +26,12 @@ from archgen.views.pages import (
     undrawn_pictures,
     variant_chapter,
 )
-from archgen.views.pages.component_pages import ComponentPages, drop_facts
+from archgen.views.pages.component_pages import ComponentPages
 from archgen.views.pages.context_pages import HOME_CRUMB
 from archgen.views.pages.message_pages import MessagePages
 from archgen.views.pages.page_parts import split_pages
 from archgen.views.pages.report_outline import DocumentEdition, make_document_facts, split_title
+from archgen.views.pages.timing_chapter import make_figures
 from archgen.views.shapes import Block, Bullets, Facts, Figure, Markdown, Page, Paragraph, Section, Text
 from archgen.views.tables import (
     deployment_tables,
@@ -122,17 +123,10 @@ class PageMaker:
         topics = context_pages.shown_topics(self.lookup) if self.edition.level == "implementation" else ()
         return MessagePages(self.lookup, type_tables.shown_types(self.lookup), topics)
 
-    def make_figures(self, *names: str) -> Iterator[Figure]:
-        """Yield figures for those of the named drawings that exist."""
-        for name in names:
-            graph = self.edition.drawings.get(name)
-            if graph:
-                yield Figure(f"figure:{name}", name, graph.title, graph.alt)
-
     def start_page(self) -> Page:
         """Make the start page: the state at a glance, the clickable overview, description, title facts, groups."""
         project = self.architecture.project
-        blocks: list[Block] = list(self.make_figures("overview"))
+        blocks: list[Block] = list(make_figures(self.edition.drawings, "overview"))
         blocks += [Markdown(project.description)] if project.description else []
         blocks.append(Facts(tuple(make_document_facts(self.lookup, self.edition))))
         blocks += [table] if (table := functional_tables.make_group_table(self.lookup)) else []
@@ -215,13 +209,18 @@ class PageMaker:
         """Make the pages that span the architecture: tables, progress, timing, views, hosts."""
         components = list(self.lookup.nested_components())
         if components or self.lookup.shown_nodes():
-            explorer_blocks = explorer_page.make_explorer_blocks(self.lookup, self.make_figures("overview"))
+            explorer_blocks = explorer_page.make_explorer_blocks(
+                self.lookup, make_figures(self.edition.drawings, "overview")
+            )
             yield self._spanning_page("explorer", "Explorer", *explorer_blocks)
         component_table = make_component_table(
             self.lookup, "table:components", "All components", components, inside_of=""
         )
         yield self._spanning_page(
-            "components", "Components", *self.make_figures("components"), component_table if components else None
+            "components",
+            "Components",
+            *make_figures(self.edition.drawings, "components"),
+            component_table if components else None,
         )
         shown_connections = functional_tables.shown_connections(self.lookup)
         yield self._spanning_page(
@@ -257,10 +256,10 @@ class PageMaker:
         yield self._spanning_page("progress", "Progress", *self.edition.statistics, *growth_blocks)
         yield from self.timing_pages()
         view_drawings = [f"views/{name}" for name in self.architecture.views]
-        yield self._spanning_page("views", "Views", *self.make_figures(*view_drawings))
+        yield self._spanning_page("views", "Views", *make_figures(self.edition.drawings, *view_drawings))
         yield from self.variant_pages()
         if frames := frame_table.make_frame_table(self.lookup):
-            yield self._spanning_page("frames", "Frames", *self.make_figures("frames"), frames)
+            yield self._spanning_page("frames", "Frames", *make_figures(self.edition.drawings, "frames"), frames)
         if sections := property_tables.make_property_sections(self.lookup):
             yield self._listing_page("properties", "Properties", sections)
         if glossary_table := property_tables.make_glossary_table(self.lookup):
@@ -269,7 +268,7 @@ class PageMaker:
             yield self._spanning_page(
                 "nodes",
                 "Nodes",
-                *self.make_figures("ros"),
+                *make_figures(self.edition.drawings, "ros"),
                 *context_pages.make_node_table(self.lookup, self.lookup.shown_nodes()),
             )
             yield self._spanning_page(
@@ -279,9 +278,19 @@ class PageMaker:
                 deployment_tables.make_host_table(self.lookup),
                 deployment_tables.make_link_table(self.lookup),
             )
-            yield self._spanning_page("hosts", "Hosts and containers", *self.make_figures("hosts"), *host_tables)
+            yield self._spanning_page(
+                "hosts",
+                "Hosts and containers",
+                *make_figures(self.edition.drawings, "hosts"),
+                *host_tables,
+            )
             if start_blocks := start_table.make_start_blocks(self.lookup):
-                yield self._spanning_page("start_up", "Start-up", *self.make_figures("start_up"), *start_blocks)
+                yield self._spanning_page(
+                    "start_up",
+                    "Start-up",
+                    *make_figures(self.edition.drawings, "start_up"),
+                    *start_blocks,
+                )
 
     def variant_pages(self) -> Iterator[Page]:
         """Make a page of all variants, and one for each."""
@@ -292,8 +301,15 @@ class PageMaker:
         yield self._spanning_page("variants", "Variants", lead, table)
         crumbs = (HOME_CRUMB, ("Variants", "page:variants"))
         for section in variant_chapter.make_variant_sections(self.architecture, self.edition.variants):
-            name = section.anchor.partition(":")[2]
-            yield Page(f"variants/{name}.html", section.anchor, section.title, "variants", section, crumbs, "Variant")
+            yield Page(
+                f"variants/{section.subject}.html",
+                section.anchor,
+                section.title,
+                "variants",
+                section,
+                crumbs,
+                "Variant",
+            )
 
     def timing_pages(self) -> Iterator[Page]:
         """Make the pages on timing: one for the whole, one for all chains, and one for each chain."""
@@ -313,7 +329,7 @@ class PageMaker:
             # A page for each: together they were as long as 25 screens.
             crumbs = (HOME_CRUMB, ("Timing", "page:timing"))
             for section in sections:
-                path = f"timing/{section.anchor.partition(':')[2]}.html"
+                path = f"timing/{section.subject}.html"
                 yield Page(path, section.anchor, section.title, "timing", section, crumbs, "Timing")
         yield self._spanning_page("chains", "Chains of effect", *timing_chapter.make_chain_overview(self.lookup))
         yield from self.chain_pages()
@@ -322,19 +338,16 @@ class PageMaker:
         """Make a page for each chain."""
         graphs = self.edition.drawings
         crumbs = (HOME_CRUMB, ("Chains of effect", "page:chains"))
-        results = {f"chain:{result.id}": result for result in self.lookup.timing.chains} if self.lookup.timing else {}
-        for section in timing_chapter.make_chain_sections(self.lookup, graphs):
-            path = f"chains/{section.anchor.partition(':')[2]}.html"
-            result = results[section.anchor]
-            waterfall = make_waterfall(self.lookup, self.lookup.timing, result) if self.lookup.timing else None
+        timing_lookup = self.lookup.timing
+        for result in timing_lookup.chains if timing_lookup else ():
+            if timing_lookup is None or result.id not in self.architecture.chains:
+                continue
+            waterfall = make_waterfall(self.lookup, timing_lookup, result)
             # The waterfall says the same at a glance; the chart has a page of the report, which has no waterfall.
-            shown_blocks = drop_facts(
-                (block for block in section.blocks if not (waterfall and isinstance(block, Figure))),
-                WATERFALL_FACTS if waterfall else (),
-            )
-            shown_section = replace(section, blocks=shown_blocks)
-            lead = "Chain of effect"
-            yield Page(path, section.anchor, section.title, "chains", shown_section, crumbs, lead, waterfall=waterfall)
+            shown = ({}, WATERFALL_FACTS) if waterfall else (graphs, ())
+            section = timing_chapter.make_chain_section(self.lookup, timing_lookup, result, *shown)
+            path, lead = f"chains/{result.id}.html", "Chain of effect"
+            yield Page(path, section.anchor, section.title, "chains", section, crumbs, lead, waterfall=waterfall)
 
     def _listing_page(self, name: str, title: str, sections: tuple[Section, ...]) -> Page:
         """Make a page of sections, without anything before them."""

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 
+from archgen.timing.analysis import ChainResult
 from archgen.views import inline_text
 from archgen.views.chart_shapes import Drawing
 from archgen.views.lookup import Lookup
@@ -98,13 +99,21 @@ def make_chain_overview(lookup: Lookup) -> tuple[Block, ...]:
 def make_chain_sections(lookup: Lookup, drawings: Mapping[str, Drawing]) -> Iterator[Section]:
     """Yield a section for each chain that the timing analysis judged."""
     for result in lookup.timing.chains if lookup.timing else ():
-        chain = lookup.architecture.chains.get(result.id)
-        if chain is not None and lookup.timing is not None:
-            all_blocks = element_timing.make_chain_blocks(lookup, lookup.timing, result)
-            drawn_blocks = tuple(
-                block for block in all_blocks if not isinstance(block, Figure) or block.graph in drawings
-            )
-            yield Section(f"chain:{result.id}", chain.title, drawn_blocks)
+        if lookup.timing is not None and result.id in lookup.architecture.chains:
+            yield make_chain_section(lookup, lookup.timing, result, drawings)
+
+
+def make_chain_section(
+    lookup: Lookup,
+    timing_lookup: TimingLookup,
+    result: ChainResult,
+    drawings: Mapping[str, Drawing],
+    without: Collection[str] = (),
+) -> Section:
+    """Make the section of a chain, with those pictures that are drawn and without the facts of some keys."""
+    blocks = element_timing.make_chain_blocks(lookup, timing_lookup, result, without)
+    drawn_blocks = (block for block in blocks if not isinstance(block, Figure) or block.graph in drawings)
+    return Section(f"chain:{result.id}", lookup.architecture.chains[result.id].title, tuple(drawn_blocks))
 
 
 def _drop_missing(*optional_blocks: Block | None) -> tuple[Block, ...]:

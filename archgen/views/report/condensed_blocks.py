@@ -2,16 +2,34 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Iterable, Iterator, Sequence
 
+from archgen.frozen import replace
+from archgen.model.component import Component
 from archgen.views import inline_text
-from archgen.views.shapes import Block, Bullets, Column, Facts, Figure, Inlines, Paragraph, Table, Text
+from archgen.views.elements.functional_level import list_component_facts
+from archgen.views.elements.port_tables import PortKind, list_port_cells
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import (
+    Block,
+    Bullets,
+    Column,
+    Fact,
+    FactRow,
+    Facts,
+    Figure,
+    Inlines,
+    Paragraph,
+    Table,
+    Text,
+    drop_column,
+    keep_columns,
+)
 
-FactRow = tuple[str, Inlines]
 _MIN_CONSTANT_ROWS = 3
 """From this many rows on, a column that says the same in all of them is said once, in the caption."""
 _PORT_COLUMNS = (
+    Column("Use", 0.3),
     Column("Port", 1.1),
     Column("Type", 1.2),
     Column("From / to", 2.0),
@@ -19,28 +37,26 @@ _PORT_COLUMNS = (
     Column("Medium", 0.7),
     Column("Remarks", 1.2),
 )
-_MEDIUM = 4
-"""The place of the medium among them."""
 
 
-def condense_component(blocks: Iterable[Block], title: str, component_id: str) -> tuple[Block, ...]:
+def condense_component(lookup: Lookup, component: Component, blocks: Iterable[Block]) -> tuple[Block, ...]:
     """Put the blocks of a component together: text, facts, picture, one table of ports, what can be set and called."""
     texts: list[Block] = []
     figures: list[Block] = []
     rows: list[FactRow] = []
-    port_tables: list[tuple[str, Table]] = []
     last_tables: list[Block] = []
     pending_title = ""
     for block in blocks:
         match block:
             case Facts():
-                rows += block.rows
+                rows += _list_printed_facts(lookup, component)
             case Figure():
                 figures.append(block)
-            case Table() if block.anchor.startswith(("table:inputs/", "table:outputs/")):
-                port_tables.append(("in" if block.anchor.startswith("table:inputs/") else "out", block))
-            case Table() if block.anchor.startswith(("table:set/", "table:operations/", "table:components/")):
-                last_tables.append(drop_repeated_columns(block) if "components/" in block.anchor else block)
+            case Table(kind="table:inputs" | "table:outputs"):
+                pass
+            case Table(kind="table:set" | "table:operations" | "table:components" as kind):
+                is_inner = kind == "table:components"
+                last_tables.append(drop_repeated_columns(drop_column(block, "nodes")) if is_inner else block)
             case Table():
                 rows.append(("Performance", inline_text.join_lines(_phrase_row(block, row) for row in block.rows)))
             case Bullets():
@@ -51,9 +67,8 @@ def condense_component(blocks: Iterable[Block], title: str, component_id: str) -
                 rows.append(row)
             case _:
                 texts.append(block)
-    facts = Facts(tuple(_order_component_facts(rows)))
-    ports = [_join_ports(port_tables, f"table:ports/{component_id}", f"Ports of {title}")] if port_tables else []
-    return (*texts, *([facts] if facts.rows else []), *figures, *ports, *last_tables)
+    facts = [Facts(tuple(rows))] if rows else []
+    return (*texts, *facts, *figures, *_make_port_tables(lookup, component), *last_tables)
 
 
 def _is_title(paragraph: Paragraph) -> bool:
@@ -80,31 +95,41 @@ def _phrase_row(table: Table, row: Sequence[Inlines]) -> Inlines:
     return (*name, Text(": "), *inline_text.join_inlines(parts)) if parts else name
 
 
-def _order_component_facts(rows: Sequence[FactRow]) -> Iterator[FactRow]:
+def _list_printed_facts(lookup: Lookup, component: Component) -> Iterator[FactRow]:
     """Yield the facts of a component; its group is the chapter that it stands in, and its role stands beside its owner."""
-    role = next((value for name, value in rows if name == "Role"), ())
-    for name, value in rows:
-        if name == "Owner" and role:
-            yield "Owner, role", (*value, Text(", "), *role)
-        elif name not in {"Group", "Role"}:
-            yield name, value
+    facts = list(list_component_facts(lookup, component))
+    role = next((fact.value for fact in facts if fact.key == "role"), ())
+    for fact in facts:
+        if fact.key == "owner" and role:
+            yield "Owner, role", (*fact.value, Text(", "), *role)
+        elif fact.key not in {"group", "role"}:
+            yield print_fact(fact)
 
 
-def _join_ports(tables: Sequence[tuple[str, Table]], anchor: str, caption: str) -> Table:
-    """Return inputs and outputs as one table. A medium is said only where it is not digital."""
-    rows, anchors = [], []
-    for use, table in tables:
-        titles = {"Input": "Port", "Output": "Port", "From": "From / to", "To": "From / to"}
-        titles |= {"Read inside by": "Inside", "Given on from": "Inside"}
-        places = {titles.get(column.title, column.title): index for index, column in enumerate(table.columns)}
-        row_anchors = (*table.row_anchors, *(None for _ in table.rows))
-        for row, row_anchor in zip(table.rows, row_anchors, strict=False):
-            cells = [row[places[column.title]] if column.title in places else () for column in _PORT_COLUMNS]
-            cells[_MEDIUM] = () if _join_texts(cells[_MEDIUM]) == "digital" else cells[_MEDIUM]
-            rows.append((inline_text.to_inlines(use), *cells))
-            anchors.append(row_anchor)
-    columns = (Column("Use", 0.3), *_PORT_COLUMNS)
-    return drop_repeated_columns(Table(anchor, caption, columns, tuple(rows), tuple(anchors)), kept_columns=4)
+def print_fact(fact: Fact) -> FactRow:
+    """Return a fact as paper has it: nothing shows there that links lead elsewhere, and hosts have links too."""
+    return "See also" if fact.key == "links" else fact.title, fact.value
+
+
+def _make_port_tables(lookup: Lookup, component: Component) -> Iterator[Table]:
+    """Yield inputs and outputs as one table, if there are any. A medium is said only where it is not digital."""
+    uses: tuple[tuple[str, PortKind], ...] = (("in", "input"), ("out", "output"))
+    rows = tuple(
+        (
+            inline_text.to_inlines(use),
+            port.name,
+            port.type,
+            port.ends,
+            port.inside,
+            () if _join_texts(port.medium) == "digital" else port.medium,
+            port.remarks,
+        )
+        for use, kind in uses
+        for port in list_port_cells(lookup, component, kind)
+    )
+    if rows:
+        table = Table(f"table:ports/{component.id}", f"Ports of {component.title}", _PORT_COLUMNS, rows)
+        yield drop_repeated_columns(table, kept_columns=4)
 
 
 def drop_repeated_columns(table: Table, kept_columns: int = 1) -> Table:
@@ -119,12 +144,7 @@ def drop_repeated_columns(table: Table, kept_columns: int = 1) -> Table:
             kept_indices.append(index)
         elif texts != [""]:
             remarks.append(f"{column.title} of all: {texts[0]}")
-    return dataclasses.replace(
-        table,
-        caption="; ".join((table.caption, *remarks)),
-        columns=tuple(table.columns[index] for index in kept_indices),
-        rows=tuple(tuple(row[index] for index in kept_indices) for row in table.rows),
-    )
+    return replace(keep_columns(table, kept_indices), caption="; ".join((table.caption, *remarks)))
 
 
 def _join_texts(cell: Inlines) -> str:

@@ -12,12 +12,12 @@ _COMPONENT_WORDS = ("shows its neighbours", "lists its ports")
 _GROUP_WORDS = ("shows its components and what they exchange", "tells what each is for")
 _NODE_WORDS = ("shows its nodes with their neighbours", "lists what they use")
 _CHAIN_WORDS = ("shows how the time adds up", "says why")
-_WORDS = (
-    ("component:", _COMPONENT_WORDS),
-    ("group:", _GROUP_WORDS),
-    ("implementation:", _NODE_WORDS),
-    ("chain:", _CHAIN_WORDS),
-)
+_SECTION_WORDS = {
+    "component": _COMPONENT_WORDS,
+    "group": _GROUP_WORDS,
+    "implementation": _NODE_WORDS,
+    "chain": _CHAIN_WORDS,
+}
 _BLOCK_WORDS = {
     "figure:overview": "shows the groups and what runs between them",
     "table:worst_chains": "lists the chains of effect with what is left of their deadlines",
@@ -71,7 +71,6 @@ _BLOCK_WORDS = {
     "figure:history": "draws its growth",
 }
 """What a figure or table is for, by its anchor, or by the part of it before a slash."""
-_SUMMARY = "summary:"
 _MIN_RANGE = 3
 """So many pictures of one kind are named by the first and the last of them."""
 
@@ -82,13 +81,13 @@ def mention_section(section: Section) -> Section:
     places = [index for index, block in enumerate(blocks) if _is_numbered(block)]
     mentioned = [blocks[index] for index in places]
     sections = section.sections
-    if any(each.anchor.startswith(_SUMMARY) for each in sections):
+    if any(each.kind == "summary" for each in sections):
         # The summary has two pages: one sentence does for all of it.
         mentioned += [block for each in sections for block in each.blocks if _is_numbered(block)]
     else:
         sections = tuple(mention_section(each) for each in sections)
     if places:
-        blocks.insert(places[0], Paragraph(_write_sentence(section.anchor, mentioned)))
+        blocks.insert(places[0], Paragraph(_write_sentence(section.kind, mentioned)))
     return replace(section, blocks=tuple(blocks), sections=sections)
 
 
@@ -96,10 +95,10 @@ def _is_numbered(block: Block) -> bool:
     return isinstance(block, (Figure, Table)) and block.numbered
 
 
-def _write_sentence(anchor: str, blocks: Sequence[Block]) -> Inlines:
+def _write_sentence(section_kind: str, blocks: Sequence[Block]) -> Inlines:
     figures = [_name_block(block) for block in blocks if isinstance(block, Figure)]
     tables = [_name_block(block) for block in blocks if isinstance(block, Table)]
-    words = next((words for prefix, words in _WORDS if anchor.startswith(prefix)), None)
+    words = _SECTION_WORDS.get(section_kind)
     # A composed component's picture shows something else than a component's.
     words = None if any(_find_purpose(block) == _BLOCK_WORDS["figure:composed/"] for block in blocks) else words
     if words and len(figures) <= 1 and len(tables) <= 1:
@@ -128,8 +127,9 @@ def _write_purposes(blocks: Sequence[Block]) -> Inlines:
 
 
 def _find_purpose(block: Block) -> str:
-    anchor = block.anchor if isinstance(block, (Figure, Table)) else ""
-    return _BLOCK_WORDS.get(anchor) or _BLOCK_WORDS.get(f"{anchor.partition('/')[0]}/", "")
+    if not isinstance(block, Figure | Table):
+        return ""
+    return _BLOCK_WORDS.get(block.anchor) or _BLOCK_WORDS.get(f"{block.kind}/", "")
 
 
 def _to_plural(words: str) -> str:

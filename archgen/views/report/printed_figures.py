@@ -16,8 +16,6 @@ _TIME_CELL = re.compile(r"(>= |<= )?([0-9]+(?:\.[0-9]+)?) (ns|us|ms|s)")
 _MIN_TIMES = 2
 _THIN = "\u202f"
 """Between a figure and its unit, which must not part."""
-_FACT_WORDS = {"Links": "See also"}
-"""On paper nothing shows that these are links to pages elsewhere, and hosts have links too."""
 
 
 def print_section_figures(section: Section) -> Section:
@@ -36,9 +34,7 @@ def _print_block(block: Block) -> Block:
         case Bullets():
             return replace(block, items=tuple(print_inlines(item) for item in block.items))
         case Facts():
-            return replace(
-                block, rows=tuple((_FACT_WORDS.get(name, name), print_inlines(value)) for name, value in block.rows)
-            )
+            return replace(block, rows=tuple((name, print_inlines(value)) for name, value in block.rows))
         case Table():
             return _print_table(block)
         case _:

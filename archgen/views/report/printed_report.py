@@ -10,6 +10,7 @@ import dataclasses
 from collections.abc import Iterable, Iterator, Mapping
 
 from archgen.views.chart_shapes import Drawing
+from archgen.views.elements.functional_level import list_group_facts
 from archgen.views.graphs.element_boxes import name_in_place
 from archgen.views.lookup import Lookup
 from archgen.views.pages import report_outline
@@ -20,7 +21,7 @@ from archgen.views.report.message_annex import make_message_annex
 from archgen.views.report.printed_figures import print_section_figures
 from archgen.views.report.report_drawings import LEGEND_NAME, is_piece_of, make_report_drawings
 from archgen.views.sequences.sequence_charts import CHART_PREFIX
-from archgen.views.shapes import Block, Facts, Figure, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
+from archgen.views.shapes import Block, Facts, Figure, Markdown, Outline, Paragraph, Section, Table, Text, drop_column
 
 _TIMING_ANNEX = "Rates, loads and traffic"
 _LARGE_DRAWINGS = ("components", "ros", "timing")
@@ -71,7 +72,7 @@ class _ReportPrinter:
 
     def print_section(self, section: Section) -> tuple[Section, ...]:
         """Return what becomes of a chapter: itself, and the annexes that some of it moves to."""
-        if section.anchor.startswith("group:"):
+        if section.kind == "group":
             return (self._print_group(section),)
         if section.anchor == "page:timing":
             return tuple(self._split_timing(section))
@@ -116,19 +117,24 @@ class _ReportPrinter:
     def _print_group(self, section: Section) -> Section:
         blocks = list(_unturn_tables(self._keep_legible(section.blocks)))
         texts = [block for block in blocks if isinstance(block, Markdown)]
-        others = [_drop_column(block, "Nodes") for block in blocks if not isinstance(block, Markdown)]
+        group = self.lookup.architecture.groups[section.subject]
+        facts = Facts(tuple(map(condensed_blocks.print_fact, list_group_facts(self.lookup, group))))
+        others = [
+            drop_column(block, "nodes") if isinstance(block, Table) else block
+            for block in blocks
+            if not isinstance(block, Markdown | Facts)
+        ]
         sections = tuple(self._print_component(each) for each in section.sections)
-        return dataclasses.replace(section, blocks=(*texts, *others), sections=sections)
+        return dataclasses.replace(section, blocks=(*texts, facts, *others), sections=sections)
 
     def _print_component(self, section: Section) -> Section:
-        component_id = section.anchor.partition(":")[2]
-        shown_blocks = (_drop_column(block, "Nodes") for block in self._keep_legible(section.blocks))
-        blocks = condensed_blocks.condense_component(shown_blocks, section.title, component_id)
-        is_leaf = component_id in self.lookup.architecture.components
-        if is_leaf and self._shows_ros and self.edition.ros_place == "inline":
-            blocks += self._make_ros_blocks(component_id)
+        architecture = self.lookup.architecture
+        component = architecture.shells.get(section.subject) or architecture.components[section.subject]
+        blocks = condensed_blocks.condense_component(self.lookup, component, self._keep_legible(section.blocks))
+        if component.id in architecture.components and self._shows_ros and self.edition.ros_place == "inline":
+            blocks += self._make_ros_blocks(component.id)
         # What is inside of a composed component has sections; those of nodes move to the annex.
-        inner = (each for each in section.sections if each.anchor.startswith("component:"))
+        inner = (each for each in section.sections if each.kind == "component")
         return dataclasses.replace(
             section, blocks=blocks, sections=tuple(self._print_component(each) for each in inner)
         )
@@ -195,12 +201,3 @@ def _unturn_tables(blocks: Iterable[Block]) -> Iterator[Block]:
             yield dataclasses.replace(block, wide=False)
         elif not isinstance(block, Facts) or block.rows:
             yield block
-
-
-def _drop_column(block: Block, title: str) -> Block:
-    """Return a table without a column."""
-    if not isinstance(block, Table):
-        return block
-    indices = [index for index, column in enumerate(block.columns) if column.title != title]
-    rows: tuple[tuple[Inlines, ...], ...] = tuple(tuple(row[index] for index in indices) for row in block.rows)
-    return dataclasses.replace(block, columns=tuple(block.columns[index] for index in indices), rows=rows)

@@ -8,15 +8,28 @@ from archgen.model.component import Component
 from archgen.model.node import Endpoint, Node, Qos
 from archgen.model.port_media import ROS
 from archgen.views import inline_text
-from archgen.views.elements.implementation_level import make_implementation_blocks, make_node_blocks
+from archgen.views.elements.implementation_level import list_node_facts, make_implementation_blocks, make_node_blocks
+from archgen.views.elements.parameter_blocks import make_effective_table
 from archgen.views.lookup import Lookup
-from archgen.views.report.condensed_blocks import FactRow, drop_repeated_columns
-from archgen.views.shapes import Block, Column, Facts, Inlines, Markdown, Paragraph, Table, Text, drop_empty_columns
+from archgen.views.report.condensed_blocks import drop_repeated_columns, print_fact
+from archgen.views.shapes import (
+    Block,
+    Column,
+    Fact,
+    FactRow,
+    Facts,
+    Inlines,
+    Markdown,
+    Paragraph,
+    Table,
+    Text,
+    drop_empty_columns,
+)
 
 _USE_WORDS = {"subscribes": "sub", "publishes": "pub", "serves": "serves", "calls": "calls"}
 _USE_ORDER = tuple(_USE_WORDS)
-_OWN_ROWS = ("Implements", "ROS name", "Kind, status")
-"""Facts that the first line of a node says."""
+_OWN_FACTS = {"implements", "ros_name", "kind"}
+"""Keys of the facts that the first line of a node says."""
 
 
 def make_ros_blocks(lookup: Lookup, component: Component) -> tuple[Block, ...]:
@@ -32,11 +45,10 @@ def make_ros_blocks(lookup: Lookup, component: Component) -> tuple[Block, ...]:
             anchors.append(None)
             continue
         node_blocks = make_node_blocks(lookup, node)
-        facts = next((block.rows for block in node_blocks if isinstance(block, Facts)), ())
         texts += [
             block for block in node_blocks if isinstance(block, Markdown) or getattr(block, "kind", "text") == "note"
         ]
-        node_rows = list(_condense_facts(node, component, facts))
+        node_rows = list(_condense_facts(node, component, list_node_facts(lookup, node)))
         rows += node_rows
         anchors += [f"node:{node.id}", *(None for _ in node_rows[1:])]
     table = _make_endpoint_table(lookup, component, own_nodes)
@@ -64,38 +76,31 @@ def _refer_to_node(lookup: Lookup, node: Node) -> Inlines:
     )
 
 
-def _condense_facts(node: Node, component: Component, rows: Sequence[FactRow]) -> Iterator[FactRow]:
+def _condense_facts(node: Node, component: Component, facts: Sequence[Fact]) -> Iterator[FactRow]:
     """Yield the facts of a node: what it is in one row, where it runs with its package in a second, times in a third."""
-    values = dict(rows)
-    kind = values.get("Kind, status", ())
-    ros_name = (Text(", ROS name "), *values["ROS name"]) if "ROS name" in values else ()
+    values = {fact.key: fact.value for fact in facts if fact.key in _OWN_FACTS}
+    kind = values.get("kind", ())
+    ros_name = (Text(", ROS name "), *values["ros_name"]) if "ros_name" in values else ()
     name = inline_text.to_inlines(Text(node.id, code=True, strong=True), *ros_name, ", ", *kind)
     others = [item for item in node.implements if item != component.id]
     if others:
-        name = (*name, Text("; implements "), *values["Implements"])
+        name = (*name, Text("; implements "), *values["implements"])
     yield "Node", name
-    places, times, details = [], [], []
-    for title, value in rows:
-        if title in _OWN_ROWS or (title == "Owner" and node.owners == component.owners):
-            continue
-        if title.startswith(("Timing", "Rate", "Response", "Callbacks", "Uses", "Waits")):
-            times.append((title, value))
-        elif title in {"Package", "Runs on", "Owner"}:
-            places.append((title, value))
-        else:
-            details.append((title, value))
-    if places:
+    place_keys = {"package", "host", *(() if node.owners == component.owners else ("owner",))}
+    if places := [fact for fact in facts if fact.key in place_keys]:
         yield "Package and host", _join_named(places)
-    if times:
+    if times := [fact for fact in facts if fact.key in {"timing", "activity"}]:
         yield "Timing", _join_named(times)
-    yield from details
+    yield from (print_fact(fact) for fact in facts if fact.key in {"", "links"})
 
 
-def _join_named(rows: Iterable[FactRow]) -> Inlines:
-    """Join facts with their names: `runs on Base Computer; owner SSSA`. A package needs no name."""
+def _join_named(facts: Iterable[Fact]) -> Inlines:
+    """Join facts with their names: `runs on Base Computer; owner SSSA`. A package and a timing need no name."""
     parts = [
-        value if title in {"Package", "Timing"} else inline_text.to_inlines(f"{title[:1].lower()}{title[1:]} ", *value)
-        for title, value in rows
+        fact.value
+        if fact.key in {"package", "timing"}
+        else inline_text.to_inlines(f"{fact.title[:1].lower()}{fact.title[1:]} ", *fact.value)
+        for fact in facts
     ]
     return inline_text.join_inlines(parts, "; ")
 
@@ -171,11 +176,9 @@ def make_parameter_table(lookup: Lookup) -> Table | None:
     """List the parameters of all shown nodes."""
     rows: list[tuple[Inlines, ...]] = []
     for node in lookup.shown_nodes():
-        tables = [block for block in make_node_blocks(lookup, node) if isinstance(block, Table)]
-        for table in tables:
-            if table.anchor.startswith("table:parameters/"):
-                name: Inlines = (Text(node.id, ref=f"node:{node.id}", code=True),)
-                rows += [(name, *row, *(((),) if len(row) == 2 else ())) for row in table.rows]  # noqa: PLR2004
+        if table := make_effective_table(lookup, node):
+            name: Inlines = (Text(node.id, ref=f"node:{node.id}", code=True),)
+            rows += [(name, *row, *(((),) if len(row) == 2 else ())) for row in table.rows]  # noqa: PLR2004
     columns = (Column("Node"), Column("Parameter"), Column("Value"), Column("From"))
     if not rows:
         return None

@@ -96,7 +96,8 @@ def make_topic_table(lookup: Lookup, selected_topics: Sequence[Topic], anchor: s
         )
         for topic in selected_topics
     )
-    content = Column("Message" if any(topic.medium == ROS for topic in selected_topics) else "Type", 1.6)
+    is_ros = any(topic.medium == ROS for topic in selected_topics)
+    content = Column("Message" if is_ros else "Type", 1.6, key="carried")
     columns = (Column("Name", 1.5), content, Column("From", 1.2), Column("To", 1.5))
     return Table(anchor, caption, columns, rows) if rows else None
 

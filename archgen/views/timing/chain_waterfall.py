@@ -26,16 +26,8 @@ from archgen.views.timing import chain_charts, chain_status, element_timing, tim
 from archgen.views.timing.timing_lookup import TimingLookup
 
 PieceKind = Literal["sampling", "response", "link", "unknown"]
-WATERFALL_FACTS = (
-    "Verdict",
-    "Why",
-    "What to do",
-    "Reaction time and data age, at the latest",
-    "At the earliest",
-    "Requirements",
-    "Assumptions",
-)
-"""The facts of `element_timing.make_chain_blocks` that a waterfall says as well."""
+WATERFALL_FACTS = ("verdict", "why", "advice", "latest", "earliest", "requirements", "assumptions")
+"""The keys of the facts of `element_timing.make_chain_blocks` that a waterfall says as well."""
 _KINDS: tuple[tuple[PieceKind, str], ...] = (("sampling", "waits"), ("response", "responds"), ("link", "link"))
 _CUT_SHARE = Fraction(1, 2)
 """A piece that is longer than this share of all is drawn short: else the others could not be told apart."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 
 from archgen.model.node import Node
 from archgen.timing.analysis import ChainResult
@@ -13,7 +13,7 @@ from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.system.timing_system import Activity
 from archgen.views import element_references, inline_text
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Block, Column, Facts, Figure, Inlines, Table, Text
+from archgen.views.shapes import Block, Column, Fact, Figure, Inlines, Table, Text, show_facts
 from archgen.views.timing import chain_charts, load_charts, rate_phrases, timing_tables, use_tables, value_format
 from archgen.views.timing.timing_lookup import TimingLookup
 
@@ -30,40 +30,54 @@ def make_whole_fact(lookup: Lookup, component_id: str) -> Inlines:
     return (Text(f"{duration}: "), *way)
 
 
-def make_chain_blocks(lookup: Lookup, timing_lookup: TimingLookup, result: ChainResult) -> tuple[Block, ...]:
-    """Describe the timing of one chain: facts, the chart of its terms, and each term with its reason."""
+def make_chain_blocks(
+    lookup: Lookup, timing_lookup: TimingLookup, result: ChainResult, without: Collection[str] = ()
+) -> tuple[Block, ...]:
+    """Describe the timing of one chain: facts without those of some keys, the chart of its terms, and each term with its
+    reason.
+    """
     chain = lookup.architecture.chains[result.id]
     architecture = lookup.architecture
-    facts: list[tuple[str, Inlines]] = [
-        (
+    facts = [
+        Fact(
+            "",
             "Through",
             inline_text.join_inlines(
                 (timing_tables.activity_link(timing_lookup, name) for name in result.through), " → "
             ),
         ),
-        ("Verdict", inline_text.to_inlines(chain_charts.describe_chain_verdict(result, timing_lookup))),
+        Fact("verdict", "Verdict", inline_text.to_inlines(chain_charts.describe_chain_verdict(result, timing_lookup))),
         *_list_advice(timing_lookup, result),
-        (
+        Fact(
+            "latest",
             "Reaction time and data age, at the latest",
             inline_text.to_inlines(value_format.display_bound(result.bound, timing_lookup.analysis)),
         ),
-        ("At the earliest", timing_tables.figure_cell(value_format.display_lower_bound(result.best), result.best)),
-        ("From the earliest to the latest", _spread_cell(result)),
-        (
+        Fact(
+            "earliest",
+            "At the earliest",
+            timing_tables.figure_cell(value_format.display_lower_bound(result.best), result.best),
+        ),
+        Fact("", "From the earliest to the latest", _spread_cell(result)),
+        Fact(
+            "",
             "Reaction time without the first wait",
             timing_tables.duration_cell(result.reduced_reaction),
         ),
-        (
+        Fact(
+            "",
             "Data age, from the first reading on",
             timing_tables.duration_cell(result.reduced_age),
         ),
-        (
+        Fact(
+            "requirements",
             "Requirements",
             inline_text.join_inlines(
                 inline_text.requirement_link(architecture, name)[:1] for name in chain.requirements
             ),
         ),
-        (
+        Fact(
+            "assumptions",
             "Assumptions",
             _link_activities(timing_lookup, "; ".join(dict.fromkeys(describe_assumptions(timing_lookup, result)))),
         ),
@@ -80,7 +94,7 @@ def make_chain_blocks(lookup: Lookup, timing_lookup: TimingLookup, result: Chain
         Column("Place", 1.4),
     )
     return (
-        Facts(tuple((key, value) for key, value in facts if value and not timing_tables.is_blank(value))),
+        show_facts((fact for fact in facts if fact.value and not timing_tables.is_blank(fact.value)), without),
         Figure(f"figure:{name}", name, title, chain_charts.describe_chain_verdict(result, timing_lookup)),
         *([Table(f"table:{name}", f"{chain.title}: parts of the bound", columns, rows)] if rows else []),
     )
@@ -90,12 +104,12 @@ def _spread_cell(result: ChainResult) -> Inlines:
     return () if result.spread is None else timing_tables.duration_cell(TimingValue(result.spread))
 
 
-def _list_advice(timing_lookup: TimingLookup, result: ChainResult) -> Iterator[tuple[str, Inlines]]:
+def _list_advice(timing_lookup: TimingLookup, result: ChainResult) -> Iterator[Fact]:
     """Yield what takes most of a chain that does not surely meet its deadline, and what to do first."""
     advice = advise_on_chain(timing_lookup.analysis, result)
     if advice is not None:
-        yield "Why", inline_text.message_to_inlines(advice.largest_parts)
-        yield "What to do", inline_text.message_to_inlines(advice.first_step)
+        yield Fact("why", "Why", inline_text.message_to_inlines(advice.largest_parts))
+        yield Fact("advice", "What to do", inline_text.message_to_inlines(advice.first_step))
 
 
 def describe_assumptions(timing_lookup: TimingLookup, result: ChainResult) -> Iterator[str]:
@@ -142,8 +156,8 @@ def _term_row(lookup: Lookup, timing_lookup: TimingLookup, result: ChainResult, 
     )
 
 
-def make_node_facts(lookup: Lookup, node: Node) -> Iterator[tuple[str, Inlines]]:
-    """Yield how often each activity of a node runs, and within what time it responds."""
+def make_node_facts(lookup: Lookup, node: Node) -> Iterator[Fact]:
+    """Yield how often each activity of a node runs, and within what time it responds, as facts of `activity`."""
     timing_lookup = lookup.timing
     if timing_lookup is None:
         return
@@ -158,7 +172,7 @@ def make_node_facts(lookup: Lookup, node: Node) -> Iterator[tuple[str, Inlines]]
 
 def _activity_facts(
     lookup: Lookup, timing_lookup: TimingLookup, activity: Activity, origin_ids: tuple[str, ...], suffix: str
-) -> Iterator[tuple[str, Inlines]]:
+) -> Iterator[Fact]:
     """Yield rate and response of one activity, as far as they are known."""
     pace, response = timing_lookup.analysis.paces.get(activity.id), timing_lookup.analysis.responses.get(activity.id)
     if pace and (rate_text := rate_phrases.format_rate_words(pace)) != "?":
@@ -168,13 +182,12 @@ def _activity_facts(
             if pace.inferred
             else ()
         )
-        yield f"Rate{suffix}", (*inline_text.to_inlines(rate_text), *((Text(", "), *source) if source else ()))
+        rate = (*inline_text.to_inlines(rate_text), *((Text(", "), *source) if source else ()))
+        yield Fact("activity", f"Rate{suffix}", rate)
     if response and response.worst.value is not None:
         tier = f" ({timing_tables.TIER_WORDS[response.tier]})" if timing_tables.TIER_WORDS[response.tier] else ""
-        yield (
-            f"Response{suffix}",
-            inline_text.to_inlines(f"within {value_format.display_duration(response.worst)}{tier}"),
-        )
+        words = f"within {value_format.display_duration(response.worst)}{tier}"
+        yield Fact("activity", f"Response{suffix}", inline_text.to_inlines(words))
     yield from use_tables.list_use_facts(timing_lookup, activity, suffix)
 
 

@@ -11,7 +11,7 @@ from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.system.timing_system import Activity
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Column, Inlines, Table, Text
+from archgen.views.shapes import Column, Fact, Table, Text
 from archgen.views.timing import timing_tables, value_format
 from archgen.views.timing.timing_lookup import TimingLookup
 
@@ -112,7 +112,7 @@ def _find_longest(activity: Activity, tick: Fraction) -> TimingValue:
     return TimingValue(None, complete=False) if activity.wcet is None else TimingValue(activity.wcet * tick)
 
 
-def list_use_facts(timing_lookup: TimingLookup, activity: Activity, suffix: str) -> Iterator[tuple[str, Inlines]]:
+def list_use_facts(timing_lookup: TimingLookup, activity: Activity, suffix: str) -> Iterator[Fact]:
     """Yield what is known of one activity: what it fuses, which resources it uses, how long it was seen to take."""
     analysis = timing_lookup.analysis
     for fused in timing_lookup.fused_inputs:
@@ -120,15 +120,14 @@ def list_use_facts(timing_lookup: TimingLookup, activity: Activity, suffix: str)
             text = (
                 f"{_describe_fusion(fused)}; at most {value_format.display_duration(fused.apart)} apart; age at most: "
             )
-            yield f"Uses together{suffix}", inline_text.to_inlines(text + _describe_ages(fused))
+            words = inline_text.to_inlines(text + _describe_ages(fused))
+            yield Fact("activity", f"Uses together{suffix}", words)
     for resource_id in activity.uses:
         load = analysis.resources.get(resource_id)
         wait = load.waits.get(activity.id) if load else None
         if wait is not None:
             text = f"{value_format.display_duration(wait)} at most for each use, waiting included"
-            yield f"{resource_id}{suffix}", inline_text.to_inlines(text)
+            yield Fact("", f"{resource_id}{suffix}", inline_text.to_inlines(text))
     if activity.percentiles:
-        yield (
-            f"Execution time{suffix}, measured",
-            inline_text.to_inlines(describe_percentiles(activity, analysis.system.tick)),
-        )
+        words = inline_text.to_inlines(describe_percentiles(activity, analysis.system.tick))
+        yield Fact("", f"Execution time{suffix}, measured", words)

@@ -10,7 +10,7 @@ import pytest
 
 from archgen.diagnostics.source_span import Span
 from archgen.findings.generation_rules import GENERATION_RULES
-from archgen.findings.rule_pages import parse_rule_page
+from archgen.findings.rule_pages import read_rule_page
 from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField
 from archgen.pipeline import check_project
 from archgen.views.generation import GENERATION_VIEWS
@@ -240,7 +240,7 @@ def test_views_are_made_by_name(tmp_path: Path) -> None:
 
 def test_the_examples_of_the_rules(tmp_path: Path) -> None:
     for rule in GENERATION_RULES:
-        page = parse_rule_page(rule)
+        page = read_rule_page(rule)
         found = []
         for number, example in enumerate((page.bad, page.good)):
             (tmp_path / str(number)).mkdir(exist_ok=True)

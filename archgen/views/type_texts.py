@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from functools import cached_property
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
@@ -12,7 +12,6 @@ from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 from archgen.model.parameter import format_parameter
 from archgen.model.quantity import Quantity
-from archgen.views.shapes import Block, Facts, Inlines
 from archgen.views.type_names import find_component_type
 
 
@@ -53,15 +52,6 @@ class TypeTexts:
         return tuple(
             each for each in _list_values(self.architecture, component) if each.text and not self.contain(each.at)
         )
-
-
-def add_own_value(blocks: Sequence[Block], fact: tuple[str, Inlines] | None) -> tuple[Block, ...]:
-    """Return the blocks of a component with a fact more in its facts, the first block, behind the type."""
-    first = blocks[0] if blocks else None
-    if fact is None or not isinstance(first, Facts):
-        return tuple(blocks)
-    at = next((at for at, (name, _) in enumerate(first.rows, 1) if name == "Type"), 0)
-    return (Facts((*first.rows[:at], fact, *first.rows[at:])), *blocks[1:])
 
 
 def _list_values(architecture: Architecture, component: Component) -> Iterator[OwnValue]:
