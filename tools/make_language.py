@@ -7,6 +7,7 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 
+from language_comparison import find_comparison_faults, make_comparison_tables
 from language_description import DescriptionError, add_rule_settings, find_faults, load_description, make_schema
 from language_page import renew_page
 from language_tables import make_tables
@@ -21,7 +22,7 @@ def make_files() -> Mapping[Path, str]:
     """Return the text of each generated file. Raise DescriptionError for a description that says too little."""
     description = load_description()
     add_rule_settings(description, index_rules(ALL_RULES))
-    if faults := list(find_faults(description)):
+    if faults := [*find_faults(description), *find_comparison_faults(description)]:
         message = "\n".join(faults)
         raise DescriptionError(message)
     page = ROOT / "docs" / "language.md"
@@ -29,6 +30,7 @@ def make_files() -> Mapping[Path, str]:
         page: renew_page(page.read_text(encoding="utf-8"), description),
         ROOT / "schemas" / "archgen.schema.json": json.dumps(make_schema(description), indent=2) + "\n",
         ROOT / "archgen" / "language" / "language_tables.py": make_tables(description),
+        ROOT / "archgen" / "language" / "comparison_tables.py": make_comparison_tables(description),
     }
 
 

@@ -11,13 +11,20 @@ from dataclasses import replace
 from typing import Any
 
 from archgen.compare.element_likeness import letter_pairs, word_set
-from archgen.compare.kinds.component_keys import name_common_type
+from archgen.compare.kinds.described_keys import complete_kind
 from archgen.compare.kinds.functional_kinds import COMPONENT
-from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext, Worsening
+from archgen.compare.kinds.kind_spec import (
+    Effect,
+    FeatureSpec,
+    KeySpec,
+    KindSpec,
+    ReadContext,
+    Worsening,
+    key_values,
+)
 from archgen.compare.kinds.port_kinds import INPUT, OUTPUT
-from archgen.compare.kinds.promise_keys import VERSION, deprecation_key
 from archgen.compare.kinds.ros_kinds import NODE
-from archgen.compare.kinds.shared_keys import DESCRIPTION, TITLE, key_values, prose_key, text_feature
+from archgen.compare.kinds.shared_keys import text_feature
 from archgen.compare.normal_values import drop_unset_values
 from archgen.model.component import Component, ComponentType, Input, Output
 from archgen.model.path_resolver import title_from_id
@@ -107,52 +114,40 @@ def _mark_ports(component_type: ComponentType) -> frozenset[str]:
     return frozenset(f"{side} {name} {kind or '?'}" for side, ports in sides for name, kind in ports.items())
 
 
-COMPONENT_TYPE = KindSpec(
-    "component_type",
-    "Component types",
-    (
-        TITLE,
-        prose_key("functionality"),
-        DESCRIPTION,
-        KeySpec("owner", effect=Effect.SYSTEM, verb="belongs to"),
-        KeySpec(
-            "is",
-            lambda each, context: name_common_type(each.base, context),
-            Effect.SYSTEM,
-            verb="is made from",
-            noun="base",
+_PATTERN_KEYS = tuple(
+    # What timing and partners lose is judged at the instances.
+    replace(key, read=_read_pattern(key), effect=min(key.effect, Effect.SYSTEM), worsening=Worsening.NEVER)
+    for key in COMPONENT.keys
+    if key.name not in OWN_KEYS | _WRITTEN_KEYS
+)
+COMPONENT_TYPE = complete_kind(
+    KindSpec(
+        "component_type",
+        "Component types",
+        (
+            KeySpec("inputs.", _read_ports("inputs", INPUT.keys), Effect.SYSTEM),
+            KeySpec("outputs.", _read_ports("outputs", OUTPUT.keys), Effect.SYSTEM),
+            KeySpec("components", lambda each, _: each.components or None, Effect.SYSTEM),
+            KeySpec("components.", _read_parts, Effect.SYSTEM),
+            KeySpec("node.", _read_node, Effect.SYSTEM),
+            *_PATTERN_KEYS,
         ),
-        KeySpec("generic", lambda each, _: each.generic or None, Effect.SYSTEM),
-        KeySpec("abstract", lambda each, _: each.is_abstract or None, Effect.SYSTEM),
-        VERSION,
-        deprecation_key("component_type"),
-        KeySpec("inputs.", _read_ports("inputs", INPUT.keys), Effect.SYSTEM),
-        KeySpec("outputs.", _read_ports("outputs", OUTPUT.keys), Effect.SYSTEM),
-        KeySpec("components", lambda each, _: each.components or None, Effect.SYSTEM),
-        KeySpec("components.", _read_parts, Effect.SYSTEM),
-        KeySpec("node.", _read_node, Effect.SYSTEM),
-        # What timing and partners lose is judged at the instances.
-        *(
-            replace(key, read=_read_pattern(key), effect=min(key.effect, Effect.SYSTEM), worsening=Worsening.NEVER)
-            for key in COMPONENT.keys
-            if key.name not in OWN_KEYS | _WRITTEN_KEYS
+        elements=lambda version: version.architecture.component_types,
+        features=(
+            # The library is a part of the id: a type that moves into one is the same.
+            FeatureSpec("name", 2, lambda _, each: letter_pairs(_own_name(each))),
+            FeatureSpec(
+                "title",
+                2,
+                lambda _, each: word_set(each.title),
+                lambda each: each.title in {title_from_id(_own_name(each)), _own_name(each)},
+            ),
+            FeatureSpec("ports", 4, lambda _, each: _mark_ports(each)),
+            FeatureSpec("components", 4, lambda _, each: frozenset(each.components)),
+            FeatureSpec("parameters", 2, lambda _, each: frozenset(each.parameters)),
+            text_feature(3, "functionality", "description"),
         ),
+        word="component type",
     ),
-    Effect.SYSTEM,
-    elements=lambda version: version.architecture.component_types,
-    features=(
-        # The library is a part of the id: a type that moves into one is the same.
-        FeatureSpec("name", 2, lambda _, each: letter_pairs(_own_name(each))),
-        FeatureSpec(
-            "title",
-            2,
-            lambda _, each: word_set(each.title),
-            lambda each: each.title in {title_from_id(_own_name(each)), _own_name(each)},
-        ),
-        FeatureSpec("ports", 4, lambda _, each: _mark_ports(each)),
-        FeatureSpec("components", 4, lambda _, each: frozenset(each.components)),
-        FeatureSpec("parameters", 2, lambda _, each: frozenset(each.parameters)),
-        text_feature(3, "functionality", "description"),
-    ),
-    word="component type",
+    without={"layout", "urls.", "outputs", *(key.name for key in _PATTERN_KEYS)},
 )

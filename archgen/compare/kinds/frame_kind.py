@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from archgen.compare.compared_elements import ElementKey
 from archgen.compare.element_relations import ElementRelations
-from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext
-from archgen.compare.kinds.shared_keys import ANNOTATIONS, NAME_FEATURES, TITLE, mark_values
+from archgen.compare.kinds.described_keys import complete_kind
+from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec, ReadContext
+from archgen.compare.kinds.shared_keys import NAME_FEATURES, mark_values
 from archgen.model.coordinate_frames import Frame
 
 
@@ -38,51 +39,20 @@ def _mark_ports(relations: ElementRelations, frame: Frame) -> frozenset[str]:
     return relations.common_ids("input", ports) | relations.common_ids("output", ports)
 
 
-def frame_reference(verb: str) -> KeySpec:
-    """Return the key with which a port or a type names a frame."""
-    return KeySpec(
+FRAME = complete_kind(
+    KindSpec(
         "frame",
-        lambda each, context: context.common_id("frame", each.frame),
-        Effect.SYSTEM,
-        refers_to="frame",
-        verb=verb,
+        "Frames",
+        elements=lambda version: version.architecture.frames,
+        features=(
+            *NAME_FEATURES,
+            FeatureSpec("ports", 4, _mark_ports),
+            FeatureSpec("children", 3, _mark_children),
+            FeatureSpec("parent", 2, lambda _, frame: mark_values(frame.parent)),
+            FeatureSpec("by", 2, lambda relations, frame: relations.common_ids(frame.by_kind, [frame.by])),
+        ),
+        parent=_find_parent,
+        owner=_read_owner,
+        components=_list_components,
     )
-
-
-FRAME = KindSpec(
-    "frame",
-    "Frames",
-    (
-        TITLE,
-        KeySpec(
-            "parent",
-            lambda frame, context: context.common_id("frame", frame.parent),
-            refers_to="frame",
-            verb="is placed in",
-            new_verb="is placed in",
-        ),
-        KeySpec(
-            "by",
-            lambda frame, context: context.common_id(frame.by_kind, frame.by),
-            refers_to="component",
-            verb="is written by",
-            noun="writer",
-            new_verb="is written by",
-        ),
-        KeySpec("rate", verb="is written at"),
-        KeySpec("static", lambda frame, _: frame.static or None),
-        *ANNOTATIONS,
-    ),
-    Effect.SYSTEM,
-    elements=lambda version: version.architecture.frames,
-    features=(
-        *NAME_FEATURES,
-        FeatureSpec("ports", 4, _mark_ports),
-        FeatureSpec("children", 3, _mark_children),
-        FeatureSpec("parent", 2, lambda _, frame: mark_values(frame.parent)),
-        FeatureSpec("by", 2, lambda relations, frame: relations.common_ids(frame.by_kind, [frame.by])),
-    ),
-    parent=_find_parent,
-    owner=_read_owner,
-    components=_list_components,
 )

@@ -83,17 +83,21 @@ class ReadContext:
         )
 
 
+Reader = Callable[[Any, ReadContext], Any]
+"""What reads a value off an element, in normal form."""
+
+
 @dataclass(frozen=True, slots=True)
 class KeySpec:
-    """One key of a kind. A name that ends in a dot stands for all keys that begin with it: `read` returns a mapping
-    from the rest of the key to the value.
+    """One key of a kind, most of them as the description of the language has them (`described_keys`). A name that ends in
+    a dot stands for all keys that begin with it: `read` returns a mapping from the rest of the key to the value.
 
     `read` returns the value in normal form: equal values mean the same, however they are written. Without it the value
     is the attribute of the same name.
     """
 
     name: str
-    read: Callable[[Any, ReadContext], Any] | None = None
+    read: Reader | None = None
     effect: Effect = Effect.TIMING
     worsening: Worsening = Worsening.NEVER
     refers_to: str | None = None
@@ -114,6 +118,19 @@ class KeySpec:
     def value_of(self, element: object, context: ReadContext) -> object:
         """Return the value of the key in normal form."""
         return self.read(element, context) if self.read else getattr(element, self.name)
+
+
+def key_values(keys: Sequence[KeySpec], element: object, context: ReadContext) -> dict[str, object]:
+    """Return the values of all keys of an element by name."""
+    values: dict[str, object] = {}
+    for key in keys:
+        value = key.value_of(element, context)
+        if not key.name.endswith("."):
+            values[key.name] = value
+        elif value:
+            # Such a key reads a mapping, whatever its element; of most elements it is empty.
+            values.update({f"{key.name}{name}": inner for name, inner in value.items()})  # type: ignore[attr-defined]
+    return values
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,21 +209,16 @@ class KindSpec:
     def find_key(self, name: str) -> KeySpec:
         """Return what the table says of a key of a change."""
         if name not in self.key_table:
-            self.key_table[name] = _find_key(self.keys, name)
+            # A comparison made elsewhere may have any key: it may affect everything.
+            self.key_table[name] = _find_key(self.keys, name) or KeySpec(name)
         return self.key_table[name]
 
 
-def _stands_for(key: KeySpec, name: str) -> bool:
-    return key.name == name or (key.name.endswith(".") and name.startswith(key.name))
-
-
-def _find_key(keys: Sequence[KeySpec], name: str) -> KeySpec:
+def _find_key(keys: Sequence[KeySpec], name: str) -> KeySpec | None:
     for key in keys:
         # "qos" stands for all keys below it: their changes are reported as one.
         if name in {key.name, key.name.removesuffix(".")}:
             return key
         if key.name.endswith(".") and name.startswith(key.name):
-            inner_name = name.removeprefix(key.name)
-            return next((inner for inner in key.inner if _stands_for(inner, inner_name)), key)
-    # A comparison made elsewhere may have any key: it may affect everything.
-    return KeySpec(name)
+            return _find_key(key.inner, name.removeprefix(key.name)) or key
+    return None
