@@ -17,7 +17,6 @@ import pytest
 from archgen import pipeline
 from archgen.compare.kinds import ELEMENT_KINDS, KIND_ORDER, MATCHING_ORDER, Effect, find_effect, find_key
 from archgen.compare.kinds.component_type_kind import OWN_KEYS
-from archgen.compare.kinds.key_readers import READERS
 from archgen.language.comparison_tables import KEY_FACTS, KeyFacts
 from archgen.language.language_tables import ENTRIES, KEYS
 from archgen.model.architecture import Architecture, ProjectInfo
@@ -414,15 +413,6 @@ def test_whatever_refers_to_a_kind_names_one() -> None:
     for kind in ELEMENT_KINDS.values():
         for key in kind.keys:
             assert key.refers_to is None or key.refers_to in ELEMENT_KINDS, (kind.name, key.name)
-
-
-def test_what_reads_a_key_is_named_only_where_its_type_does_not_do() -> None:
-    rows = {(kind, name): facts for kind, keys in KEY_FACTS.items() for name, facts in keys.items()}
-    rows |= {("composed", name): facts for name, facts in KEY_FACTS["component"].items()}
-    assert [key for key in READERS if key not in rows] == [], "no such key"
-    # What holds elements by id has no normal form of its own; what else has a reader says why in its docstring.
-    unread = [key for key, facts in rows.items() if facts.get("form") == "entries" and key not in READERS]
-    assert [key for key in unread if key[0] not in {"composed", "component_type"}] == [], "nothing reads these"
 
 
 def test_no_key_is_listed_twice() -> None:

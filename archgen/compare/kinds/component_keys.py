@@ -68,11 +68,6 @@ def find_node_timing(component: Component, context: ReadContext) -> Timing | Non
     return component_nodes[0].timing.get(component.id) if has_one_node else component.timing
 
 
-def find_claimed_timing(shell: Component, _context: ReadContext) -> Timing | None:
-    """Return what a composed component says of the timing of the whole."""
-    return shell.timing
-
-
 def read_parameters(component: Component, _context: ReadContext) -> Mapping[str, object]:
     """Return the declared parameters: each value by the parameter's name, what else is declared by `name:key`."""
     values: dict[str, object] = {}

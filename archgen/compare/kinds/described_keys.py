@@ -16,19 +16,15 @@ def complete_kind(kind: KindSpec, like: str = "", without: Collection[str] = ())
 
     It may have the keys of a kind that it is `like`, but for those that it is `without`.
     """
-    described_keys = derive_keys(kind.name, like, without)
+    described_keys = derive_keys(like or kind.name, without)
     effect = Effect[KIND_EFFECTS[kind.name].upper()] if kind.name in KIND_EFFECTS else kind.effect
     return replace(kind, keys=(*described_keys, *kind.keys), effect=effect)
 
 
-def derive_keys(kind: str, like: str = "", without: Collection[str] = ()) -> tuple[KeySpec, ...]:
-    """Return the described keys of a kind in their order."""
-    described_kind = like or kind
-    return tuple(
-        _make_key(name, facts, READERS.get((kind, name)) or READERS.get((described_kind, name)))
-        for name, facts in KEY_FACTS[described_kind].items()
-        if name not in without
-    )
+def derive_keys(kind: str, without: Collection[str] = ()) -> tuple[KeySpec, ...]:
+    """Return the described keys of a kind in their order, but for those that it is to be without."""
+    rows = ((name, facts) for name, facts in KEY_FACTS[kind].items() if name not in without)
+    return tuple(_make_key(name, facts, READERS.get((kind, name))) for name, facts in rows)
 
 
 def _make_key(name: str, facts: KeyFacts, own_reader: Reader | None) -> KeySpec:

@@ -33,7 +33,6 @@ READERS: Mapping[tuple[str, str], Reader] = {
     ("component", "parameters."): component_keys.read_parameters,
     ("component", "operations."): component_keys.read_operations,
     ("component", "timing."): component_keys.find_node_timing,
-    ("composed", "timing."): component_keys.find_claimed_timing,
     ("component_type", "is"): component_keys.read_base,
     ("component_type", "deprecated."): promise_keys.find_component_type_deprecation,
     ("input", "medium"): component_keys.read_medium,
@@ -78,4 +77,4 @@ READERS: Mapping[tuple[str, str], Reader] = {
     ("variant", "drop"): system_readers.read_dropped_paths,
     ("variant", "changes"): system_readers.read_variant_changes,
 }
-"""By kind and key; what a kind does not have here, it has from the kind that it is like."""
+"""By kind and key."""
