@@ -1,13 +1,11 @@
-"""How the values of components are read for comparing, and by what marks a component is recognised."""
+"""How the keys of components, of their ports and of their types are read for comparing."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 from archgen.compare.compared_elements import SOME_PORTS
-from archgen.compare.element_relations import ElementRelations, ports_of
-from archgen.compare.kinds.kind_spec import ReadContext
-from archgen.compare.kinds.shared_keys import mark_values
+from archgen.compare.kinds.key_spec import ReadContext
 from archgen.compare.normal_values import ElementTitle, freeze_value, normalize_text, normalize_title
 from archgen.model.component import Component, ComponentType, Input, Output
 from archgen.model.declared_timing import Timing
@@ -120,47 +118,6 @@ def _describe_types(value: str | Mapping[str, str]) -> str:
 def is_mapped(component: Component, context: ReadContext) -> bool | None:
     """Whether a node that is written implements a component; None where none does."""
     return any(node.written for node in context.nodes_by_component.get(component.id, ())) or None
-
-
-def mark_ports(_relations: ElementRelations, component: Component) -> frozenset[str]:
-    """Return the names of a component's ports with their direction, and their types."""
-    # The direction is part of the mark, so that an input and an output of one name are not alike.
-    ports = [f"> {port.name}" for port in component.inputs.values()]
-    ports += [f"{port.name} >" for port in component.outputs.values()]
-    return mark_values(*ports, *(port.type for port in ports_of(component)))
-
-
-def mark_neighbours(relations: ElementRelations, component: Component) -> frozenset[str]:
-    """Return the common ids of the components that a component reads from or is read by."""
-    sources = [source for port in component.inputs.values() for source in relations.outputs_by_input[port.id]]
-    readers = [reader for port in component.outputs.values() for reader in relations.readers_by_output[port.id]]
-    return relations.common_ids("component", list_port_holders([*sources, *readers]))
-
-
-def list_last_names(component_ids: Sequence[str]) -> list[str]:
-    """Return the last part of each component's id."""
-    return [component_id.rpartition(".")[2] for component_id in component_ids]
-
-
-def list_port_holders(ports: Sequence[str]) -> list[str]:
-    """Return the id of the component that has each port."""
-    return [port.rpartition(".")[0] for port in ports]
-
-
-def mark_performance(_relations: ElementRelations, component: Component) -> frozenset[str]:
-    """Return each performance of a component as one mark."""
-    return mark_values(
-        *(
-            f"{performance.id} {performance.accuracy} {performance.execution_time}"
-            for performance in component.performance
-        )
-    )
-
-
-def mark_timing(_relations: ElementRelations, component: Component) -> frozenset[str]:
-    """Return behaviour, rate and longest execution time of a component."""
-    timing = component.timing
-    return mark_values(timing.behaviour, timing.rate, timing.wcet) if timing else frozenset()
 
 
 def name_common_type(type_text: str | None, context: ReadContext) -> str | None:

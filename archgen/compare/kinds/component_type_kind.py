@@ -11,20 +11,12 @@ from dataclasses import replace
 from typing import Any
 
 from archgen.compare.element_likeness import letter_pairs, word_set
-from archgen.compare.kinds.described_keys import complete_kind
 from archgen.compare.kinds.functional_kinds import COMPONENT
-from archgen.compare.kinds.kind_spec import (
-    Effect,
-    FeatureSpec,
-    KeySpec,
-    KindSpec,
-    ReadContext,
-    Worsening,
-    key_values,
-)
+from archgen.compare.kinds.key_spec import Effect, KeySpec, ReadContext, Worsening, key_values
+from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec
 from archgen.compare.kinds.port_kinds import INPUT, OUTPUT
 from archgen.compare.kinds.ros_kinds import NODE
-from archgen.compare.kinds.shared_keys import text_feature
+from archgen.compare.kinds.shared_features import text_feature
 from archgen.compare.normal_values import drop_unset_values
 from archgen.model.component import Component, ComponentType, Input, Output
 from archgen.model.path_resolver import title_from_id
@@ -120,34 +112,32 @@ _PATTERN_KEYS = tuple(
     for key in COMPONENT.keys
     if key.name not in OWN_KEYS | _WRITTEN_KEYS
 )
-COMPONENT_TYPE = complete_kind(
-    KindSpec(
-        "component_type",
-        "Component types",
-        (
-            KeySpec("inputs.", _read_ports("inputs", INPUT.keys), Effect.SYSTEM),
-            KeySpec("outputs.", _read_ports("outputs", OUTPUT.keys), Effect.SYSTEM),
-            KeySpec("components", lambda each, _: each.components or None, Effect.SYSTEM),
-            KeySpec("components.", _read_parts, Effect.SYSTEM),
-            KeySpec("node.", _read_node, Effect.SYSTEM),
-            *_PATTERN_KEYS,
-        ),
-        elements=lambda version: version.architecture.component_types,
-        features=(
-            # The library is a part of the id: a type that moves into one is the same.
-            FeatureSpec("name", 2, lambda _, each: letter_pairs(_own_name(each))),
-            FeatureSpec(
-                "title",
-                2,
-                lambda _, each: word_set(each.title),
-                lambda each: each.title in {title_from_id(_own_name(each)), _own_name(each)},
-            ),
-            FeatureSpec("ports", 4, lambda _, each: _mark_ports(each)),
-            FeatureSpec("components", 4, lambda _, each: frozenset(each.components)),
-            FeatureSpec("parameters", 2, lambda _, each: frozenset(each.parameters)),
-            text_feature(3, "functionality", "description"),
-        ),
-        word="component type",
+COMPONENT_TYPE = KindSpec(
+    "component_type",
+    "Component types",
+    (
+        KeySpec("inputs.", _read_ports("inputs", INPUT.keys), Effect.SYSTEM),
+        KeySpec("outputs.", _read_ports("outputs", OUTPUT.keys), Effect.SYSTEM),
+        KeySpec("components", lambda each, _: each.components or None, Effect.SYSTEM),
+        KeySpec("components.", _read_parts, Effect.SYSTEM),
+        KeySpec("node.", _read_node, Effect.SYSTEM),
+        *_PATTERN_KEYS,
     ),
-    without={"layout", "urls.", "outputs", *(key.name for key in _PATTERN_KEYS)},
+    elements=lambda version: version.architecture.component_types,
+    features=(
+        # The library is a part of the id: a type that moves into one is the same.
+        FeatureSpec("name", 2, lambda _, each: letter_pairs(_own_name(each))),
+        FeatureSpec(
+            "title",
+            2,
+            lambda _, each: word_set(each.title),
+            lambda each: each.title in {title_from_id(_own_name(each)), _own_name(each)},
+        ),
+        FeatureSpec("ports", 4, lambda _, each: _mark_ports(each)),
+        FeatureSpec("components", 4, lambda _, each: frozenset(each.components)),
+        FeatureSpec("parameters", 2, lambda _, each: frozenset(each.parameters)),
+        text_feature(3, "functionality", "description"),
+    ),
+    word="component type",
+    without=frozenset({"layout", "outputs", *(key.name for key in _PATTERN_KEYS)}),
 )

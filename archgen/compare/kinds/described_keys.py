@@ -2,28 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
+from functools import cache
 
 from archgen.compare.kinds.key_readers import READERS
-from archgen.compare.kinds.kind_spec import Effect, KeySpec, KindSpec, ReadContext, Reader, Worsening, key_values
+from archgen.compare.kinds.key_spec import Effect, KeySpec, ReadContext, Reader, Worsening, key_values
 from archgen.compare.kinds.value_readers import make_form_reader
-from archgen.frozen import replace
-from archgen.language.comparison_tables import KEY_FACTS, KIND_EFFECTS, KeyFacts
+from archgen.language.comparison_tables import KEY_FACTS, KeyFacts
 
 
-def complete_kind(kind: KindSpec, like: str = "", without: Collection[str] = ()) -> KindSpec:
-    """Return a kind with its described keys before those that it has beside them, and with its described effect.
-
-    It may have the keys of a kind that it is `like`, but for those that it is `without`.
-    """
-    described_keys = derive_keys(like or kind.name, without)
-    effect = Effect[KIND_EFFECTS[kind.name].upper()] if kind.name in KIND_EFFECTS else kind.effect
-    return replace(kind, keys=(*described_keys, *kind.keys), effect=effect)
-
-
-def derive_keys(kind: str, without: Collection[str] = ()) -> tuple[KeySpec, ...]:
+@cache
+def derive_keys(kind: str, without: frozenset[str] = frozenset()) -> tuple[KeySpec, ...]:
     """Return the described keys of a kind in their order, but for those that it is to be without."""
-    rows = ((name, facts) for name, facts in KEY_FACTS[kind].items() if name not in without)
+    rows = ((name, facts) for name, facts in KEY_FACTS.get(kind, {}).items() if name not in without)
     return tuple(_make_key(name, facts, READERS.get((kind, name))) for name, facts in rows)
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from archgen.compare.compared_elements import ElementKey
 from archgen.compare.element_relations import ElementRelations
-from archgen.compare.kinds.described_keys import complete_kind
-from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec, ReadContext
-from archgen.compare.kinds.shared_keys import NAME_FEATURES, mark_values
+from archgen.compare.kinds.key_spec import ReadContext
+from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec
+from archgen.compare.kinds.shared_features import NAME_FEATURES, mark_values
 from archgen.model.coordinate_frames import Frame
 
 
@@ -39,20 +39,18 @@ def _mark_ports(relations: ElementRelations, frame: Frame) -> frozenset[str]:
     return relations.common_ids("input", ports) | relations.common_ids("output", ports)
 
 
-FRAME = complete_kind(
-    KindSpec(
-        "frame",
-        "Frames",
-        elements=lambda version: version.architecture.frames,
-        features=(
-            *NAME_FEATURES,
-            FeatureSpec("ports", 4, _mark_ports),
-            FeatureSpec("children", 3, _mark_children),
-            FeatureSpec("parent", 2, lambda _, frame: mark_values(frame.parent)),
-            FeatureSpec("by", 2, lambda relations, frame: relations.common_ids(frame.by_kind, [frame.by])),
-        ),
-        parent=_find_parent,
-        owner=_read_owner,
-        components=_list_components,
-    )
+FRAME = KindSpec(
+    "frame",
+    "Frames",
+    elements=lambda version: version.architecture.frames,
+    features=(
+        *NAME_FEATURES,
+        FeatureSpec("ports", 4, _mark_ports),
+        FeatureSpec("children", 3, _mark_children),
+        FeatureSpec("parent", 2, lambda _, frame: mark_values(frame.parent)),
+        FeatureSpec("by", 2, lambda relations, frame: relations.common_ids(frame.by_kind, [frame.by])),
+    ),
+    parent=_find_parent,
+    owner=_read_owner,
+    components=_list_components,
 )

@@ -16,7 +16,7 @@ from archgen.compare.kinds import (
     timing_readers,
     type_readers,
 )
-from archgen.compare.kinds.kind_spec import Reader
+from archgen.compare.kinds.key_spec import Reader
 
 READERS: Mapping[tuple[str, str], Reader] = {
     ("project", "id"): project_readers.read_project_id,

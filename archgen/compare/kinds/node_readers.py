@@ -5,7 +5,7 @@ from __future__ import annotations
 import shlex
 from collections.abc import Iterable, Mapping
 
-from archgen.compare.kinds.kind_spec import ReadContext
+from archgen.compare.kinds.key_spec import ReadContext
 from archgen.compare.normal_values import freeze_value, parameter_leaves, unordered_values
 from archgen.derivation import ros_names
 from archgen.frozen import replace

@@ -7,10 +7,9 @@ from typing import Any
 
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.element_likeness import letter_pairs
-from archgen.compare.kinds.component_keys import list_port_holders
-from archgen.compare.kinds.described_keys import complete_kind
-from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec, ReadContext, key_values
-from archgen.compare.kinds.shared_keys import mark_values, text_feature
+from archgen.compare.kinds.key_spec import ReadContext, key_values
+from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec
+from archgen.compare.kinds.shared_features import list_port_holders, mark_values, text_feature
 from archgen.compare.normal_values import drop_unset_values
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Input, Output
@@ -36,19 +35,17 @@ def _make_port_kind(
     name: str, elements: Callable[[ArchitectureVersion], Mapping[str, Any]], other_ends: FeatureSpec
 ) -> KindSpec:
     """Make the kind of a port: what inputs and outputs have in common, and what only one of the two has."""
-    return complete_kind(
-        KindSpec(
-            name,
-            None,
-            elements=elements,
-            features=(*_PORT_FEATURES, other_ends),
-            has_path_id=True,
-            parent_kind="component",
-            stays_in_parent=True,
-            parent=_port_parent,
-            owner=_port_owner,
-            components=lambda port, context: (_port_parent(port, context)[1],),
-        )
+    return KindSpec(
+        name,
+        None,
+        elements=elements,
+        features=(*_PORT_FEATURES, other_ends),
+        has_path_id=True,
+        parent_kind="component",
+        stays_in_parent=True,
+        parent=_port_parent,
+        owner=_port_owner,
+        components=lambda port, context: (_port_parent(port, context)[1],),
     )
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from archgen.compare.element_likeness import letter_pairs, word_set
-from archgen.compare.kinds.described_keys import complete_kind
-from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext
-from archgen.compare.kinds.shared_keys import NAME_FEATURES, text_feature
+from archgen.compare.kinds.key_spec import Effect, KeySpec, ReadContext
+from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec
+from archgen.compare.kinds.shared_features import NAME_FEATURES, text_feature
 from archgen.compare.normal_values import freeze_value, normalize_text, unordered_values
 from archgen.model.architecture import ProjectInfo
 from archgen.model.element_annotations import describe_range
@@ -87,13 +87,11 @@ _SETTING_KEYS = (
     KeySpec("glossary.", _read_glossary, Effect.TEXT),
     KeySpec("rules.", lambda _, context: context.version.rule_settings),
 )
-PROJECT = complete_kind(
-    KindSpec(
-        "project",
-        "Project",
-        _SETTING_KEYS,
-        elements=lambda version: {version.architecture.project.id: version.architecture.project},
-    )
+PROJECT = KindSpec(
+    "project",
+    "Project",
+    _SETTING_KEYS,
+    elements=lambda version: {version.architecture.project.id: version.architecture.project},
 )
 CHAPTER = KindSpec(
     "chapter",
@@ -102,17 +100,15 @@ CHAPTER = KindSpec(
     Effect.TEXT,
     lambda version: version.chapters,
 )
-PARTNER = complete_kind(
-    KindSpec(
-        "partner",
-        "Partners",
-        elements=lambda version: version.architecture.partners,
-        features=(
-            *NAME_FEATURES,
-            FeatureSpec("owns", 4, lambda relations, partner: frozenset(relations.elements_by_owner[partner.id])),
-        ),
-        owner=lambda partner, context: context.common_id("partner", partner.id),
-    )
+PARTNER = KindSpec(
+    "partner",
+    "Partners",
+    elements=lambda version: version.architecture.partners,
+    features=(
+        *NAME_FEATURES,
+        FeatureSpec("owns", 4, lambda relations, partner: frozenset(relations.elements_by_owner[partner.id])),
+    ),
+    owner=lambda partner, context: context.common_id("partner", partner.id),
 )
 # Unlike elsewhere the title weighs more than the id: ids of requirements and use cases are mostly numbers.
 _NUMBERED_FEATURES = (
@@ -120,39 +116,35 @@ _NUMBERED_FEATURES = (
     FeatureSpec("title", 4, lambda _, element: word_set(element.title), lambda element: element.title == element.id),
     text_feature(2, "description"),
 )
-USE_CASE = complete_kind(
-    KindSpec(
-        "use_case",
-        "Use cases",
-        elements=lambda version: version.architecture.use_cases,
-        features=(
-            *_NUMBERED_FEATURES,
-            FeatureSpec(
-                "users",
-                3,
-                lambda relations, use_case: relations.common_ids(
-                    "requirement", relations.users_by_element[f"use_case:{use_case.id}"]
-                ),
+USE_CASE = KindSpec(
+    "use_case",
+    "Use cases",
+    elements=lambda version: version.architecture.use_cases,
+    features=(
+        *_NUMBERED_FEATURES,
+        FeatureSpec(
+            "users",
+            3,
+            lambda relations, use_case: relations.common_ids(
+                "requirement", relations.users_by_element[f"use_case:{use_case.id}"]
             ),
         ),
-        word="use case",
-    )
+    ),
+    word="use case",
 )
-REQUIREMENT = complete_kind(
-    KindSpec(
-        "requirement",
-        "Requirements",
-        elements=lambda version: version.architecture.requirements,
-        features=(
-            *_NUMBERED_FEATURES,
-            FeatureSpec(
-                "users",
-                3,
-                lambda relations, requirement: relations.common_ids(
-                    "component", relations.users_by_element[f"requirement:{requirement.id}"]
-                ),
+REQUIREMENT = KindSpec(
+    "requirement",
+    "Requirements",
+    elements=lambda version: version.architecture.requirements,
+    features=(
+        *_NUMBERED_FEATURES,
+        FeatureSpec(
+            "users",
+            3,
+            lambda relations, requirement: relations.common_ids(
+                "component", relations.users_by_element[f"requirement:{requirement.id}"]
             ),
         ),
-    )
+    ),
 )
 PROJECT_KINDS = (PROJECT, CHAPTER, PARTNER, USE_CASE, REQUIREMENT)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from archgen.compare.kinds.kind_spec import ReadContext
+from archgen.compare.kinds.key_spec import ReadContext
 from archgen.model.architecture import ProjectInfo, UseCase
 from archgen.model.requirement import Requirement
 from archgen.model.use_case_steps import StepEnd

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from archgen.compare.kinds.kind_spec import ReadContext
+from archgen.compare.kinds.key_spec import ReadContext
 from archgen.frozen import replace
 from archgen.model.component import ComponentType, Output
 from archgen.model.message_types import ConceptualType

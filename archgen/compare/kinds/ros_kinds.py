@@ -6,10 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from typing import NamedTuple
 
-from archgen.compare.kinds.described_keys import complete_kind
-from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext, Worsening
+from archgen.compare.kinds.element_owners import CO_OWNERS, read_owner
+from archgen.compare.kinds.key_spec import Effect, KeySpec, ReadContext, Worsening
+from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec
 from archgen.compare.kinds.message_kind import MESSAGE
-from archgen.compare.kinds.shared_keys import CO_OWNERS, NAME_FEATURES, mark_values, read_owner, text_feature
+from archgen.compare.kinds.shared_features import NAME_FEATURES, mark_values, text_feature
 from archgen.compare.kinds.type_kind import TYPE
 from archgen.compare.normal_values import unordered_values
 from archgen.derivation import ros_names
@@ -28,33 +29,29 @@ def _read_co_owners(node: Node, context: ReadContext) -> frozenset[str]:
     return context.common_ids("partner", () if set(node.owners) == inherited_owners else node.co_owners)
 
 
-NODE = complete_kind(
-    KindSpec(
-        "node",
-        "Nodes",
-        (KeySpec("co_owners", _read_co_owners, Effect.SYSTEM, refers_to="partner", noun=CO_OWNERS.noun),),
-        # Of a node that is planned since its component says where it will run, that is written: it has a place in the files.
-        elements=lambda version: {
-            name: node for name, node in version.architecture.nodes.items() if node.written or node.at != NO_SPAN
-        },
-        features=(
-            *NAME_FEATURES,
-            FeatureSpec("implements", 4, lambda relations, node: relations.common_ids("component", node.implements)),
-            FeatureSpec("package", 2, lambda _, node: mark_values(node.package)),
-            FeatureSpec("program", 2, lambda _, node: mark_values(node.executable, node.plugin)),
-            FeatureSpec("ports", 2, lambda _, node: mark_values(*(f"{use.use} {use.key}" for use in node.uses))),
-            FeatureSpec(
-                "topics", 1, lambda _, node: mark_values(*(topic for use in node.uses for topic in use.topics))
-            ),
-            FeatureSpec("place", 1, lambda _, node: mark_values(node.host, node.container)),
-            FeatureSpec("parameters", 1, lambda _, node: frozenset(node.parameters)),
-            text_feature(1, "description"),
-        ),
-        owner=read_owner,
-        components=lambda node, context: tuple(
-            context.matched_ids.common_id("component", component) for component in node.implements
-        ),
-    )
+NODE = KindSpec(
+    "node",
+    "Nodes",
+    (KeySpec("co_owners", _read_co_owners, Effect.SYSTEM, refers_to="partner", noun=CO_OWNERS.noun),),
+    # Of a node that is planned since its component says where it will run, that is written: it has a place in the files.
+    elements=lambda version: {
+        name: node for name, node in version.architecture.nodes.items() if node.written or node.at != NO_SPAN
+    },
+    features=(
+        *NAME_FEATURES,
+        FeatureSpec("implements", 4, lambda relations, node: relations.common_ids("component", node.implements)),
+        FeatureSpec("package", 2, lambda _, node: mark_values(node.package)),
+        FeatureSpec("program", 2, lambda _, node: mark_values(node.executable, node.plugin)),
+        FeatureSpec("ports", 2, lambda _, node: mark_values(*(f"{use.use} {use.key}" for use in node.uses))),
+        FeatureSpec("topics", 1, lambda _, node: mark_values(*(topic for use in node.uses for topic in use.topics))),
+        FeatureSpec("place", 1, lambda _, node: mark_values(node.host, node.container)),
+        FeatureSpec("parameters", 1, lambda _, node: frozenset(node.parameters)),
+        text_feature(1, "description"),
+    ),
+    owner=read_owner,
+    components=lambda node, context: tuple(
+        context.matched_ids.common_id("component", component) for component in node.implements
+    ),
 )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from archgen.compare.kinds.kind_spec import ReadContext, Reader
+from archgen.compare.kinds.key_spec import ReadContext, Reader
 from archgen.model.architecture import Chain, Policy
 from archgen.model.coordinate_frames import Frame
 from archgen.model.deployment import Host, Link

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
-from archgen.compare.kinds.kind_spec import ReadContext
-from archgen.compare.kinds.shared_keys import last_part
+from archgen.compare.kinds.key_spec import ReadContext
+from archgen.compare.normal_values import last_part
 from archgen.model.declared_timing import Timing
 from archgen.model.quantity import Quantity
 from archgen.timing.figures.figure_wording import format_rate

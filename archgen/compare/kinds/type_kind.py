@@ -7,9 +7,8 @@ from collections.abc import Mapping
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.element_likeness import letter_pairs
 from archgen.compare.element_relations import ElementRelations
-from archgen.compare.kinds.described_keys import complete_kind
 from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec
-from archgen.compare.kinds.shared_keys import mark_values, text_feature
+from archgen.compare.kinds.shared_features import mark_values, text_feature
 from archgen.compare.kinds.type_readers import is_own_type
 from archgen.model.message_types import ConceptualType
 
@@ -27,24 +26,22 @@ def _mark_ports(relations: ElementRelations, conceptual_type: ConceptualType) ->
     return relations.common_ids("output", ports) | relations.common_ids("input", ports)
 
 
-TYPE = complete_kind(
-    KindSpec(
-        "type",
-        "Types",
-        elements=_list_types,
-        features=(
-            FeatureSpec("name", 2, lambda _, each: letter_pairs(each.name)),
-            FeatureSpec("message", 3, lambda _, each: mark_values(each.message)),
-            FeatureSpec("users", 5, _mark_ports),
-            text_feature(1, "comment"),
-            FeatureSpec("size", 1, lambda _, each: mark_values(each.size)),
-            FeatureSpec("inside", 2, lambda _, each: mark_values(each.request, each.response, each.feedback)),
-            FeatureSpec(
-                "fields",
-                3,
-                lambda _, each: mark_values(*(f"{field.name} {field.type}" for _, field in each.list_fields())),
-            ),
+TYPE = KindSpec(
+    "type",
+    "Types",
+    elements=_list_types,
+    features=(
+        FeatureSpec("name", 2, lambda _, each: letter_pairs(each.name)),
+        FeatureSpec("message", 3, lambda _, each: mark_values(each.message)),
+        FeatureSpec("users", 5, _mark_ports),
+        text_feature(1, "comment"),
+        FeatureSpec("size", 1, lambda _, each: mark_values(each.size)),
+        FeatureSpec("inside", 2, lambda _, each: mark_values(each.request, each.response, each.feedback)),
+        FeatureSpec(
+            "fields",
+            3,
+            lambda _, each: mark_values(*(f"{field.name} {field.type}" for _, field in each.list_fields())),
         ),
-        is_declared=is_own_type,
-    )
+    ),
+    is_declared=is_own_type,
 )

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from archgen.compare.kinds.kind_spec import ReadContext
+from archgen.compare.kinds.key_spec import ReadContext
 from archgen.model.message_types import ConceptualType, DataField
 
 

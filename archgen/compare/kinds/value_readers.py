@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from archgen.compare.kinds.kind_spec import ReadContext, Reader
+from archgen.compare.kinds.key_spec import ReadContext, Reader
 from archgen.compare.normal_values import (
     freeze_value,
     list_data_leaves,
