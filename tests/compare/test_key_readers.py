@@ -17,15 +17,16 @@ from archgen.products.comparison_input import make_comparison_input
 from tests.compare.test_element_kinds import ROBOT
 
 OTHERWISE = """\
+ros: {parameter_texts: {n.yaml: "n: {ros__parameters: {x: 1}}"}}
 groups:
   g:
     components:
       a: {outputs: {do: std_srvs/srv/Trigger}, timing: {period: 10 ms, cores: [1]}}
       b: {inputs: {do: a.do}}
-nodes: {n: {implements: b, parameter_files: [n.yaml], timing: {calls: {do: 2}}}}
-frames: {map: , odom: {parent: map, by: g.a}}
-hosts: {pc: }
-variants: {v: {drop: [hosts.pc.title]}}
+nodes:
+  n: {implements: b, parameter_files: [n.yaml], timing: {calls: {do: 2}}}
+  odometry: {kind: program}
+frames: {map: , odom: {parent: map, by: odometry}}
 """
 """What nobody can write beside what `ROBOT` says."""
 ReadKey = tuple[str, str]
@@ -45,7 +46,6 @@ def test_what_holds_elements_has_a_reader() -> None:
 
 
 def test_no_reader_reads_what_the_type_does(tmp_path: Path) -> None:
-    (tmp_path / "n.yaml").write_text("n: {ros__parameters: {x: 1}}\n", encoding="utf-8")
     needed: set[ReadKey] = set()
     for name, text in (("robot.yaml", ROBOT), ("otherwise.yaml", OTHERWISE)):
         (tmp_path / name).write_text(text, encoding="utf-8")

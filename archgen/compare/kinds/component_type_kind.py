@@ -10,16 +10,14 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
-from archgen.compare.element_likeness import letter_pairs, word_set
 from archgen.compare.kinds.functional_kinds import COMPONENT
 from archgen.compare.kinds.key_spec import Effect, KeySpec, ReadContext, Worsening, key_values
 from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec
 from archgen.compare.kinds.port_kinds import INPUT, OUTPUT
 from archgen.compare.kinds.ros_kinds import NODE
-from archgen.compare.kinds.shared_features import text_feature
+from archgen.compare.kinds.shared_features import name_features, text_feature
 from archgen.compare.normal_values import drop_unset_values
 from archgen.model.component import Component, ComponentType, Input, Output
-from archgen.model.path_resolver import title_from_id
 
 PART_MARK = ":"
 """Stands in a key between a part of a type and what is said of it."""
@@ -97,10 +95,6 @@ def _read_node_at(pattern: Component, context: ReadContext) -> Mapping[str, obje
     return drop_unset_values(key_values(_RAN_KEYS, node, context)) if node else {}
 
 
-def _own_name(component_type: ComponentType) -> str:
-    return component_type.id.rpartition(".")[2]
-
-
 def _mark_ports(component_type: ComponentType) -> frozenset[str]:
     sides = (("input", component_type.inputs), ("output", component_type.outputs))
     return frozenset(f"{side} {name} {kind or '?'}" for side, ports in sides for name, kind in ports.items())
@@ -126,13 +120,7 @@ COMPONENT_TYPE = KindSpec(
     elements=lambda version: version.architecture.component_types,
     features=(
         # The library is a part of the id: a type that moves into one is the same.
-        FeatureSpec("name", 2, lambda _, each: letter_pairs(_own_name(each))),
-        FeatureSpec(
-            "title",
-            2,
-            lambda _, each: word_set(each.title),
-            lambda each: each.title in {title_from_id(_own_name(each)), _own_name(each)},
-        ),
+        *name_features(lambda each: each.id.rpartition(".")[2]),
         FeatureSpec("ports", 4, lambda _, each: _mark_ports(each)),
         FeatureSpec("components", 4, lambda _, each: frozenset(each.components)),
         FeatureSpec("parameters", 2, lambda _, each: frozenset(each.parameters)),

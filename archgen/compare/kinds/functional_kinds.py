@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from operator import attrgetter
+
 from archgen.compare.compared_elements import MAPPED_KEY
-from archgen.compare.element_likeness import letter_pairs, word_set
 from archgen.compare.kinds.component_keys import is_mapped
 from archgen.compare.kinds.element_owners import CO_OWNERS, read_owner
 from archgen.compare.kinds.key_spec import Effect, KeySpec
@@ -17,9 +18,11 @@ from archgen.compare.kinds.shared_features import (
     mark_ports,
     mark_timing,
     mark_values,
+    name_features,
+    nodes_feature,
+    reference_feature,
     text_feature,
 )
-from archgen.model.path_resolver import title_from_id
 
 GROUP = KindSpec(
     "group",
@@ -31,10 +34,11 @@ GROUP = KindSpec(
         # The names of its components outweigh all else: a group is what it holds.
         FeatureSpec("components", 8, lambda _, group: frozenset(group.components), is_decisive=True),
         text_feature(2, "description"),
-        FeatureSpec("owner", 0.5, lambda relations, group: relations.common_ids("partner", [group.owner])),
+        reference_feature("owner", 0.5, "partner", "owner"),
     ),
     owner=read_owner,
 )
+_LAST_NAME_FEATURES = name_features(attrgetter("name"))
 COMPOSED = KindSpec(
     "composed",
     None,
@@ -42,13 +46,7 @@ COMPOSED = KindSpec(
     Effect.SYSTEM,
     elements=lambda version: version.architecture.shells,
     features=(
-        FeatureSpec("name", 2, lambda _, shell: letter_pairs(shell.name)),
-        FeatureSpec(
-            "title",
-            2,
-            lambda _, shell: word_set(shell.title),
-            lambda shell: shell.title in {title_from_id(shell.name), shell.name},
-        ),
+        *_LAST_NAME_FEATURES,
         # What it holds and passes on. Instances of one type are alike in this: of these the name decides.
         FeatureSpec("components", 6, lambda _, shell: frozenset(list_last_names(shell.children))),
         FeatureSpec("ports", 2, mark_ports),
@@ -69,25 +67,13 @@ COMPONENT = KindSpec(
     (CO_OWNERS, KeySpec(MAPPED_KEY, is_mapped, Effect.SYSTEM)),
     elements=lambda version: version.architecture.components,
     features=(
-        FeatureSpec("name", 2, lambda _, component: letter_pairs(component.name)),
-        FeatureSpec(
-            "title",
-            2,
-            lambda _, component: word_set(component.title),
-            lambda component: component.title in {title_from_id(component.name), component.name},
-        ),
+        *_LAST_NAME_FEATURES,
         FeatureSpec("ports", 4, mark_ports),
         text_feature(3, "functionality", "description"),
         FeatureSpec("near", 3, mark_neighbours),
-        FeatureSpec(
-            "nodes",
-            3,
-            lambda relations, component: relations.common_ids(
-                "node", relations.nodes_by_place[f"component:{component.id}"]
-            ),
-        ),
-        FeatureSpec("group", 0.5, lambda relations, component: relations.common_ids("group", [component.group])),
-        FeatureSpec("owner", 0.5, lambda relations, component: relations.common_ids("partner", [component.owner])),
+        nodes_feature("component", 3),
+        reference_feature("group", 0.5, "group", "group"),
+        reference_feature("owner", 0.5, "partner", "owner"),
         FeatureSpec("requirements", 1, lambda _, component: mark_values(*(use.text for use in component.requirements))),
         FeatureSpec("performance", 1, mark_performance),
         FeatureSpec("timing", 1, mark_timing),

@@ -74,7 +74,6 @@ READERS: Mapping[tuple[str, str], Reader] = {
     ("chain", "through"): system_readers.read_way,
     ("view", "show"): system_readers.make_selector_reader("show"),
     ("variant", "without"): system_readers.make_selector_reader("without"),
-    ("variant", "drop"): system_readers.read_dropped_paths,
     ("variant", "changes"): system_readers.read_variant_changes,
 }
 """By kind and key."""

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from archgen.compare.element_likeness import letter_pairs, word_set
 from archgen.compare.kinds.key_spec import Effect, KeySpec, ReadContext
 from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec
-from archgen.compare.kinds.shared_features import NAME_FEATURES, text_feature
+from archgen.compare.kinds.shared_features import NAME_FEATURES, text_feature, users_feature
 from archgen.compare.normal_values import freeze_value, normalize_text, unordered_values
 from archgen.model.architecture import ProjectInfo
 from archgen.model.element_annotations import describe_range
@@ -122,13 +122,7 @@ USE_CASE = KindSpec(
     elements=lambda version: version.architecture.use_cases,
     features=(
         *_NUMBERED_FEATURES,
-        FeatureSpec(
-            "users",
-            3,
-            lambda relations, use_case: relations.common_ids(
-                "requirement", relations.users_by_element[f"use_case:{use_case.id}"]
-            ),
-        ),
+        users_feature("use_case", 3, "requirement"),
     ),
     word="use case",
 )
@@ -138,13 +132,7 @@ REQUIREMENT = KindSpec(
     elements=lambda version: version.architecture.requirements,
     features=(
         *_NUMBERED_FEATURES,
-        FeatureSpec(
-            "users",
-            3,
-            lambda relations, requirement: relations.common_ids(
-                "component", relations.users_by_element[f"requirement:{requirement.id}"]
-            ),
-        ),
+        users_feature("requirement", 3, "component"),
     ),
 )
 PROJECT_KINDS = (PROJECT, CHAPTER, PARTNER, USE_CASE, REQUIREMENT)

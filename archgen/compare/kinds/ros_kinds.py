@@ -10,7 +10,13 @@ from archgen.compare.kinds.element_owners import CO_OWNERS, read_owner
 from archgen.compare.kinds.key_spec import Effect, KeySpec, ReadContext, Worsening
 from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec
 from archgen.compare.kinds.message_kind import MESSAGE
-from archgen.compare.kinds.shared_features import NAME_FEATURES, mark_values, text_feature
+from archgen.compare.kinds.shared_features import (
+    NAME_FEATURES,
+    mark_values,
+    reference_feature,
+    text_feature,
+    value_feature,
+)
 from archgen.compare.kinds.type_kind import TYPE
 from archgen.compare.normal_values import unordered_values
 from archgen.derivation import ros_names
@@ -39,12 +45,12 @@ NODE = KindSpec(
     },
     features=(
         *NAME_FEATURES,
-        FeatureSpec("implements", 4, lambda relations, node: relations.common_ids("component", node.implements)),
-        FeatureSpec("package", 2, lambda _, node: mark_values(node.package)),
-        FeatureSpec("program", 2, lambda _, node: mark_values(node.executable, node.plugin)),
+        reference_feature("implements", 4, "component", "implements"),
+        value_feature("package", 2, "package"),
+        value_feature("program", 2, "executable", "plugin"),
         FeatureSpec("ports", 2, lambda _, node: mark_values(*(f"{use.use} {use.key}" for use in node.uses))),
         FeatureSpec("topics", 1, lambda _, node: mark_values(*(topic for use in node.uses for topic in use.topics))),
-        FeatureSpec("place", 1, lambda _, node: mark_values(node.host, node.container)),
+        value_feature("place", 1, "host", "container"),
         FeatureSpec("parameters", 1, lambda _, node: frozenset(node.parameters)),
         text_feature(1, "description"),
     ),

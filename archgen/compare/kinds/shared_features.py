@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from operator import attrgetter
+from typing import Any
 
 from archgen.compare.element_likeness import letter_pairs, word_set
 from archgen.compare.element_relations import ElementRelations, ports_of
@@ -16,15 +18,54 @@ def mark_values(*values: object) -> frozenset[str]:
     return frozenset(str(value) for value in values if value not in {None, ""})
 
 
-NAME_FEATURES = (
-    FeatureSpec("name", 2, lambda _, element: letter_pairs(element.id)),
-    FeatureSpec(
-        "title",
-        2,
-        lambda _, element: word_set(element.title),
-        lambda element: element.title in {title_from_id(element.id), element.id},
-    ),
-)
+def name_features(find_name: Callable[[Any], str]) -> tuple[FeatureSpec, FeatureSpec]:
+    """Return the features of a name, and of the title, which may be made from it."""
+
+    def is_generated(element: Any) -> bool:  # noqa: ANN401 - any element with a title
+        return element.title in {title_from_id(find_name(element)), find_name(element)}
+
+    return (
+        FeatureSpec("name", 2, lambda _, element: letter_pairs(find_name(element))),
+        FeatureSpec("title", 2, lambda _, element: word_set(element.title), is_generated),
+    )
+
+
+NAME_FEATURES = name_features(attrgetter("id"))
+
+
+def value_feature(name: str, weight: float, *attributes: str) -> FeatureSpec:
+    """Return the feature of some values."""
+    return FeatureSpec(
+        name, weight, lambda _, element: mark_values(*(getattr(element, attribute) for attribute in attributes))
+    )
+
+
+def reference_feature(name: str, weight: float, kind: str, attribute: str) -> FeatureSpec:
+    """Return the feature of the elements of a kind that an attribute names: one, or several."""
+
+    def mark(relations: ElementRelations, element: object) -> frozenset[str]:
+        named = getattr(element, attribute)
+        return relations.common_ids(kind, named if isinstance(named, tuple) else [named])
+
+    return FeatureSpec(name, weight, mark)
+
+
+def nodes_feature(kind: str, weight: float) -> FeatureSpec:
+    """Return the feature of the nodes that run at an element of a kind, or implement it."""
+    return FeatureSpec(
+        "nodes",
+        weight,
+        lambda relations, element: relations.common_ids("node", relations.nodes_by_place[f"{kind}:{element.id}"]),
+    )
+
+
+def users_feature(kind: str, weight: float, user_kind: str) -> FeatureSpec:
+    """Return the feature of the elements of a kind that name an element."""
+    return FeatureSpec(
+        "users",
+        weight,
+        lambda relations, element: relations.common_ids(user_kind, relations.users_by_element[f"{kind}:{element.id}"]),
+    )
 
 
 def text_feature(weight: float, *names: str) -> FeatureSpec:

@@ -1,14 +1,22 @@
-"""What runs where (hosts, containers, resources, links), and what the project says across all of it: chains, policies, views."""
+"""What runs where (hosts, containers, resources, links), and what is said across all of it: frames, chains, policies, views."""
 
 from __future__ import annotations
 
+from archgen.compare.compared_elements import ElementKey
 from archgen.compare.element_likeness import word_set
 from archgen.compare.element_relations import ElementRelations
-from archgen.compare.kinds.frame_kind import FRAME
-from archgen.compare.kinds.key_spec import KeySpec, Worsening
+from archgen.compare.kinds.key_spec import KeySpec, ReadContext, Worsening
 from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec
-from archgen.compare.kinds.shared_features import NAME_FEATURES, mark_values, text_feature
+from archgen.compare.kinds.shared_features import (
+    NAME_FEATURES,
+    mark_values,
+    nodes_feature,
+    reference_feature,
+    text_feature,
+    value_feature,
+)
 from archgen.model.architecture import Chain
+from archgen.model.coordinate_frames import Frame
 from archgen.model.deployment import Host, Resource
 
 
@@ -23,13 +31,9 @@ HOST = KindSpec(
     elements=lambda version: version.architecture.hosts,
     features=(
         *NAME_FEATURES,
-        FeatureSpec(
-            "nodes",
-            8,
-            lambda relations, host: relations.common_ids("node", relations.nodes_by_place[f"host:{host.id}"]),
-        ),
+        nodes_feature("host", 8),
         FeatureSpec("containers", 2, _mark_containers),
-        FeatureSpec("cores", 1, lambda _, host: mark_values(host.cores)),
+        value_feature("cores", 1, "cores"),
         text_feature(1, "description"),
     ),
 )
@@ -41,15 +45,9 @@ CONTAINER = KindSpec(
     elements=lambda version: version.architecture.containers,
     features=(
         *NAME_FEATURES,
-        FeatureSpec(
-            "nodes",
-            5,
-            lambda relations, container: relations.common_ids(
-                "node", relations.nodes_by_place[f"container:{container.id}"]
-            ),
-        ),
-        FeatureSpec("host", 1, lambda _, container: mark_values(container.host)),
-        FeatureSpec("threads", 1, lambda _, container: mark_values(container.threads)),
+        nodes_feature("container", 5),
+        value_feature("host", 1, "host"),
+        value_feature("threads", 1, "threads"),
     ),
 )
 
@@ -65,7 +63,7 @@ RESOURCE = KindSpec(
     features=(
         *NAME_FEATURES,
         FeatureSpec("users", 5, _mark_users),
-        FeatureSpec("host", 1, lambda _, resource: mark_values(resource.host)),
+        value_feature("host", 1, "host"),
     ),
 )
 # Those ends in the key `connects` that are components.
@@ -84,11 +82,57 @@ LINK = KindSpec(
     elements=lambda version: version.architecture.links,
     features=(
         *NAME_FEATURES,
-        FeatureSpec("connects", 4, lambda relations, link: relations.common_ids("host", link.connects)),
+        reference_feature("connects", 4, "host", "connects"),
         FeatureSpec(
             "figures", 2, lambda _, link: mark_values(link.bandwidth, f"best {link.best}", f"worst {link.worst}")
         ),
     ),
+)
+
+
+def _find_writing_owner(frame: Frame, context: ReadContext) -> str | None:
+    """Return the partner who owns what writes a frame, else what holds it."""
+    architecture = context.architecture
+    component = architecture.components.get(
+        (frame.by if frame.by_kind == "component" else None) or frame.component or ""
+    )
+    node = architecture.nodes.get(frame.by or "") if frame.by_kind == "node" else None
+    writer = node or component
+    return context.common_id("partner", writer.owner) if writer else None
+
+
+def _list_writers(frame: Frame, context: ReadContext) -> tuple[str, ...]:
+    component = frame.by if frame.by_kind == "component" else None
+    return (context.matched_ids.common_id("component", component),) if component else ()
+
+
+def _find_frame_holder(frame: Frame, context: ReadContext) -> ElementKey | None:
+    return ("component", context.matched_ids.common_id("component", frame.component)) if frame.component else None
+
+
+def _mark_frames_below(relations: ElementRelations, frame: Frame) -> frozenset[str]:
+    return frozenset(relations.users_by_element[f"below:{frame.id}"])
+
+
+def _mark_frame_ports(relations: ElementRelations, frame: Frame) -> frozenset[str]:
+    ports = relations.users_by_element[f"frame:{frame.id}"]
+    return relations.common_ids("input", ports) | relations.common_ids("output", ports)
+
+
+FRAME = KindSpec(
+    "frame",
+    "Frames",
+    elements=lambda version: version.architecture.frames,
+    features=(
+        *NAME_FEATURES,
+        FeatureSpec("ports", 4, _mark_frame_ports),
+        FeatureSpec("children", 3, _mark_frames_below),
+        value_feature("parent", 2, "parent"),
+        FeatureSpec("by", 2, lambda relations, frame: relations.common_ids(frame.by_kind, [frame.by])),
+    ),
+    parent=_find_frame_holder,
+    owner=_find_writing_owner,
+    components=_list_writers,
 )
 
 
@@ -103,7 +147,7 @@ CHAIN = KindSpec(
     features=(
         *NAME_FEATURES,
         FeatureSpec("through", 6, _mark_waypoints),
-        FeatureSpec("deadline", 1, lambda _, chain: mark_values(chain.deadline)),
+        value_feature("deadline", 1, "deadline"),
     ),
 )
 
@@ -133,7 +177,7 @@ VARIANT = KindSpec(
         FeatureSpec("places", 8, lambda _, variant: mark_values(*(each.path for each in variant.changes))),
         FeatureSpec("changes", 2, lambda _, variant: mark_values(*(f"{c.path}: {c.value}" for c in variant.changes))),
         FeatureSpec("leaves out", 3, lambda _, variant: mark_values(variant.without, *variant.drop)),
-        FeatureSpec("base", 0.5, lambda relations, variant: relations.common_ids("variant", variant.of)),
+        reference_feature("base", 0.5, "variant", "of"),
     ),
 )
 VIEW = KindSpec(

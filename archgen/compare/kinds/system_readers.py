@@ -51,11 +51,6 @@ def make_selector_reader(attribute: str) -> Reader:
     return read
 
 
-def read_dropped_paths(variant: Variant, context: ReadContext) -> frozenset[str]:
-    """Return the paths of keys that a variant drops."""
-    return frozenset(context.matched_ids.rename_in_text(path) for path in variant.drop)
-
-
 def read_variant_changes(variant: Variant, context: ReadContext) -> frozenset[str]:
     """Return what a variant writes over the project."""
     return frozenset(context.matched_ids.rename_in_text(f"{each.path}: {each.value}") for each in variant.changes)
