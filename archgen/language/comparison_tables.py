@@ -10,6 +10,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Literal, TypedDict
 
+Reach = Literal["text", "system", "timing"]
+
 
 class KeyFacts(TypedDict, total=False):
     """What the comparison of a key needs to know."""
@@ -19,7 +21,7 @@ class KeyFacts(TypedDict, total=False):
     attribute: str
     default: str | int | tuple[str, ...]
     names: str
-    effect: Literal["text", "system"]
+    effect: Reach
     worse: Literal["less", "more", "always"]
     noun: str
     verb: str
@@ -27,7 +29,7 @@ class KeyFacts(TypedDict, total=False):
     new_verb: str
 
 
-KIND_EFFECTS: Mapping[str, Literal["text", "system", "timing"]] = {
+KIND_EFFECTS: Mapping[str, Reach] = {
     "project": "system", "partner": "system", "variant": "system", "use_case": "text", "requirement": "system",
     "view": "text", "group": "timing", "component": "timing", "component_type": "system", "input": "timing",
     "output": "timing", "type": "timing", "frame": "system", "promise": "system", "deprecation": "system",

@@ -73,9 +73,10 @@ def find_start(node: Node, _context: ReadContext) -> StartUp | None:
     start = node.start
     if start is None:
         return None
-    names = {key: name for key in ("topic", "service") if (name := getattr(start.ready, key))}
-    resolved = {key: ros_names.resolve_ros_name(name, node) for key, name in names.items()}
-    return replace(start, ready=replace(start.ready, **resolved))
+    topic, service = (
+        ros_names.resolve_ros_name(name, node) if name else None for name in (start.ready.topic, start.ready.service)
+    )
+    return replace(start, ready=replace(start.ready, topic=topic, service=service))
 
 
 def read_start_targets(start: StartUp, context: ReadContext) -> frozenset[str]:
