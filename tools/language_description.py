@@ -61,6 +61,7 @@ _OTHER_WORDS = frozenset(
             "element",
             "see",
         ),
+        *("effect", "worse", "form", "attribute", "default", "names", "told", "noun", "verb", "verbs", "new_verb"),
     }
 )
 """The words of a part that the schema does not show as they are; `language/README.md` says what each means."""

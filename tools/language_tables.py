@@ -21,7 +21,7 @@ from collections.abc import Mapping
 from typing import Literal
 
 '''
-_WIDTH = 120
+WIDTH = 120
 _FACTS = ("order", "listed", "bare", "data", "offers")
 """Words by which a key says more of its value than its type."""
 _TEXTLESS_KINDS = frozenset({"integer", "boolean", "number"})
@@ -157,16 +157,20 @@ def _as_tuple(value: str | list[str]) -> tuple[str, ...]:
 
 
 def _format_literal(name: str, values: Iterable[str]) -> str:
-    return "\n".join([f"{name} = Literal[", *_wrap([f'"{value}"' for value in values], "    "), "]"])
+    return "\n".join([f"{name} = Literal[", *wrap_items([f'"{value}"' for value in values], "    "), "]"])
 
 
 def _format_names(name: str, values: Iterable[str], says: str) -> str:
-    lines = [f"{name}: frozenset[str] = frozenset({{", *_wrap([f'"{value}"' for value in sorted(values)], "    "), "})"]
+    lines = [
+        f"{name}: frozenset[str] = frozenset({{",
+        *wrap_items([f'"{value}"' for value in sorted(values)], "    "),
+        "})",
+    ]
     return "\n".join([*lines, f'"""{says}"""'])
 
 
 def _format_tuple(name: str, values: Iterable[str], says: str) -> str:
-    lines = [f"{name}: tuple[str, ...] = (", *_wrap([f'"{value}"' for value in values], "    "), ")"]
+    lines = [f"{name}: tuple[str, ...] = (", *wrap_items([f'"{value}"' for value in values], "    "), ")"]
     return "\n".join([*lines, f'"""{says}"""'])
 
 
@@ -177,13 +181,13 @@ def _format_table(name: str, table: Mapping[str, Any], says: str) -> str:
         lines = [line for key, inner in table.items() for line in _format_row(key, inner)]
     else:
         annotation = "str" if isinstance(first_value, str) else "tuple[str, ...]"
-        lines = _wrap([f'"{key}": {_format_value(value)}' for key, value in table.items()], "    ")
+        lines = wrap_items([f'"{key}": {_format_value(value)}' for key, value in table.items()], "    ")
     return "\n".join([f"{name}: Mapping[str, {annotation}] = {{", *lines, "}", f'"""{says}"""'])
 
 
 def _format_row(key: str, inner: Mapping[str, str]) -> list[str]:
     pairs = [f'"{name}": "{part}"' for name, part in inner.items()]
-    return [f'    "{key}": {{', *_wrap(pairs, "        "), "    },"]
+    return [f'    "{key}": {{', *wrap_items(pairs, "        "), "    },"]
 
 
 def _format_value(value: str | tuple[str, ...]) -> str:
@@ -192,11 +196,11 @@ def _format_value(value: str | tuple[str, ...]) -> str:
     return f"({', '.join(map(_format_value, value))}{',' if len(value) == 1 else ''})"
 
 
-def _wrap(items: list[str], indent: str) -> list[str]:
+def wrap_items(items: list[str], indent: str) -> list[str]:
     """Return items behind commas in as few lines as they fit in."""
     lines = [""]
     for item in items:
-        if lines[-1] and len(indent) + len(lines[-1]) + len(item) + 2 > _WIDTH:
+        if lines[-1] and len(indent) + len(lines[-1]) + len(item) + 2 > WIDTH:
             lines.append("")
         lines[-1] += f"{' ' if lines[-1] else ''}{item},"
     return [f"{indent}{line}" for line in lines if line]

@@ -1,4 +1,4 @@
-"""Write what follows from the description in `language/`: the JSON Schema, the tables of `archgen/language/`, those of docs."""
+"""Write what follows from the description in `language/`: JSON Schemas, the tables of `archgen/language/`, those of docs."""
 
 from __future__ import annotations
 
@@ -7,10 +7,12 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 
+from language_comparison import find_comparison_faults, make_comparison_tables
 from language_description import DescriptionError, add_rule_settings, find_faults, load_description, make_schema
 from language_page import renew_page
 from language_tables import make_tables
 
+from archgen.compare.kinds import KIND_ORDER
 from archgen.findings.rule_table import index_rules
 from archgen.pipeline import ALL_RULES
 
@@ -21,15 +23,25 @@ def make_files() -> Mapping[Path, str]:
     """Return the text of each generated file. Raise DescriptionError for a description that says too little."""
     description = load_description()
     add_rule_settings(description, index_rules(ALL_RULES))
-    if faults := list(find_faults(description)):
+    if faults := [*find_faults(description), *find_comparison_faults(description)]:
         message = "\n".join(faults)
         raise DescriptionError(message)
     page = ROOT / "docs" / "language.md"
+    comparison_schema = ROOT / "schemas" / "diff.schema.json"
     return {
         page: renew_page(page.read_text(encoding="utf-8"), description),
         ROOT / "schemas" / "archgen.schema.json": json.dumps(make_schema(description), indent=2) + "\n",
+        comparison_schema: _renew_kinds(comparison_schema.read_text(encoding="utf-8")),
         ROOT / "archgen" / "language" / "language_tables.py": make_tables(description),
+        ROOT / "archgen" / "language" / "comparison_tables.py": make_comparison_tables(description),
     }
+
+
+def _renew_kinds(text: str) -> str:
+    """Return the schema of comparisons with the kinds of elements whose changes they tell."""
+    schema = json.loads(text)
+    schema["$defs"]["change"]["properties"]["sort"]["enum"] = list(KIND_ORDER)
+    return json.dumps(schema, indent=2) + "\n"
 
 
 def main() -> int:

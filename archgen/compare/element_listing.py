@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.compared_elements import ComparedElement, ElementKey
 from archgen.compare.kinds import ELEMENT_KINDS
-from archgen.compare.kinds.kind_spec import KindSpec, ReadContext
-from archgen.compare.kinds.shared_keys import key_values
+from archgen.compare.kinds.key_spec import ReadContext, key_values
+from archgen.compare.kinds.kind_spec import KindSpec
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.node_ports import list_node_ports
 from archgen.compare.normal_values import drop_unset_values

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from archgen.compare.compared_elements import ComparedElement
-from archgen.compare.kinds.kind_spec import ReadContext
+from archgen.compare.kinds.key_spec import ReadContext, key_values
 from archgen.compare.kinds.ros_kinds import NODE, PORT, NodePort
-from archgen.compare.kinds.shared_keys import key_values, last_part
 from archgen.compare.matched_ids import MatchedIds
-from archgen.compare.normal_values import drop_unset_values
+from archgen.compare.normal_values import drop_unset_values, last_part
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node, PortUse
 

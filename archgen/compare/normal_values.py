@@ -94,3 +94,8 @@ def to_plain_data(value: object) -> object:
     if isinstance(value, tuple):
         return [to_plain_data(item) for item in value]
     return value
+
+
+def last_part(path: str, part_count: int = 1) -> str:
+    """Return the last parts of a path."""
+    return ".".join(path.split(".")[-part_count:])

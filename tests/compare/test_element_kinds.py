@@ -1,4 +1,4 @@
-"""The table of kinds agrees with the schema, the model, the resolved record and the cards: what one of them has, all do.
+"""The table of kinds agrees with the description, the model, the resolved record and the cards: what one of them has, all do.
 
 A new field or kind fails here until the table has it. What is left out on purpose stands in the lists below, with the
 reason; an entry that is no longer needed fails, too.
@@ -9,75 +9,33 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
-from typing import Any
+from typing import Any, get_args, get_type_hints
 
 import jsonschema_rs
 import pytest
 
 from archgen import pipeline
 from archgen.compare.kinds import ELEMENT_KINDS, KIND_ORDER, MATCHING_ORDER, Effect, find_effect, find_key
-from archgen.compare.kinds.shared_keys import TIMING_KEYS
-from archgen.model.architecture import Architecture, Chain, Partner, Policy, ProjectInfo, UseCase, View
-from archgen.model.component import Component, ComponentType, Group, Input, Output
-from archgen.model.coordinate_frames import Frame
+from archgen.compare.kinds.component_type_kind import OWN_KEYS
+from archgen.language.comparison_tables import KEY_FACTS, KeyFacts
+from archgen.language.language_tables import ENTRIES, KEYS
+from archgen.model.architecture import Architecture, ProjectInfo
+from archgen.model.component import ComponentType
 from archgen.model.declared_timing import Timing
-from archgen.model.deployment import Container, Host, Link, Resource
-from archgen.model.message_types import ConceptualType
-from archgen.model.node import Node
-from archgen.model.requirement import Requirement
-from archgen.model.variant import Variant
 from archgen.views.elements.element_card import make_card
 from archgen.views.elements.element_names import kinds_by_id
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.records.resolved_record import make_record
 from tests.running import ROOT
 
-SCHEMA = json.loads((ROOT / "schemas" / "archgen.schema.json").read_text(encoding="utf-8"))
+DESCRIBED = {kind: KEY_FACTS[kind] for kind in KEY_FACTS if kind in ELEMENT_KINDS}
+"""The kinds of elements that the description lets one write, with what it says of their keys."""
+SECTIONS = {kind: field.name for field in fields(Architecture) if (kind := ENTRIES.get(field.name, "")) in DESCRIBED}
+"""Each kind with its section of the architecture."""
 MODEL_CLASSES: Mapping[str, type] = {
     "project": ProjectInfo,
-    "partner": Partner,
-    "use_case": UseCase,
-    "requirement": Requirement,
-    "component_type": ComponentType,
-    "group": Group,
-    "component": Component,
-    "output": Output,
-    "input": Input,
-    "type": ConceptualType,
-    "node": Node,
-    "host": Host,
-    "container": Container,
-    "resource": Resource,
-    "link": Link,
-    "frame": Frame,
-    "chain": Chain,
-    "policy": Policy,
-    "variant": Variant,
-    "view": View,
+    **{kind: get_args(get_type_hints(Architecture)[section])[1] for kind, section in SECTIONS.items()},
 }
-SECTIONS = {
-    "partner": "partners",
-    "use_case": "use_cases",
-    "requirement": "requirements",
-    "component_type": "component_types",
-    "group": "groups",
-    "component": "components",
-    "output": "outputs",
-    "input": "inputs",
-    "type": "types",
-    "node": "nodes",
-    "host": "hosts",
-    "container": "containers",
-    "resource": "resources",
-    "link": "links",
-    "frame": "frames",
-    "chain": "chains",
-    "policy": "policies",
-    "variant": "variants",
-    "view": "views",
-}
-"""Each kind with its section of the architecture."""
-
 NOT_WRITTEN_KINDS = {
     "chapter": "a file of its own",
     "message": "a file of its own, or a text below `ros: definitions`",
@@ -86,39 +44,15 @@ NOT_WRITTEN_KINDS = {
     "composed": "a component with `components`",
 }
 """Kinds that are no mapping of the schema."""
-_INSIDE = {
-    "from": "the connections that it makes",
-    "components": "elements of their own",
-    "autoconnect": "the connections that it makes",
-    "node": "the node that it makes",
-    "containers": "elements of their own",
+_OWN_TYPE_KEYS = {*OWN_KEYS, "functionality", "description"}
+READ_OFF_PATTERNS = {
+    "node",
+    *(key.name.removesuffix(".") for key in ELEMENT_KINDS["component"].keys if key.name not in _OWN_TYPE_KEYS),
 }
-READ_OFF_PATTERNS = frozenset(
-    {"node", "open", "operations", "parameters", "performance", "requirements", "role", "tags", "timing", "urls"}
-    | {"contact", "hints", "image", "properties", "status"}
-)
 """Keys of component types that comparisons read off patterns: they are linked for these."""
-_SHOWN_SETTINGS = frozenset({"open", "operations", "parameters", "contact", "image", "status", "properties", "hints"})
+_SHOWN_SETTINGS = READ_OFF_PATTERNS & ({field.name for field in fields(ComponentType)} | {"properties", "hints"})
 """Those of them that a type has in the model as well, for its page."""
-SCHEMA_ONLY = {
-    **{f"component {key}": reason for key, reason in _INSIDE.items()},
-    "component same_as": "the key `is`",
-    "component frames": "elements of their own",
-    "group autoconnect": "the connections that it makes",
-    **dict.fromkeys(("output from", "output to"), "the connections that it makes"),
-    **{
-        f"component_type {key}": "what its instances have"
-        for key in SCHEMA["$defs"]["component_type"]["properties"]
-        if key
-        not in {"title", "functionality", "description", "owner", "is", "generic", "abstract", "version", "deprecated"}
-        and key not in {"inputs", "outputs", "components"} | READ_OFF_PATTERNS
-    },
-    "group components": "elements of their own",
-    "input from": "the kind `connection`",
-    **dict.fromkeys(("node publishes", "node subscribes", "node serves", "node calls"), "the kind `port`"),
-    "node internal": "the kind `port`",
-    **dict.fromkeys(("type constants", "type values"), "the kind `message`"),
-}
+SCHEMA_ONLY = {"component_type layout": "what its instances have"}
 TABLE_ONLY_FOR_SCHEMA = {
     **dict.fromkeys(("group co_owners", "component co_owners", "node co_owners"), "the rest of the list `owner`"),
     "component mapped": "follows from the nodes",
@@ -134,16 +68,13 @@ TABLE_ONLY_FOR_SCHEMA = {
     **dict.fromkeys(("project properties", "project glossary"), "sections of their own"),
 }
 MODEL_ONLY = {
-    **{f"{kind} annotations": "the keys `properties` and `hints`" for kind in SECTIONS if kind != "variant"},
     "component parent": "the beginning of the id",
     "component children": "elements of their own",
     "component component_type": "the key `is`",
     "component is_reference": "the key `is`",
     "output is_made": "what it gives on, as `autoconnect` follows from all that is written",
-    "component_type base": "the key `is`",
     "component_type library": "the beginning of the id",
     "type library": "where it is declared",
-    "component_type is_abstract": "the key `abstract`",
     "component_type frames": "those of its instances",
     "node wholes": "its components are in the key `implements`",
     **{f"{kind} id": "the key of the element" for kind in SECTIONS if kind != "type"},
@@ -159,48 +90,26 @@ MODEL_ONLY = {
     **dict.fromkeys(("component inputs_known", "component outputs_known"), "in the keys `inputs` and `outputs`"),
     "component requirements_known": "only for rules",
     **dict.fromkeys(("input medium_written", "output medium_written"), "the key `medium`"),
-    "node kinds": "the key `kind`",
     "host core_scheduling": "the keys below `scheduling`",
     "node uses": "the kind `port`",
     **dict.fromkeys(("link best", "link worst"), "the keys below `latency`"),
     **dict.fromkeys(("policy forbid_from", "policy forbid_to"), "the keys below `forbid`"),
     "chain unresolved": "only for rules",
-    "requirement parents": "the key `parent`",
     "link unresolved": "only for rules",
     "frame by_kind": "what the key `by` names",
     "frame component": "where it is written",
     "frame by_written": "only for rules",
 }
 TABLE_ONLY_FOR_MODEL = {
-    **{
-        f"{kind} {key}": "the field `annotations`"
-        for kind in SECTIONS
-        if kind != "variant"
-        for key in ("properties", "hints")
-    },
     "component is": "the fields `component_type` and `is_reference`",
     **{f"component_type {key}": "the field of its pattern" for key in READ_OFF_PATTERNS - _SHOWN_SETTINGS},
-    "component_type is": "the field `base`",
-    "component_type abstract": "the field `is_abstract`",
-    "node kind": "the field `kinds`",
-    "requirement parent": "the field `parents`",
     "link latency": "the fields `best` and `worst`",
     "policy forbid": "the fields `forbid_from` and `forbid_to`",
     "component mapped": "follows from the nodes",
     **{
-        f"project {key}": "a field of the architecture or of the version"
-        for key in (
-            "distro",
-            "shared_topics",
-            "parameters",
-            "layout",
-            "chapters",
-            "review",
-            "rules",
-            "site",
-            "properties",
-            "glossary",
-        )
+        key: "a field of the architecture or of the version"
+        for key in TABLE_ONLY_FOR_SCHEMA
+        if key.startswith("project ")
     },
 }
 RECORD_ONLY = {
@@ -360,29 +269,40 @@ def table_keys(kind: str) -> set[str]:
     return {key.name.partition(".")[0] for key in ELEMENT_KINDS[kind].keys}
 
 
+def model_keys(kind: str) -> set[str]:
+    """Return what the model calls the keys of a kind."""
+    described = {name.removesuffix("."): facts for name, facts in DESCRIBED[kind].items()}
+    return {_name_field(name, described.get(name, {})) for name in table_keys(kind)}
+
+
+def _name_field(name: str, facts: KeyFacts) -> str:
+    # What any element may say beside its own keys is one field.
+    return "annotations" if facts.get("form") in {"properties", "hints"} else facts.get("attribute", name)
+
+
 def missing(kind: str, names: Iterable[str], exceptions: Mapping[str, str], known: Iterable[str]) -> list[str]:
     """Return the names that are neither known nor excepted."""
     return sorted(name for name in set(names) - set(known) if f"{kind} {name}" not in exceptions)
 
 
-@pytest.mark.parametrize("kind", [name for name in ELEMENT_KINDS if name not in NOT_WRITTEN_KINDS])
-def test_what_the_schema_lets_one_write_is_compared(kind: str) -> None:
-    written = SCHEMA["$defs"][kind]["properties"]
-    assert missing(kind, written, SCHEMA_ONLY, table_keys(kind)) == [], "keys of the schema without a KeySpec"
-    assert missing(kind, table_keys(kind), TABLE_ONLY_FOR_SCHEMA, written) == [], "keys that nobody can write"
+@pytest.mark.parametrize("kind", DESCRIBED)
+def test_what_one_may_write_is_compared(kind: str) -> None:
+    written = {name.removesuffix(".") for name in DESCRIBED[kind]}
+    assert missing(kind, written, SCHEMA_ONLY, table_keys(kind)) == [], "keys of the description without a KeySpec"
+    assert missing(kind, table_keys(kind), TABLE_ONLY_FOR_SCHEMA, KEYS[kind]) == [], "keys that nobody can write"
 
 
 @pytest.mark.parametrize("kind", list(MODEL_CLASSES))
 def test_what_the_model_holds_is_compared(kind: str) -> None:
     held = [field.name for field in fields(MODEL_CLASSES[kind]) if field.compare]
-    assert missing(kind, held, MODEL_ONLY, table_keys(kind)) == [], "fields of the model without a KeySpec"
-    assert missing(kind, table_keys(kind), TABLE_ONLY_FOR_MODEL, held) == [], "keys without a field"
+    assert missing(kind, held, MODEL_ONLY, model_keys(kind)) == [], "fields of the model without a KeySpec"
+    assert missing(kind, model_keys(kind), TABLE_ONLY_FOR_MODEL, held) == [], "keys without a field"
 
 
 def test_what_timing_can_be_written_is_compared() -> None:
-    names = {key.name.partition(".")[0] for key in TIMING_KEYS}
+    names = {key.name.partition(".")[0] for key in find_key("component", "timing").inner}
     # A period is compared as the rate that it amounts to.
-    assert set(SCHEMA["$defs"]["timing"]["properties"]) == names | {"period"}
+    assert set(KEYS["timing"]) == names | {"period"}
     # Measured times are below `wcet`.
     assert {field.name for field in fields(Timing) if field.compare} == names | {"period", "measured_times"}
 
@@ -432,6 +352,7 @@ def test_what_cards_show_is_compared(lookup: Lookup) -> None:
 
 def test_the_kinds_are_those_of_the_model_and_of_the_cards(lookup: Lookup) -> None:
     kinds = set(ELEMENT_KINDS) - set(NOT_WRITTEN_KINDS)
+    assert kinds == set(DESCRIBED)
     assert set(MODEL_CLASSES) == kinds
     assert set(SECTIONS) == kinds - {"project"}
     carded = {kind.replace(" ", "_") for kinds in kinds_by_id(lookup).values() for kind in kinds}
@@ -443,13 +364,14 @@ def test_the_kinds_are_those_of_the_model_and_of_the_cards(lookup: Lookup) -> No
 
 
 def test_the_exceptions_are_needed() -> None:
-    schema = {f"{k} {name}" for k in MODEL_CLASSES for name in SCHEMA["$defs"][k]["properties"]}
+    written = {f"{kind} {name}" for kind in DESCRIBED for name in KEYS[kind]}
     model = {f"{k} {field.name}" for k, each in MODEL_CLASSES.items() for field in fields(each)}
     table = {f"{k} {name}" for k in ELEMENT_KINDS for name in table_keys(k)}
-    assert set(SCHEMA_ONLY) <= schema - table
-    assert set(MODEL_ONLY) <= model - table
-    assert set(TABLE_ONLY_FOR_SCHEMA) <= table - schema
-    assert set(TABLE_ONLY_FOR_MODEL) <= table - model
+    called = {f"{kind} {name}" for kind in DESCRIBED for name in model_keys(kind)}
+    assert set(SCHEMA_ONLY) <= written - table
+    assert set(MODEL_ONLY) <= model - called
+    assert set(TABLE_ONLY_FOR_SCHEMA) <= table - written
+    assert set(TABLE_ONLY_FOR_MODEL) <= called - model
     assert set(NOT_IN_RECORD) <= table
     assert not set(RECORD_ONLY) & table
 
@@ -472,13 +394,14 @@ def test_every_kind_is_recognised_after_those_that_its_features_refer_to() -> No
 
 
 def test_the_order_of_the_report() -> None:
-    assert list(KIND_ORDER) == [
+    order = [
         *("project", "chapter", "partner", "use_case", "requirement", "component_type", "group", "composed"),
         *("component", "output", "input"),
         *("connection", "type", "message", "node", "port", "host", "container", "resource", "link", "frame"),
         *("chain", "policy", "variant", "view"),
     ]
-    assert list(KIND_ORDER.values()) == list(range(25))
+    assert [kind for kind in KIND_ORDER if kind in order] == order
+    assert list(KIND_ORDER.values()) == list(range(len(ELEMENT_KINDS)))
 
 
 def test_the_schema_of_comparisons_knows_every_kind() -> None:

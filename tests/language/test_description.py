@@ -11,6 +11,7 @@ from types import ModuleType
 from typing import Any
 
 import pytest
+import yaml
 
 from tests.running import ROOT
 
@@ -58,6 +59,66 @@ def test_what_is_forgotten_is_told(
     assert list(tool.find_faults(description)) == []
     forget(description)
     assert fault in list(tool.find_faults(description))
+
+
+@pytest.mark.parametrize(
+    ("forget", "fault"),
+    [
+        (
+            lambda d: d.kinds["host"].pop("effect"),
+            "host: `effect` says how far a change of such an element reaches",
+        ),
+        (
+            lambda d: d.kinds["start"].pop("effect"),
+            "node.start: `effect` says how far a change reaches, or `told` where it is told",
+        ),
+        (lambda d: d.types["tags"].update(effect="little"), "tags: `effect` is one of system, text, timing"),
+        (lambda d: d.common["host"].update(worse="other"), "node.host: `worse` is one of always, less, more"),
+        (
+            lambda d: d.kinds["host"]["keys"]["cores"].update(names="hots"),
+            "host.cores: `names` is a kind, and there is no `hots`",
+        ),
+        (
+            lambda d: d.types["tags"].update(verbs=["now has"]),
+            "tags: `verbs` are two, for what is added and for what is removed",
+        ),
+    ],
+)
+def test_what_a_comparison_cannot_do_without_is_told(
+    import_tool: Callable[[str], ModuleType], forget: Callable[[Any], object], fault: str
+) -> None:
+    description = copy.deepcopy(import_tool("language_description").load_description())
+    find_faults = import_tool("language_comparison").find_comparison_faults
+    assert list(find_faults(description)) == []
+    forget(description)
+    assert fault in list(find_faults(description))
+
+
+@pytest.mark.parametrize(
+    ("said", "facts"),
+    [
+        ("{type: count, says: S}", {"cells": {}}),
+        ("{type: text, says: S}", {"cells": {"effect": "system"}}),
+        ("{type: prose, says: S}", {"cells": {"form": "prose", "effect": "text"}}),
+        ("{type: flag, says: S, effect: text}", {"cells": {"form": "flag", "effect": "text"}}),
+        ("{type: id, says: S, offers: hosts}", {"cells": {"names": "host"}}),
+        ("{type: tags, says: S, noun: n}", {"cells": {"form": "set", "noun": "n", "effect": "text"}}),
+        ("{type: urls, says: S}", {"cells.": {"form": "mapping", "effect": "text"}}),
+        ("{type: start, says: S}", {"cells.": {"inner": "start", "effect": "system"}}),
+        ("{type: performance, says: S, effect: system}", {"cells.": {"form": "entries", "effect": "system"}}),
+        ("{type: count, says: S, told: elsewhere}", {}),
+    ],
+)
+def test_a_new_key_says_nothing_that_its_type_says(
+    import_tool: Callable[[str], ModuleType], said: str, facts: dict[str, dict[str, str]]
+) -> None:
+    tool, comparison = import_tool("language_description"), import_tool("language_comparison")
+    description = copy.deepcopy(tool.load_description())
+    before = comparison.list_key_facts(description, "host")
+    description.kinds["host"]["keys"]["cells"] = yaml.safe_load(said)
+    rows = comparison.list_key_facts(description, "host")
+    new_rows = {name: row for name, row in rows.items() if name not in before}
+    assert {name: {word: row[word] for word in row if word != "verbs"} for name, row in new_rows.items()} == facts
 
 
 def test_a_kind_in_two_files_is_refused(import_tool: Callable[[str], ModuleType], tmp_path: Path) -> None:

@@ -6,7 +6,8 @@ tests/compare/test_element_kinds.py compares the table with the schema, the mode
 
 from archgen.compare.kinds.component_type_kind import COMPONENT_TYPE
 from archgen.compare.kinds.functional_kinds import FUNCTIONAL_KINDS
-from archgen.compare.kinds.kind_spec import Effect, KeySpec, KindSpec, Worsening
+from archgen.compare.kinds.key_spec import Effect, KeySpec, Worsening
+from archgen.compare.kinds.kind_spec import KindSpec
 from archgen.compare.kinds.project_kinds import PROJECT_KINDS
 from archgen.compare.kinds.ros_kinds import ROS_KINDS
 from archgen.compare.kinds.system_kinds import SYSTEM_KINDS

@@ -1,27 +1,46 @@
-"""How the values of components are read for comparing, and by what marks a component is recognised."""
+"""How the keys of components, of their ports and of their types are read for comparing."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 from archgen.compare.compared_elements import SOME_PORTS
-from archgen.compare.element_relations import ElementRelations, ports_of
-from archgen.compare.kinds.kind_spec import ReadContext
-from archgen.compare.kinds.shared_keys import (
-    TIMING_KEYS,
-    key_values,
-    mark_values,
-)
-from archgen.compare.normal_values import freeze_value, normalize_text, normalize_title
-from archgen.model.component import Component
+from archgen.compare.kinds.key_spec import ReadContext
+from archgen.compare.normal_values import ElementTitle, freeze_value, normalize_text, normalize_title
+from archgen.model.component import Component, ComponentType, Input, Output
+from archgen.model.declared_timing import Timing
 from archgen.model.generic_names import read_generic_name
 from archgen.model.parameter import format_parameter
 from archgen.model.path_resolver import title_from_id
 
 
-def describe_ports(*, is_known: bool, ports: Mapping[str, object]) -> str | None:
-    """Return whether there are ports: these are elements of their own."""
+def read_name_as_title(component: Component, _context: ReadContext) -> ElementTitle:
+    """Return the title of a component, which is generated from the last part of its id."""
+    return normalize_title(component.name, component.title)
+
+
+def read_requirements(component: Component, context: ReadContext) -> frozenset[str]:
+    """Return the requirements that a component serves: ids, and what it writes in words."""
+    return context.common_ids("requirement", [use.text for use in component.requirements])
+
+
+def read_inputs(component: Component, _context: ReadContext) -> str | None:
+    """Return whether there are inputs: these are elements of their own."""
+    return _describe_ports(component.inputs, is_known=component.inputs_known)
+
+
+def read_outputs(component: Component, _context: ReadContext) -> str | None:
+    """Return whether there are outputs: these are elements of their own."""
+    return _describe_ports(component.outputs, is_known=component.outputs_known)
+
+
+def _describe_ports(ports: Mapping[str, object], *, is_known: bool) -> str | None:
     return SOME_PORTS if ports else "none" if is_known else None
+
+
+def read_medium(port: Input | Output, _context: ReadContext) -> str | None:
+    """Return the medium that a port says itself."""
+    return port.medium if port.medium_written else None
 
 
 def read_performance(component: Component, _context: ReadContext) -> Mapping[str, object]:
@@ -37,15 +56,14 @@ def read_performance(component: Component, _context: ReadContext) -> Mapping[str
     }
 
 
-def read_node_timing(component: Component, context: ReadContext) -> Mapping[str, object]:
+def find_node_timing(component: Component, context: ReadContext) -> Timing | None:
     """Return a component's timing: that of its node if it has exactly one, else what it says itself."""
     component_nodes = context.nodes_by_component.get(component.id, [])
     has_one_node = (
         len(component_nodes) == 1
         and context.matched_ids.common_id("component", component.id) not in context.split_components
     )
-    timing = component_nodes[0].timing.get(component.id) if has_one_node else component.timing
-    return key_values(TIMING_KEYS, timing, context) if timing else {}
+    return component_nodes[0].timing.get(component.id) if has_one_node else component.timing
 
 
 def read_parameters(component: Component, _context: ReadContext) -> Mapping[str, object]:
@@ -102,47 +120,6 @@ def is_mapped(component: Component, context: ReadContext) -> bool | None:
     return any(node.written for node in context.nodes_by_component.get(component.id, ())) or None
 
 
-def mark_ports(_relations: ElementRelations, component: Component) -> frozenset[str]:
-    """Return the names of a component's ports with their direction, and their types."""
-    # The direction is part of the mark, so that an input and an output of one name are not alike.
-    ports = [f"> {port.name}" for port in component.inputs.values()]
-    ports += [f"{port.name} >" for port in component.outputs.values()]
-    return mark_values(*ports, *(port.type for port in ports_of(component)))
-
-
-def mark_neighbours(relations: ElementRelations, component: Component) -> frozenset[str]:
-    """Return the common ids of the components that a component reads from or is read by."""
-    sources = [source for port in component.inputs.values() for source in relations.outputs_by_input[port.id]]
-    readers = [reader for port in component.outputs.values() for reader in relations.readers_by_output[port.id]]
-    return relations.common_ids("component", list_port_holders([*sources, *readers]))
-
-
-def list_last_names(component_ids: Sequence[str]) -> list[str]:
-    """Return the last part of each component's id."""
-    return [component_id.rpartition(".")[2] for component_id in component_ids]
-
-
-def list_port_holders(ports: Sequence[str]) -> list[str]:
-    """Return the id of the component that has each port."""
-    return [port.rpartition(".")[0] for port in ports]
-
-
-def mark_performance(_relations: ElementRelations, component: Component) -> frozenset[str]:
-    """Return each performance of a component as one mark."""
-    return mark_values(
-        *(
-            f"{performance.id} {performance.accuracy} {performance.execution_time}"
-            for performance in component.performance
-        )
-    )
-
-
-def mark_timing(_relations: ElementRelations, component: Component) -> frozenset[str]:
-    """Return behaviour, rate and longest execution time of a component."""
-    timing = component.timing
-    return mark_values(timing.behaviour, timing.rate, timing.wcet) if timing else frozenset()
-
-
 def name_common_type(type_text: str | None, context: ReadContext) -> str | None:
     """Return the name of a component type with common ids in it, `lib.filter<Pose>`; None for none."""
     return None if type_text is None else _name_with_common_ids(type_text.strip(), "component_type", context)
@@ -160,6 +137,6 @@ def read_component_type(component: Component, context: ReadContext) -> str | Non
     return f"exactly {type_name}" if component.is_reference else type_name
 
 
-def read_claimed_timing(shell: Component, context: ReadContext) -> Mapping[str, object]:
-    """Return what a composed component says of the timing of the whole."""
-    return key_values(TIMING_KEYS, shell.timing, context) if shell.timing else {}
+def read_base(component_type: ComponentType, context: ReadContext) -> str | None:
+    """Return the component type that a component type is made from."""
+    return name_common_type(component_type.base, context)

@@ -10,17 +10,14 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
-from archgen.compare.element_likeness import letter_pairs, word_set
-from archgen.compare.kinds.component_keys import name_common_type
 from archgen.compare.kinds.functional_kinds import COMPONENT
-from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext, Worsening
+from archgen.compare.kinds.key_spec import Effect, KeySpec, ReadContext, Worsening, key_values
+from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec
 from archgen.compare.kinds.port_kinds import INPUT, OUTPUT
-from archgen.compare.kinds.promise_keys import VERSION, deprecation_key
 from archgen.compare.kinds.ros_kinds import NODE
-from archgen.compare.kinds.shared_keys import DESCRIPTION, TITLE, key_values, prose_key, text_feature
+from archgen.compare.kinds.shared_features import name_features, text_feature
 from archgen.compare.normal_values import drop_unset_values
 from archgen.model.component import Component, ComponentType, Input, Output
-from archgen.model.path_resolver import title_from_id
 
 PART_MARK = ":"
 """Stands in a key between a part of a type and what is said of it."""
@@ -98,61 +95,37 @@ def _read_node_at(pattern: Component, context: ReadContext) -> Mapping[str, obje
     return drop_unset_values(key_values(_RAN_KEYS, node, context)) if node else {}
 
 
-def _own_name(component_type: ComponentType) -> str:
-    return component_type.id.rpartition(".")[2]
-
-
 def _mark_ports(component_type: ComponentType) -> frozenset[str]:
     sides = (("input", component_type.inputs), ("output", component_type.outputs))
     return frozenset(f"{side} {name} {kind or '?'}" for side, ports in sides for name, kind in ports.items())
 
 
+_PATTERN_KEYS = tuple(
+    # What timing and partners lose is judged at the instances.
+    replace(key, read=_read_pattern(key), effect=min(key.effect, Effect.SYSTEM), worsening=Worsening.NEVER)
+    for key in COMPONENT.keys
+    if key.name not in OWN_KEYS | _WRITTEN_KEYS
+)
 COMPONENT_TYPE = KindSpec(
     "component_type",
     "Component types",
     (
-        TITLE,
-        prose_key("functionality"),
-        DESCRIPTION,
-        KeySpec("owner", effect=Effect.SYSTEM, verb="belongs to"),
-        KeySpec(
-            "is",
-            lambda each, context: name_common_type(each.base, context),
-            Effect.SYSTEM,
-            verb="is made from",
-            noun="base",
-        ),
-        KeySpec("generic", lambda each, _: each.generic or None, Effect.SYSTEM),
-        KeySpec("abstract", lambda each, _: each.is_abstract or None, Effect.SYSTEM),
-        VERSION,
-        deprecation_key("component_type"),
         KeySpec("inputs.", _read_ports("inputs", INPUT.keys), Effect.SYSTEM),
         KeySpec("outputs.", _read_ports("outputs", OUTPUT.keys), Effect.SYSTEM),
         KeySpec("components", lambda each, _: each.components or None, Effect.SYSTEM),
         KeySpec("components.", _read_parts, Effect.SYSTEM),
         KeySpec("node.", _read_node, Effect.SYSTEM),
-        # What timing and partners lose is judged at the instances.
-        *(
-            replace(key, read=_read_pattern(key), effect=min(key.effect, Effect.SYSTEM), worsening=Worsening.NEVER)
-            for key in COMPONENT.keys
-            if key.name not in OWN_KEYS | _WRITTEN_KEYS
-        ),
+        *_PATTERN_KEYS,
     ),
-    Effect.SYSTEM,
     elements=lambda version: version.architecture.component_types,
     features=(
         # The library is a part of the id: a type that moves into one is the same.
-        FeatureSpec("name", 2, lambda _, each: letter_pairs(_own_name(each))),
-        FeatureSpec(
-            "title",
-            2,
-            lambda _, each: word_set(each.title),
-            lambda each: each.title in {title_from_id(_own_name(each)), _own_name(each)},
-        ),
+        *name_features(lambda each: each.id.rpartition(".")[2]),
         FeatureSpec("ports", 4, lambda _, each: _mark_ports(each)),
         FeatureSpec("components", 4, lambda _, each: frozenset(each.components)),
         FeatureSpec("parameters", 2, lambda _, each: frozenset(each.parameters)),
         text_feature(3, "functionality", "description"),
     ),
     word="component type",
+    without=frozenset({"layout", "outputs", *(key.name for key in _PATTERN_KEYS)}),
 )

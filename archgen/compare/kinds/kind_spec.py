@@ -1,119 +1,18 @@
-"""What the table of kinds says of each kind of element and of each of its keys."""
+"""What the table of kinds says of each kind of element."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field
-from enum import Enum, IntEnum, auto
-from functools import cached_property
 from typing import Any
 
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.compared_elements import ElementKey
 from archgen.compare.element_relations import ElementRelations
-from archgen.compare.matched_ids import MatchedIds
+from archgen.compare.kinds.described_keys import derive_keys
+from archgen.compare.kinds.key_spec import Effect, KeySpec, ReadContext
 from archgen.frozen import dataclass
-from archgen.model.architecture import Architecture
-from archgen.model.node import Node
-
-
-class Effect(IntEnum):
-    """How far a change reaches: only texts and pictures, the system, or also its timing."""
-
-    TEXT = 0
-    SYSTEM = 1
-    TIMING = 2
-
-
-class Worsening(Enum):
-    """Which changes of a value can make a figure of timing worse."""
-
-    NEVER = auto()
-    LESS = auto()
-    MORE = auto()
-    ALWAYS = auto()
-
-
-class ReadContext:
-    """One version while its elements are read. `matched_ids` gives the ids of the second version."""
-
-    def __init__(
-        self, version: ArchitectureVersion, matched_ids: MatchedIds, split_components: frozenset[str] = frozenset()
-    ) -> None:
-        self.version = version
-        self.matched_ids = matched_ids
-        self.split_components = split_components
-        """Components with one node in one version and several in the other, by common ids: both versions compare them
-        by their nodes, or else their timing and ports would change their place, not their meaning."""
-
-    @property
-    def architecture(self) -> Architecture:
-        """Return the architecture of the version."""
-        return self.version.architecture
-
-    def common_id(self, kind: str, element_id: str | None) -> str | None:
-        """Return the common id of an element that a key names, None for none."""
-        return self.matched_ids.common_id(kind, element_id) if element_id else None
-
-    def common_ids(self, kind: str, element_ids: Sequence[str]) -> frozenset[str]:
-        """Return the common ids of the elements that a list names; its order says nothing."""
-        return frozenset(self.matched_ids.common_id(kind, element_id) for element_id in element_ids)
-
-    @cached_property
-    def nodes_by_component(self) -> Mapping[str, list[Node]]:
-        """Return for each component its nodes, planned ones included."""
-        nodes_of_component: dict[str, list[Node]] = {}
-        for node in self.architecture.nodes.values():
-            for component in node.implements:
-                nodes_of_component.setdefault(component, []).append(node)
-        return nodes_of_component
-
-    @cached_property
-    def single_node_components(self) -> frozenset[str]:
-        """Return the components that have exactly one node: it exposes all their ports, whether or not it says so."""
-        return frozenset(name for name, nodes in self.nodes_by_component.items() if len(nodes) == 1)
-
-    @cached_property
-    def told_components(self) -> frozenset[str]:
-        """Return the components that say themselves what their only node says of timing and ports."""
-        return frozenset(
-            name
-            for name in self.single_node_components
-            if self.matched_ids.common_id("component", name) not in self.split_components
-        )
-
-
-@dataclass(frozen=True, slots=True)
-class KeySpec:
-    """One key of a kind. A name that ends in a dot stands for all keys that begin with it: `read` returns a mapping
-    from the rest of the key to the value.
-
-    `read` returns the value in normal form: equal values mean the same, however they are written. Without it the value
-    is the attribute of the same name.
-    """
-
-    name: str
-    read: Callable[[Any, ReadContext], Any] | None = None
-    effect: Effect = Effect.TIMING
-    worsening: Worsening = Worsening.NEVER
-    refers_to: str | None = None
-    """The kind of the elements that the value names."""
-    noun: str = ""
-    """What sentences call the key, if not by its own name."""
-    verb: str = ""
-    """`x` VERB the new value: "belongs to"."""
-    list_verbs: tuple[str, str] | None = None
-    """What the element does with added and with removed items: ("now implements", "no longer implements")."""
-    new_verb: str = ""
-    """The verb with which the sentence about a new element reports the key; empty if it does not."""
-    is_prose: bool = False
-    """Whether the value is a text of several lines, of which sentences only say that it changed."""
-    inner: tuple[KeySpec, ...] = ()
-    """The keys below a name that ends in a dot, if they are known: without the name in front."""
-
-    def value_of(self, element: object, context: ReadContext) -> object:
-        """Return the value of the key in normal form."""
-        return self.read(element, context) if self.read else getattr(element, self.name)
+from archgen.language.comparison_tables import KIND_EFFECTS
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,16 +44,15 @@ def _always(_element: object) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class KindSpec:
-    """One kind of element. `elements` lists those of a version by id; None: they are found with other elements.
-
-    `effect` limits that of the keys: a kind of which nothing can affect timing needs no key that says so.
-    """
+    """One kind of element. `elements` lists those of a version by id; None: they are found with other elements."""
 
     name: str
     heading: str | None
     """The heading of its changes in a report, None for what is inside of groups."""
-    keys: tuple[KeySpec, ...] = ()
-    effect: Effect = Effect.TIMING
+    own_keys: tuple[KeySpec, ...] = ()
+    """What is compared beside the keys that the description of the language has."""
+    own_effect: Effect = Effect.TIMING
+    """How far a change reaches where the description does not have the kind."""
     elements: Callable[[ArchitectureVersion], Mapping[str, Any]] | None = None
     features: tuple[FeatureSpec, ...] = ()
     """None at all: elements of the kind are never recognised under another id."""
@@ -176,8 +74,23 @@ class KindSpec:
     """Returns the common ids of the components behind an element."""
     is_declared: Callable[[Any], bool] = _always
     """False for what exists without a declaration (a type that is only used)."""
+    like: str = ""
+    """The described kind whose keys it has, if not its own."""
+    without: frozenset[str] = frozenset()
+    """The described keys that it does not have, or that are among its own."""
     key_table: dict[str, KeySpec] = field(default_factory=dict)
     """Filled by `find_key`."""
+
+    @property
+    def keys(self) -> tuple[KeySpec, ...]:
+        """Return all keys, the described ones first."""
+        return (*derive_keys(self.like or self.name, self.without), *self.own_keys)
+
+    @property
+    def effect(self) -> Effect:
+        """Return how far a change of an element reaches at most; a key reaches no farther."""
+        effect = KIND_EFFECTS.get(self.name)
+        return Effect[effect.upper()] if effect else self.own_effect
 
     @property
     def kind_word(self) -> str:
@@ -192,21 +105,16 @@ class KindSpec:
     def find_key(self, name: str) -> KeySpec:
         """Return what the table says of a key of a change."""
         if name not in self.key_table:
-            self.key_table[name] = _find_key(self.keys, name)
+            # A comparison made elsewhere may have any key: it may affect everything.
+            self.key_table[name] = _find_key(self.keys, name) or KeySpec(name)
         return self.key_table[name]
 
 
-def _stands_for(key: KeySpec, name: str) -> bool:
-    return key.name == name or (key.name.endswith(".") and name.startswith(key.name))
-
-
-def _find_key(keys: Sequence[KeySpec], name: str) -> KeySpec:
+def _find_key(keys: Sequence[KeySpec], name: str) -> KeySpec | None:
     for key in keys:
         # "qos" stands for all keys below it: their changes are reported as one.
         if name in {key.name, key.name.removesuffix(".")}:
             return key
         if key.name.endswith(".") and name.startswith(key.name):
-            inner_name = name.removeprefix(key.name)
-            return next((inner for inner in key.inner if _stands_for(inner, inner_name)), key)
-    # A comparison made elsewhere may have any key: it may affect everything.
-    return KeySpec(name)
+            return _find_key(key.inner, name.removeprefix(key.name)) or key
+    return None

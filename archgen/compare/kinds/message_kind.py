@@ -8,8 +8,9 @@ from typing import NamedTuple, TypeVar
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.element_likeness import letter_pairs
 from archgen.compare.element_relations import ElementRelations, project_messages
-from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext, Worsening
-from archgen.compare.kinds.shared_keys import mark_values
+from archgen.compare.kinds.key_spec import Effect, KeySpec, ReadContext, Worsening
+from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec
+from archgen.compare.kinds.shared_features import mark_values
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField
 

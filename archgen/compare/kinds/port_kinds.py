@@ -2,24 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.element_likeness import letter_pairs
-from archgen.compare.kinds.component_keys import list_port_holders
-from archgen.compare.kinds.frame_kind import frame_reference
-from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext, Worsening
-from archgen.compare.kinds.promise_keys import OUTPUT_KEYS
-from archgen.compare.kinds.shared_keys import (
-    ANNOTATIONS,
-    DESCRIPTION,
-    URLS,
-    mark_values,
-    prose_key,
-    text_feature,
-)
-from archgen.model.component import Input, Output
+from archgen.compare.kinds.key_spec import ReadContext, key_values
+from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec
+from archgen.compare.kinds.shared_features import list_port_holders, mark_values, text_feature
+from archgen.compare.normal_values import drop_unset_values
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component, Input, Output
 
 
 def _port_owner(port: Input | Output, context: ReadContext) -> str | None:
@@ -30,12 +23,6 @@ def _port_parent(port: Input | Output, context: ReadContext) -> tuple[str, str]:
     return ("component", context.matched_ids.common_id("component", port.component))
 
 
-_PORT_KEYS = (
-    KeySpec("medium", lambda port, _: port.medium if port.medium_written else None),
-    prose_key("external"),
-    DESCRIPTION,
-    URLS,
-)
 _PORT_FEATURES = (
     FeatureSpec("name", 2, lambda _, port: letter_pairs(port.name)),
     FeatureSpec("type", 4, lambda _, port: mark_values(port.type)),
@@ -45,24 +32,12 @@ _PORT_FEATURES = (
 
 
 def _make_port_kind(
-    name: str,
-    elements: Callable[[ArchitectureVersion], Mapping[str, Any]],
-    type_verb: str,
-    own_keys: Iterable[KeySpec],
-    other_ends: FeatureSpec,
+    name: str, elements: Callable[[ArchitectureVersion], Mapping[str, Any]], other_ends: FeatureSpec
 ) -> KindSpec:
     """Make the kind of a port: what inputs and outputs have in common, and what only one of the two has."""
     return KindSpec(
         name,
         None,
-        (
-            KeySpec(
-                "type", lambda port, context: context.common_id("type", port.type), refers_to="type", verb=type_verb
-            ),
-            *_PORT_KEYS,
-            *own_keys,
-            *ANNOTATIONS,
-        ),
         elements=elements,
         features=(*_PORT_FEATURES, other_ends),
         has_path_id=True,
@@ -77,8 +52,6 @@ def _make_port_kind(
 OUTPUT = _make_port_kind(
     "output",
     lambda version: version.architecture.outputs,
-    "carries",
-    (frame_reference("is given in"), *OUTPUT_KEYS),
     FeatureSpec(
         "readers",
         5,
@@ -90,15 +63,39 @@ OUTPUT = _make_port_kind(
 INPUT = _make_port_kind(
     "input",
     lambda version: version.architecture.inputs,
-    "expects",
-    (
-        KeySpec("optional", lambda port, _: port.optional or None, Effect.SYSTEM),
-        KeySpec("freshness", worsening=Worsening.LESS, verb="must be no older than"),
-        frame_reference("is expected in"),
-    ),
     FeatureSpec(
         "sources",
         5,
         lambda relations, port: relations.common_ids("output", relations.outputs_by_input[port.id]),
     ),
 )
+_OWN_WORDS = tuple(key for key in OUTPUT.keys if key.name in {"version", "promise.", "deprecated."})
+"""What a composed component may say of its outputs itself."""
+
+
+def read_own_output_words(shell: Component, context: ReadContext) -> Mapping[str, object]:
+    """Return what a composed component says itself of its outputs, by `output:key`; what it passes on is told there."""
+    return {
+        f"{output.name}:{key}": value
+        for output in shell.outputs.values()
+        if output.promise or output.version or output.deprecated
+        for key, value in _read_own_words(output, context).items()
+    }
+
+
+def _read_own_words(output: Output, context: ReadContext) -> Mapping[str, object]:
+    given = _find_given(context.architecture, output)
+    given_words = _read_words(given, context) if given else {}
+    return {key: value for key, value in _read_words(output, context).items() if given_words.get(key) != value}
+
+
+def _read_words(output: Output, context: ReadContext) -> dict[str, object]:
+    """Return what is said of an output that a composed component may say itself, too, by the keys of its kind."""
+    return drop_unset_values(key_values(_OWN_WORDS, output, context))
+
+
+def _find_given(architecture: Architecture, output: Output) -> Output | None:
+    """Return the one output that an output of a composed component passes on, None for none and for several."""
+    targets = architecture.shell_ports.get(f"output {output.id}", ())
+    component = architecture.find_component(targets[0].rpartition(".")[0]) if len(targets) == 1 else None
+    return component.outputs.get(targets[0].rpartition(".")[2]) if component else None

@@ -1,39 +1,23 @@
-"""What runs where (hosts, containers, resources, links), and what the project says across all of it: chains, policies, views."""
+"""What runs where (hosts, containers, resources, links), and what is said across all of it: frames, chains, policies, views."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from operator import attrgetter
-from typing import Any
-
+from archgen.compare.compared_elements import ElementKey
 from archgen.compare.element_likeness import word_set
 from archgen.compare.element_relations import ElementRelations
-from archgen.compare.kinds.frame_kind import FRAME
-from archgen.compare.kinds.kind_spec import Effect, FeatureSpec, KeySpec, KindSpec, ReadContext, Worsening
-from archgen.compare.kinds.shared_keys import (
-    ANNOTATIONS,
-    DESCRIPTION,
-    LAYOUT,
+from archgen.compare.kinds.key_spec import KeySpec, ReadContext, Worsening
+from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec
+from archgen.compare.kinds.shared_features import (
     NAME_FEATURES,
-    TAGS,
-    TITLE,
     mark_values,
-    requirements_key,
+    nodes_feature,
+    reference_feature,
     text_feature,
+    value_feature,
 )
-from archgen.compare.kinds.variant_kind import VARIANT
-from archgen.compare.normal_values import parameter_leaves
-from archgen.model.architecture import Chain, Policy
-from archgen.model.deployment import Container, Host, Resource
-
-_HOST_OF = KeySpec(
-    "host",
-    lambda element, context: context.common_id("host", element.host),
-    worsening=Worsening.ALWAYS,
-    refers_to="host",
-    verb="runs on",
-)
-_SCHEDULING = KeySpec("scheduling", worsening=Worsening.ALWAYS)
+from archgen.model.architecture import Chain
+from archgen.model.coordinate_frames import Frame
+from archgen.model.deployment import Host, Resource
 
 
 def _mark_containers(relations: ElementRelations, host: Host) -> frozenset[str]:
@@ -44,65 +28,26 @@ def _mark_containers(relations: ElementRelations, host: Host) -> frozenset[str]:
 HOST = KindSpec(
     "host",
     "Hosts",
-    (
-        TITLE,
-        KeySpec("cores", worsening=Worsening.LESS),
-        _SCHEDULING,
-        KeySpec(
-            "scheduling.",
-            lambda host, _: {str(core): order for core, order in host.core_scheduling.items()},
-            worsening=Worsening.ALWAYS,
-        ),
-        DESCRIPTION,
-        TAGS,
-        *ANNOTATIONS,
-    ),
     elements=lambda version: version.architecture.hosts,
     features=(
         *NAME_FEATURES,
-        FeatureSpec(
-            "nodes",
-            8,
-            lambda relations, host: relations.common_ids("node", relations.nodes_by_place[f"host:{host.id}"]),
-        ),
+        nodes_feature("host", 8),
         FeatureSpec("containers", 2, _mark_containers),
-        FeatureSpec("cores", 1, lambda _, host: mark_values(host.cores)),
+        value_feature("cores", 1, "cores"),
         text_feature(1, "description"),
     ),
 )
 
 
-def _read_parameters(container: Container, _context: ReadContext) -> Mapping[str, object]:
-    return dict(leaf for name, value in container.parameters.items() for leaf in parameter_leaves(name, value))
-
-
 CONTAINER = KindSpec(
     "container",
     "Containers",
-    (
-        TITLE,
-        _HOST_OF,
-        KeySpec("threads", worsening=Worsening.LESS),
-        _SCHEDULING,
-        KeySpec("name", effect=Effect.SYSTEM),
-        KeySpec("namespace", lambda each, _: None if each.namespace == "/" else each.namespace, Effect.SYSTEM),
-        KeySpec("package", effect=Effect.SYSTEM),
-        KeySpec("executable", effect=Effect.SYSTEM),
-        KeySpec("parameters.", _read_parameters, Effect.SYSTEM),
-        *ANNOTATIONS,
-    ),
     elements=lambda version: version.architecture.containers,
     features=(
         *NAME_FEATURES,
-        FeatureSpec(
-            "nodes",
-            5,
-            lambda relations, container: relations.common_ids(
-                "node", relations.nodes_by_place[f"container:{container.id}"]
-            ),
-        ),
-        FeatureSpec("host", 1, lambda _, container: mark_values(container.host)),
-        FeatureSpec("threads", 1, lambda _, container: mark_values(container.threads)),
+        nodes_feature("container", 5),
+        value_feature("host", 1, "host"),
+        value_feature("threads", 1, "threads"),
     ),
 )
 
@@ -114,45 +59,30 @@ def _mark_users(relations: ElementRelations, resource: Resource) -> frozenset[st
 RESOURCE = KindSpec(
     "resource",
     "Resources",
-    (TITLE, _HOST_OF, _SCHEDULING, *ANNOTATIONS),
     elements=lambda version: version.architecture.resources,
     features=(
         *NAME_FEATURES,
         FeatureSpec("users", 5, _mark_users),
-        FeatureSpec("host", 1, lambda _, resource: mark_values(resource.host)),
+        value_feature("host", 1, "host"),
     ),
+)
+# Those ends in the key `connects` that are components.
+_DEVICES = KeySpec(
+    "devices",
+    lambda link, context: context.common_ids("component", link.devices),
+    worsening=Worsening.ALWAYS,
+    refers_to="component",
+    list_verbs=("now connects", "no longer connects"),
+    new_verb="connects",
 )
 LINK = KindSpec(
     "link",
     "Links",
-    (
-        TITLE,
-        KeySpec(
-            "connects",
-            lambda link, context: context.common_ids("host", link.connects),
-            worsening=Worsening.ALWAYS,
-            refers_to="host",
-            list_verbs=("now connects", "no longer connects"),
-            new_verb="connects",
-        ),
-        KeySpec(
-            "devices",
-            lambda link, context: context.common_ids("component", link.devices),
-            worsening=Worsening.ALWAYS,
-            refers_to="component",
-            list_verbs=("now connects", "no longer connects"),
-            new_verb="connects",
-        ),
-        KeySpec("protocol", effect=Effect.SYSTEM),
-        KeySpec("bandwidth", worsening=Worsening.LESS),
-        KeySpec("latency.best", lambda link, _: link.best, worsening=Worsening.MORE, noun="best latency"),
-        KeySpec("latency.worst", lambda link, _: link.worst, worsening=Worsening.MORE, noun="worst latency"),
-        *ANNOTATIONS,
-    ),
+    (_DEVICES,),
     elements=lambda version: version.architecture.links,
     features=(
         *NAME_FEATURES,
-        FeatureSpec("connects", 4, lambda relations, link: relations.common_ids("host", link.connects)),
+        reference_feature("connects", 4, "host", "connects"),
         FeatureSpec(
             "figures", 2, lambda _, link: mark_values(link.bandwidth, f"best {link.best}", f"worst {link.worst}")
         ),
@@ -160,8 +90,50 @@ LINK = KindSpec(
 )
 
 
-def _read_waypoints(chain: Chain, context: ReadContext) -> tuple[str, ...]:
-    return tuple(context.matched_ids.common_id(point.kind, point.id) for point in chain.through)
+def _find_writing_owner(frame: Frame, context: ReadContext) -> str | None:
+    """Return the partner who owns what writes a frame, else what holds it."""
+    architecture = context.architecture
+    component = architecture.components.get(
+        (frame.by if frame.by_kind == "component" else None) or frame.component or ""
+    )
+    node = architecture.nodes.get(frame.by or "") if frame.by_kind == "node" else None
+    writer = node or component
+    return context.common_id("partner", writer.owner) if writer else None
+
+
+def _list_writers(frame: Frame, context: ReadContext) -> tuple[str, ...]:
+    component = frame.by if frame.by_kind == "component" else None
+    return (context.matched_ids.common_id("component", component),) if component else ()
+
+
+def _find_frame_holder(frame: Frame, context: ReadContext) -> ElementKey | None:
+    return ("component", context.matched_ids.common_id("component", frame.component)) if frame.component else None
+
+
+def _mark_frames_below(relations: ElementRelations, frame: Frame) -> frozenset[str]:
+    return frozenset(relations.users_by_element[f"below:{frame.id}"])
+
+
+def _mark_frame_ports(relations: ElementRelations, frame: Frame) -> frozenset[str]:
+    ports = relations.users_by_element[f"frame:{frame.id}"]
+    return relations.common_ids("input", ports) | relations.common_ids("output", ports)
+
+
+FRAME = KindSpec(
+    "frame",
+    "Frames",
+    elements=lambda version: version.architecture.frames,
+    features=(
+        *NAME_FEATURES,
+        FeatureSpec("ports", 4, _mark_frame_ports),
+        FeatureSpec("children", 3, _mark_frames_below),
+        value_feature("parent", 2, "parent"),
+        FeatureSpec("by", 2, lambda relations, frame: relations.common_ids(frame.by_kind, [frame.by])),
+    ),
+    parent=_find_frame_holder,
+    owner=_find_writing_owner,
+    components=_list_writers,
+)
 
 
 def _mark_waypoints(relations: ElementRelations, chain: Chain) -> frozenset[str]:
@@ -171,59 +143,20 @@ def _mark_waypoints(relations: ElementRelations, chain: Chain) -> frozenset[str]
 CHAIN = KindSpec(
     "chain",
     "Chains",
-    (
-        TITLE,
-        KeySpec(
-            "through",
-            _read_waypoints,
-            worsening=Worsening.ALWAYS,
-            list_verbs=("now leads through", "no longer leads through"),
-            new_verb="leads through",
-        ),
-        KeySpec("deadline", worsening=Worsening.LESS, verb="must end within", new_verb="must end within"),
-        requirements_key(lambda chain: chain.requirements),
-        *ANNOTATIONS,
-    ),
     elements=lambda version: version.architecture.chains,
     features=(
         *NAME_FEATURES,
         FeatureSpec("through", 6, _mark_waypoints),
-        FeatureSpec("deadline", 1, lambda _, chain: mark_values(chain.deadline)),
+        value_feature("deadline", 1, "deadline"),
     ),
 )
-
-
-def _read_selector(read_text: Callable[[Any], str]) -> Callable[[Any, ReadContext], str | None]:
-    """Return a reader of a selector, with the ids of the second version; None where none is written."""
-    return lambda element, context: context.matched_ids.rename_in_text(" ".join(read_text(element).split())) or None
-
-
-def _read_demand(policy: Policy, context: ReadContext) -> Mapping[str, object]:
-    demand = policy.require
-    if demand is None:
-        return {}
-    selectors = {key: _read_selector(attrgetter(key))(demand, context) for key in ("of", "inputs_from")}
-    return {**selectors, "guarded_by": demand.guarded_by}
-
-
-def _read_accepted(policy: Policy, context: ReadContext) -> Mapping[str, object]:
-    return {str(context.common_id("input", name)): reason for name, reason in policy.accepted.items()}
 
 
 POLICY = KindSpec(
     "policy",
     "Policies",
-    (
-        TITLE,
-        KeySpec("forbid.from", _read_selector(lambda policy: policy.forbid_from), noun="forbidden source"),
-        KeySpec("forbid.to", _read_selector(lambda policy: policy.forbid_to), noun="forbidden target"),
-        KeySpec("require.", _read_demand),
-        KeySpec("accepted.", _read_accepted),
-        *ANNOTATIONS,
-    ),
-    Effect.SYSTEM,
-    lambda version: version.architecture.policies,
-    (
+    elements=lambda version: version.architecture.policies,
+    features=(
         *NAME_FEATURES,
         FeatureSpec(
             "forbids",
@@ -234,20 +167,23 @@ POLICY = KindSpec(
         ),
     ),
 )
+VARIANT = KindSpec(
+    "variant",
+    "Variants",
+    elements=lambda version: version.architecture.variants,
+    features=(
+        *NAME_FEATURES,
+        # Where it writes counts more than what it writes: a variant may be renamed and changed at once.
+        FeatureSpec("places", 8, lambda _, variant: mark_values(*(each.path for each in variant.changes))),
+        FeatureSpec("changes", 2, lambda _, variant: mark_values(*(f"{c.path}: {c.value}" for c in variant.changes))),
+        FeatureSpec("leaves out", 3, lambda _, variant: mark_values(variant.without, *variant.drop)),
+        reference_feature("base", 0.5, "variant", "of"),
+    ),
+)
 VIEW = KindSpec(
     "view",
     "Views",
-    (
-        TITLE,
-        KeySpec("show", _read_selector(lambda view: view.show), noun="selector"),
-        KeySpec("colour"),
-        KeySpec("level", lambda view, _: None if view.level == "functional" else view.level),
-        KeySpec("depth"),
-        LAYOUT,
-        *ANNOTATIONS,
-    ),
-    Effect.TEXT,
-    lambda version: version.architecture.views,
-    (*NAME_FEATURES, FeatureSpec("show", 5, lambda _, view: word_set(view.show))),
+    elements=lambda version: version.architecture.views,
+    features=(*NAME_FEATURES, FeatureSpec("show", 5, lambda _, view: word_set(view.show))),
 )
 SYSTEM_KINDS = (HOST, CONTAINER, RESOURCE, LINK, FRAME, CHAIN, POLICY, VARIANT, VIEW)

@@ -1,0 +1,130 @@
+"""What the table of kinds says of each key of an element, and how values are read in normal form."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from enum import Enum, IntEnum, auto
+from functools import cached_property
+from typing import Any
+
+from archgen.compare.architecture_version import ArchitectureVersion
+from archgen.compare.matched_ids import MatchedIds
+from archgen.frozen import dataclass
+from archgen.model.architecture import Architecture
+from archgen.model.node import Node
+
+
+class Effect(IntEnum):
+    """How far a change reaches: only texts and pictures, the system, or also its timing."""
+
+    TEXT = 0
+    SYSTEM = 1
+    TIMING = 2
+
+
+class Worsening(Enum):
+    """Which changes of a value can make a figure of timing worse."""
+
+    NEVER = auto()
+    LESS = auto()
+    MORE = auto()
+    ALWAYS = auto()
+
+
+class ReadContext:
+    """One version while its elements are read. `matched_ids` gives the ids of the second version."""
+
+    def __init__(
+        self, version: ArchitectureVersion, matched_ids: MatchedIds, split_components: frozenset[str] = frozenset()
+    ) -> None:
+        self.version = version
+        self.matched_ids = matched_ids
+        self.split_components = split_components
+        """Components with one node in one version and several in the other, by common ids: both versions compare them
+        by their nodes, or else their timing and ports would change their place, not their meaning."""
+
+    @property
+    def architecture(self) -> Architecture:
+        """Return the architecture of the version."""
+        return self.version.architecture
+
+    def common_id(self, kind: str, element_id: str | None) -> str | None:
+        """Return the common id of an element that a key names, None for none."""
+        return self.matched_ids.common_id(kind, element_id) if element_id else None
+
+    def common_ids(self, kind: str, element_ids: Sequence[str]) -> frozenset[str]:
+        """Return the common ids of the elements that a list names; its order says nothing."""
+        return frozenset(self.matched_ids.common_id(kind, element_id) for element_id in element_ids)
+
+    @cached_property
+    def nodes_by_component(self) -> Mapping[str, list[Node]]:
+        """Return for each component its nodes, planned ones included."""
+        nodes_of_component: dict[str, list[Node]] = {}
+        for node in self.architecture.nodes.values():
+            for component in node.implements:
+                nodes_of_component.setdefault(component, []).append(node)
+        return nodes_of_component
+
+    @cached_property
+    def single_node_components(self) -> frozenset[str]:
+        """Return the components that have exactly one node: it exposes all their ports, whether or not it says so."""
+        return frozenset(name for name, nodes in self.nodes_by_component.items() if len(nodes) == 1)
+
+    @cached_property
+    def told_components(self) -> frozenset[str]:
+        """Return the components that say themselves what their only node says of timing and ports."""
+        return frozenset(
+            name
+            for name in self.single_node_components
+            if self.matched_ids.common_id("component", name) not in self.split_components
+        )
+
+
+Reader = Callable[[Any, ReadContext], Any]
+"""What reads a value off an element, in normal form."""
+
+
+@dataclass(frozen=True, slots=True)
+class KeySpec:
+    """One key of a kind, most of them as the description of the language has them (`described_keys`). A name that ends in
+    a dot stands for all keys that begin with it: `read` returns a mapping from the rest of the key to the value.
+
+    `read` returns the value in normal form: equal values mean the same, however they are written. Without it the value
+    is the attribute of the same name.
+    """
+
+    name: str
+    read: Reader | None = None
+    effect: Effect = Effect.TIMING
+    worsening: Worsening = Worsening.NEVER
+    refers_to: str | None = None
+    """The kind of the elements that the value names."""
+    noun: str = ""
+    """What sentences call the key, if not by its own name."""
+    verb: str = ""
+    """`x` VERB the new value: "belongs to"."""
+    list_verbs: tuple[str, str] | None = None
+    """What the element does with added and with removed items: ("now implements", "no longer implements")."""
+    new_verb: str = ""
+    """The verb with which the sentence about a new element reports the key; empty if it does not."""
+    is_prose: bool = False
+    """Whether the value is a text of several lines, of which sentences only say that it changed."""
+    inner: tuple[KeySpec, ...] = ()
+    """The keys below a name that ends in a dot, if they are known: without the name in front."""
+
+    def value_of(self, element: object, context: ReadContext) -> object:
+        """Return the value of the key in normal form."""
+        return self.read(element, context) if self.read else getattr(element, self.name)
+
+
+def key_values(keys: Sequence[KeySpec], element: object, context: ReadContext) -> dict[str, object]:
+    """Return the values of all keys of an element by name."""
+    values: dict[str, object] = {}
+    for key in keys:
+        value = key.value_of(element, context)
+        if not key.name.endswith("."):
+            values[key.name] = value
+        elif value:
+            # Such a key reads a mapping, whatever its element; of most elements it is empty.
+            values.update({f"{key.name}{name}": inner for name, inner in value.items()})  # type: ignore[attr-defined]
+    return values

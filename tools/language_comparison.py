@@ -1,0 +1,201 @@
+"""Write `archgen/language/comparison_tables.py`: how a comparison of two versions reads, weighs and calls each key."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from language_description import SLICE, Description, Part, PlainData, list_accepted
+from language_tables import WIDTH, wrap_items
+
+EFFECTS = ("text", "system", "timing")
+"""How far a change reaches, from the least."""
+_FORMS = frozenset({"title", "prose", "layout", "properties", "hints", "value", "mapping"})
+"""The normal forms that a description names; the others follow from what a part accepts."""
+_PLAIN_FORMS = frozenset({"value", "layout"})
+"""Forms of mappings that are compared as a whole."""
+_CHOICES = {"effect": frozenset(EFFECTS), "worse": frozenset({"less", "more", "always"}), "form": _FORMS}
+_SENTENCE_WORDS = ("noun", "verb", "verbs", "new_verb")
+_SHARED_WORDS = frozenset({"effect", "worse", "names", "offers", "form", *_SENTENCE_WORDS})
+"""What a key has from its type where it does not say it."""
+_OWN_WORDS = frozenset({"attribute", "default"})
+_TABLE_WORDS = ("form", "inner", *sorted(_OWN_WORDS), "names", "effect", "worse", *_SENTENCE_WORDS)
+_OTHER_KINDS = frozenset({"message"})
+"""Kinds of elements that a key may name although no file lists them: they follow from what other elements say."""
+_VERB_COUNT = 2
+_LIST_FORMS = {"counts": "list", "headed": "value"}
+_HEAD = '''\
+"""How two versions are compared, as tables. Written by `make language` from the description in `language/`: edit that.
+
+Without an `effect` a change reaches as far as timing; without `worse` it makes no figure worse; without a `form` the value
+is compared as it is. A name with a dot stands for all keys that begin with it. `language/README.md` explains each word.
+"""
+
+# fmt: off
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Literal, TypedDict
+
+Reach = Literal["text", "system", "timing"]
+
+
+class KeyFacts(TypedDict, total=False):
+    """What the comparison of a key needs to know."""
+
+    form: str
+    inner: str
+    attribute: str
+    default: str | int | tuple[str, ...]
+    names: str
+    effect: Reach
+    worse: Literal["less", "more", "always"]
+    noun: str
+    verb: str
+    verbs: tuple[str, str]
+    new_verb: str
+
+
+'''
+Facts = dict[str, PlainData]
+
+
+def make_comparison_tables(description: Description) -> str:
+    """Return the text of the module."""
+    compared = _list_compared(description)
+    effects = [f'"{kind}": "{description.kinds[kind]["effect"]}"' for kind in compared]
+    lines = [
+        f"{_HEAD}KIND_EFFECTS: Mapping[str, Reach] = {{",
+        *wrap_items(effects, "    "),
+        "}",
+        '"""How far a change of an element of each kind reaches at most."""',
+        "KEY_FACTS: Mapping[str, Mapping[str, KeyFacts]] = {",
+        *(line for kind in compared for line in _format_kind(kind, list_key_facts(description, kind))),
+        "}",
+        '"""What is compared of each kind, in the order of its keys."""',
+    ]
+    return "\n".join([*lines, ""])
+
+
+def _list_compared(description: Description) -> list[str]:
+    """Return the kinds that are compared key by key: those that say how far a change of them reaches."""
+    return [kind for kind, part in description.kinds.items() if "effect" in part and "form" not in part]
+
+
+def list_key_facts(description: Description, kind: str) -> Mapping[str, Facts]:
+    """Return what a comparison knows of each key of a kind, but for those whose changes are told elsewhere."""
+    return {
+        name: _gather_facts(description, kind, said)
+        for key_name, key in description.keys_of(kind).items()
+        if "told" not in key
+        for name, said in _list_rows(description, key_name, key)
+    }
+
+
+def _list_rows(description: Description, name: str, key: Part) -> Iterator[tuple[str, Part]]:
+    """Yield a key, or what stands for all keys below it, with what is said of it: what it says itself goes over its type.
+
+    It is both where a scalar may stand there that is no short form; those below have no words but the type's.
+    """
+    part = description.type_of(key)
+    shared = {word: part[word] for word in _SHARED_WORDS if word in part}
+    said = {**shared, **{word: value for word, value in key.items() if word in {*_SHARED_WORDS, *_OWN_WORDS}}}
+    accepted = set(list_accepted(part)) - {"null"}
+    is_mapping = "object" in accepted and said.get("form") not in _PLAIN_FORMS
+    is_both = is_mapping and accepted != {"object"} and "short" not in part
+    if not is_mapping or is_both:
+        form = said.get("form", "mapping")
+        yield name, {**said, "form": _find_plain_form(part, accepted) if form == "mapping" else form}
+    if is_mapping:
+        below = shared if is_both else said
+        is_inner = key.get("type") in _list_compared(description)
+        inner = {"inner": key["type"]} if is_inner else {"form": below.get("form") or _find_form(description, part)}
+        yield f"{name}.", {**below, **inner}
+
+
+def _find_plain_form(part: Part, accepted: set[str]) -> str:
+    if accepted == {"boolean"}:
+        return "flag"
+    return _LIST_FORMS.get(part["order"], "set") if "array" in accepted else "value"
+
+
+def _find_form(description: Description, part: Part) -> str:
+    """Return the form of a mapping: data is compared by its leaves; elements in it want a reader of their own."""
+    if part.get("data"):
+        return "data"
+    entries = part.get("entries")
+    holds_elements = "keys" in part or (isinstance(entries, str) and "keys" in description.parts[entries])
+    return "entries" if holds_elements else "mapping"
+
+
+def _gather_facts(description: Description, kind: str, said: Part) -> Facts:
+    """Return what stands in the table: what goes without saying is left out."""
+    limit = EFFECTS.index(description.kinds[kind]["effect"])
+    effect = EFFECTS[min(limit, EFFECTS.index(said.get("effect", EFFECTS[limit])))]
+    facts = {**said, "effect": effect, "names": said.get("names") or _find_offered_kind(description, said)}
+    unsaid = {"effect": EFFECTS[-1], "names": None, "form": "value"}
+    return {word: facts[word] for word in _TABLE_WORDS if word in facts and facts[word] != unsaid.get(word, "")}
+
+
+def _find_offered_kind(description: Description, said: Part) -> str | None:
+    """Return the kind of the elements in the one section that is offered."""
+    sections = description.keys_of(SLICE)
+    offered = said.get("offers")
+    return (
+        _find_entry_kind(description, sections[offered]) if isinstance(offered, str) and offered in sections else None
+    )
+
+
+def _find_entry_kind(description: Description, section: Part) -> str | None:
+    """Return the kind of the elements that a section lists by id."""
+    entries = description.type_of(section).get("entries")
+    return entries if isinstance(entries, str) and entries in description.kinds else None
+
+
+def find_comparison_faults(description: Description) -> Iterator[str]:
+    """Yield what the description forgets to say for comparisons, a sentence each."""
+    for name, part in (*description.common.items(), *description.parts.items()):
+        yield from _find_word_faults(name, part, description)
+    for kind in description.kinds:
+        for name, key in description.keys_of(kind).items():
+            place = f"{kind}.{name}"
+            yield from _find_word_faults(place, key, description)
+            if kind in _list_compared(description) and not _can_be_read(key, description):
+                yield f"{place}: `effect` says how far a change reaches, or `told` where it is told"
+    for section in description.keys_of(SLICE).values():
+        entry_kind = _find_entry_kind(description, section)
+        part = description.kinds[entry_kind] if entry_kind else {}
+        if part and part.get("element", True) and "effect" not in part:
+            yield f"{entry_kind}: `effect` says how far a change of such an element reaches"
+
+
+def _find_word_faults(place: str, part: Part, description: Description) -> Iterator[str]:
+    for word, choices in _CHOICES.items():
+        if part.get(word, next(iter(choices))) not in choices:
+            yield f"{place}: `{word}` is one of {', '.join(sorted(choices))}"
+    if part.get("names", SLICE) not in description.kinds.keys() | _OTHER_KINDS:
+        yield f"{place}: `names` is a kind, and there is no `{part['names']}`"
+    verbs = part.get("verbs", [""] * _VERB_COUNT)
+    if not isinstance(verbs, list) or len(verbs) != _VERB_COUNT:
+        yield f"{place}: `verbs` are two, for what is added and for what is removed"
+
+
+def _can_be_read(key: Part, description: Description) -> bool:
+    """Whether a comparison knows what to do with a key: the keys below it are compared, or it says what is."""
+    part = description.type_of(key)
+    return "keys" not in part or bool({"form", "effect", "told"} & {*part, *key})
+
+
+def _format_kind(kind: str, rows: Mapping[str, Facts]) -> Iterator[str]:
+    yield f'    "{kind}": {{'
+    for name, facts in rows.items():
+        items = [f'"{word}": {_format_fact(value)}' for word, value in facts.items()]
+        line = f'        "{name}": {{{", ".join(items)}}},'
+        lines = [f'        "{name}": {{', *wrap_items(items, "            "), "        },"]
+        yield from [line] if len(line) <= WIDTH else lines
+    yield "    },"
+
+
+def _format_fact(value: PlainData) -> str:
+    if isinstance(value, list):
+        return f"({', '.join(map(_format_fact, value))}{',' if len(value) == 1 else ''})"
+    return f'"{value}"' if isinstance(value, str) else str(value)
