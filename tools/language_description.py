@@ -60,6 +60,8 @@ _OTHER_WORDS = frozenset(
             "named_by_id",
             "element",
             "see",
+            "unit",
+            "unrecorded",
         ),
     }
 )
@@ -130,12 +132,14 @@ def load_description(folder: Path = FOLDER) -> Description:
     """Read the files of the description. Raise DescriptionError for YAML that cannot be read."""
     kinds: dict[str, Part] = {}
     for name in KIND_FILES:
-        for kind, part in _read_file(folder / f"{name}.yaml").items():
+        for kind, part in read_description_file(folder / f"{name}.yaml").items():
             if kind in kinds:
                 message = f"{name}.yaml: the kind `{kind}` stands in another file, too"
                 raise DescriptionError(message)
             kinds[kind] = part
-    description = Description(_read_file(folder / "common.yaml"), _read_file(folder / "types.yaml"), kinds)
+    description = Description(
+        read_description_file(folder / "common.yaml"), read_description_file(folder / "types.yaml"), kinds
+    )
     for part in description.types.values():
         _list_named_kinds(part, description)
     if twice := description.types.keys() & kinds.keys():
@@ -152,7 +156,8 @@ def _list_named_kinds(part: Part, description: Description) -> None:
         _list_named_kinds(part["items"], description)
 
 
-def _read_file(path: Path) -> Part:
+def read_description_file(path: Path) -> Part:
+    """Return what a file of the description says. Raise DescriptionError for YAML that cannot be read."""
     document, diagnostics = parse_yaml(path.name, path.read_text(encoding="utf-8"))
     if diagnostics or document is None:
         message = "\n".join(f"{each.span}: {each.message}" for each in diagnostics)

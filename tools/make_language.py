@@ -9,6 +9,7 @@ from pathlib import Path
 
 from language_description import DescriptionError, add_rule_settings, find_faults, load_description, make_schema
 from language_page import renew_page
+from language_record import load_record, make_record_schema, make_record_tables
 from language_tables import make_tables
 
 from archgen.findings.rule_table import index_rules
@@ -24,11 +25,14 @@ def make_files() -> Mapping[Path, str]:
     if faults := list(find_faults(description)):
         message = "\n".join(faults)
         raise DescriptionError(message)
+    record = load_record(description)
     page = ROOT / "docs" / "language.md"
     return {
         page: renew_page(page.read_text(encoding="utf-8"), description),
         ROOT / "schemas" / "archgen.schema.json": json.dumps(make_schema(description), indent=2) + "\n",
         ROOT / "archgen" / "language" / "language_tables.py": make_tables(description),
+        ROOT / "schemas" / "resolved.schema.json": json.dumps(make_record_schema(record), indent=2) + "\n",
+        ROOT / "archgen" / "language" / "record_tables.py": make_record_tables(record),
     }
 
 

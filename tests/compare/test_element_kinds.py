@@ -6,6 +6,7 @@ reason; an entry that is no longer needed fails, too.
 
 from __future__ import annotations
 
+import contextlib
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
@@ -29,6 +30,8 @@ from archgen.model.variant import Variant
 from archgen.views.elements.element_card import make_card
 from archgen.views.elements.element_names import kinds_by_id
 from archgen.views.lookup import Lookup, make_lookup
+from archgen.views.records import element_record
+from archgen.views.records.record_sources import SOURCES
 from archgen.views.records.resolved_record import make_record
 from tests.running import ROOT
 
@@ -293,12 +296,13 @@ groups:
         inputs: {i: {external: the world}, j: {external: the world}, k: {external: the world}}
         outputs: {p: T}
         timing: {behaviour: event, trigger: {match: [i, j], within: 1 ms}, every: 2, dropped: forgotten, inputs: {k: {wcet: 1 ms, bcet: 0 ms}}}
-      whole: {components: {part: {is: drum, outputs: {o: {external: the world}}}}}
+      whole: {requirements: [R-1], components: {part: {is: drum, outputs: {o: {external: the world}}}}}
       copy: {same_as: drum}
+  h: {components: {d: {outputs: {q: {medium: mqtt}}}, e: {inputs: {q: d.q}}}}
 component_types:
   drum: {is: box<T>, title: D, functionality: F, description: D, owner: certh, version: 3, deprecated: {until: 2999-01-01, use: spare}}
   box: {generic: [X], abstract: true, inputs: {i: {type: X, external: the world}}, outputs: {o: X}, components: {c: C}}
-  spare: {status: adapted, contact: c@d.eu, image: a.png, properties: {p: 1 kg}, hints: {x: {a: 1}}, parameters: {p: 1}, open: [q], operations: {r: T}, frames: {u: {parent: map}}}
+  spare: {status: adapted, contact: c@d.eu, image: a.png, properties: {p: 1 kg}, hints: {x: {a: 1}}, parameters: {p: 1}, open: [q], operations: {r: T}, frames: {u: {parent: map}}, inputs: {u: {}}, outputs: {v: {}}}
 types:
   T: {message: sensor_msgs/msg/Image, comment: C, size: 1 kB, status: planned, frame: map, version: 4, deprecated: {until: 2999-01-01, use: V}, properties: {q: 1}, hints: {x: {a: 1}}}
   S: {request: T, response: T, feedback: T}
@@ -340,8 +344,10 @@ nodes:
     publishes: {o: {topic: /o, own_name: w}}
   m: b
   r: [whole, copy]
+  s: {timing: {rate: 1 Hz}}
+  t: [d, e]
 hosts: {pc: {title: P, cores: 4, scheduling: edf, description: D, tags: [t], properties: {q: 1}, hints: {x: {a: 1}}}, arm: {scheduling: {0: fifo}}}
-containers: {box: {title: B, host: pc, threads: 2, scheduling: fifo, namespace: /s, name: boxes, package: p, executable: e, parameters: {rate: 5}, properties: {q: 1}, hints: {x: {a: 1}}}}
+containers: {bare: pc, box: {title: B, host: pc, threads: 2, scheduling: fifo, namespace: /s, name: boxes, package: p, executable: e, parameters: {rate: 5}, properties: {q: 1}, hints: {x: {a: 1}}}}
 resources: {gpu: {title: G, host: pc, scheduling: fifo, properties: {q: 1}, hints: {x: {a: 1}}}}
 links: {lan: {title: L, connects: [pc, arm, b], protocol: can, bandwidth: 1 Gbit/s, latency: {best: 1 ms, worst: 2 ms}, properties: {q: 1}, hints: {x: {a: 1}}}}
 frames: {map: }
@@ -400,6 +406,19 @@ def test_the_record_of_a_project_that_has_everything_follows_its_schema(lookup: 
     schema = json.loads((ROOT / "schemas" / "resolved.schema.json").read_text(encoding="utf-8"))
     data = json.loads(json.dumps(make_record(lookup)))
     assert [error.message for error in jsonschema_rs.Draft202012Validator(schema).iter_errors(data)] == []
+
+
+def test_every_source_of_the_record_is_needed(lookup: Lookup, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without its source a key is read off the field that is called like it: where that gives the same, there is no need."""
+    lookups = [lookup, make_lookup(pipeline.check_project(ROOT / "examples" / "first_robot").architecture)]
+    whole = [make_record(each) for each in lookups]
+    needless = []
+    for place in list(SOURCES):
+        with monkeypatch.context() as without, contextlib.suppress(AttributeError, TypeError):
+            without.setattr(element_record, "SOURCES", {each: SOURCES[each] for each in SOURCES if each != place})
+            if [make_record(each) for each in lookups] == whole:
+                needless.append(place)
+    assert needless == []
 
 
 def record_keys(record: Mapping[str, Any], kind: str) -> set[str]:

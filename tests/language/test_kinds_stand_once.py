@@ -28,7 +28,7 @@ REASONS = {
     "views/graph_shapes.py": "kinds of pictures, some of which are called like kinds of elements",
     "views/offered_names.py": "sections of which something else than each title is offered",
     "views/pages/report_outline.py": "chapters, some of which are called like sections",
-    "views/records/resolved_record.py": "the order of a record, and what makes each part",
+    "views/records/record_sources.py": "what the record takes from elsewhere than from a field, by part",
 }
 
 
