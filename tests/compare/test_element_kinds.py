@@ -10,7 +10,7 @@ import contextlib
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
-from typing import Any
+from typing import Any, get_args, get_type_hints
 
 import jsonschema_rs
 import pytest
@@ -18,68 +18,34 @@ import pytest
 from archgen import pipeline
 from archgen.compare.kinds import ELEMENT_KINDS, KIND_ORDER, MATCHING_ORDER, Effect, find_effect, find_key
 from archgen.compare.kinds.shared_keys import TIMING_KEYS
-from archgen.model.architecture import Architecture, Chain, Partner, Policy, ProjectInfo, UseCase, View
-from archgen.model.component import Component, ComponentType, Group, Input, Output
-from archgen.model.coordinate_frames import Frame
+from archgen.language.language_tables import SECTION_KINDS
+from archgen.language.record_tables import RECORD_KEYS
+from archgen.model.architecture import Architecture, ProjectInfo
 from archgen.model.declared_timing import Timing
-from archgen.model.deployment import Container, Host, Link, Resource
-from archgen.model.message_types import ConceptualType
-from archgen.model.node import Node
-from archgen.model.requirement import Requirement
-from archgen.model.variant import Variant
 from archgen.views.elements.element_card import make_card
 from archgen.views.elements.element_names import kinds_by_id
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.records import element_record
 from archgen.views.records.record_sources import SOURCES
 from archgen.views.records.resolved_record import make_record
+from tests.language_samples import SCHEMA, complete_project, read_data
 from tests.running import ROOT
 
-SCHEMA = json.loads((ROOT / "schemas" / "archgen.schema.json").read_text(encoding="utf-8"))
-MODEL_CLASSES: Mapping[str, type] = {
-    "project": ProjectInfo,
-    "partner": Partner,
-    "use_case": UseCase,
-    "requirement": Requirement,
-    "component_type": ComponentType,
-    "group": Group,
-    "component": Component,
-    "output": Output,
-    "input": Input,
-    "type": ConceptualType,
-    "node": Node,
-    "host": Host,
-    "container": Container,
-    "resource": Resource,
-    "link": Link,
-    "frame": Frame,
-    "chain": Chain,
-    "policy": Policy,
-    "variant": Variant,
-    "view": View,
-}
+_SETTINGS = frozenset({"library", "property_declaration"})
+"""Kinds with a section that are no part of what is compared: folders, and what the project says of properties."""
 SECTIONS = {
-    "partner": "partners",
-    "use_case": "use_cases",
-    "requirement": "requirements",
-    "component_type": "component_types",
-    "group": "groups",
+    **{kind: section for section, kind in SECTION_KINDS.items() if kind not in _SETTINGS},
     "component": "components",
     "output": "outputs",
     "input": "inputs",
-    "type": "types",
-    "node": "nodes",
-    "host": "hosts",
-    "container": "containers",
-    "resource": "resources",
-    "link": "links",
-    "frame": "frames",
-    "chain": "chains",
-    "policy": "policies",
-    "variant": "variants",
-    "view": "views",
 }
 """Each kind with its section of the architecture."""
+_FIELDS = get_type_hints(Architecture)
+MODEL_CLASSES: Mapping[str, type] = {
+    "project": ProjectInfo,
+    **{kind: get_args(_FIELDS[section])[1] for kind, section in SECTIONS.items()},
+}
+"""The class of each kind: what the architecture maps from the ids of its section."""
 
 NOT_WRITTEN_KINDS = {
     "chapter": "a file of its own",
@@ -291,7 +257,7 @@ groups:
         operations: {reset: {title: R, request: {hard: bool}, response: T, call: asynchronous, visibility: private, description: D}}
         inputs: {i: {external: the world, type: T, medium: digital, optional: true, freshness: 1 s, frame: base, description: D, urls: {a: a.dbc}, properties: {q: 1}, hints: {x: {a: 1}}}}
         outputs: {o: {type: T, external: the world, frame: base, promise: {rate: 1 Hz, max_gap: 2 s, max_age: 3 s, unit: m, frame: base, range: [0, 1]}, version: 2, deprecated: {until: 2999-01-01, use: o2}, description: D, urls: {a: a.dbc}, properties: {q: 1}, hints: {x: {a: 1}}}, o2: {external: the world}}
-        frames: {base: {title: B, parent: map, rate: 10 Hz, properties: {q: 1}, hints: {x: {a: 1}}}, eye: {parent: base, static: true}}
+        frames: {base: {title: B, parent: map, by: a, rate: 10 Hz, properties: {q: 1}, hints: {x: {a: 1}}}, eye: {parent: base, static: true}}
       b:
         inputs: {i: {external: the world}, j: {external: the world}, k: {external: the world}}
         outputs: {p: T}
@@ -358,7 +324,7 @@ variants:
   in: {title: I}
   sim: {title: S, description: D, of: [in], without: "g.whole", drop: [links.lan.title], changes: {hosts: {pc: {cores: 2}}}}
 """
-"""A project in which every kind has every field."""
+"""A project in which every kind has every field that wants a place of its own; `complete_project` adds the others."""
 
 
 def table_keys(kind: str) -> set[str]:
@@ -396,7 +362,8 @@ def test_what_timing_can_be_written_is_compared() -> None:
 @pytest.fixture(scope="module")
 def lookup(tmp_path_factory: pytest.TempPathFactory) -> Lookup:
     file = tmp_path_factory.mktemp("robot") / "robot.yaml"
-    file.write_text(ROBOT, encoding="utf-8")
+    whole = complete_project(read_data(ROBOT), {kind: RECORD_KEYS.get(kind, {}) for kind in MODEL_CLASSES})
+    file.write_text(json.dumps(whole), encoding="utf-8")
     checked = pipeline.check_project(file)
     assert [str(finding) for finding in checked.findings if finding.severity == "error"] == []
     return make_lookup(checked.architecture)

@@ -46,6 +46,10 @@ def test_generated_files_are_fresh(import_tool: Callable[[str], ModuleType]) -> 
             lambda d: d.kinds["host"]["keys"]["cores"].update(type="cuont"),
             "host.cores: there is no type or kind `cuont`",
         ),
+        (
+            lambda d: d.types["flag"].pop("example"),
+            "node.reentrant: neither the key nor its type has an `example` or a `snippet`",
+        ),
         (lambda d: d.types["hosts"].update(entries="hots"), "hosts: there is no type or kind `hots`"),
         (lambda d: d.types["count"].update(biggest=3), "count: `biggest` is no word of a part"),
     ],
