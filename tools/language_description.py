@@ -295,7 +295,8 @@ def find_faults(description: Description) -> Iterator[str]:
         yield from _find_part_faults(kind, part, description)
         for name, key in description.keys_of(kind).items():
             yield from _find_part_faults(f"{kind}.{name}", key, description)
-            if not _make_key_schema(description, key).keys() & {"examples", "defaultSnippets"}:
+            is_known = key.get("type", kind) in description.parts
+            if is_known and not _make_key_schema(description, key).keys() & {"examples", "defaultSnippets"}:
                 yield f"{kind}.{name}: neither the key nor its type has an `example` or a `snippet`"
             if part.get("supporting") and "declares" not in key:
                 yield f"{kind}.{name}: `declares` says whether a file that says only this declares a {kind}"
