@@ -62,6 +62,7 @@ _OTHER_WORDS = frozenset(
             "see",
             "unit",
             "unrecorded",
+            "common_word",
         ),
     }
 )

@@ -75,6 +75,11 @@ def make_tables(description: Description) -> str:
                 {name: _as_tuple(part["offers"]) for name, part in parts.items() if "offers" in part},
                 "Which names of a project fit at a part.",
             ),
+            format_names(
+                "COMMON_SECTIONS",
+                (name for name, key in description.keys_of(SLICE).items() if key.get("common_word")),
+                "Sections that files of other programs may have, too.",
+            ),
             format_table("SECTION_KINDS", sections, "Sections whose keys are ids of elements: the kind of these."),
             format_names(
                 "LISTED_PARTS",

@@ -28,6 +28,7 @@ from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.records import element_record
 from archgen.views.records.record_sources import SOURCES
 from archgen.views.records.resolved_record import make_record
+from archgen.views.search import make_search_entries
 from tests.language_samples import SCHEMA, complete_project, read_data
 from tests.running import ROOT
 
@@ -216,6 +217,33 @@ CARD_ONLY = {
     "message": "that of the type",
     "values": "the kind `message`",
 }
+NOT_ON_CARDS = {
+    "requirement": "urls",
+    "component_type": "autoconnect containers description layout node open performance requirements role tags timing urls",
+    "group": "autoconnect layout urls",
+    "component": "autoconnect components containers description frames from layout node open performance same_as urls",
+    "output": "external from to",
+    "input": "external from optional",
+    "node": "arguments calls description internal language parameter_commands parameter_files plugin publishes remaps "
+    "serves subscribes tags urls",
+    "type": "constants feedback request response status",
+    "host": "tags",
+    "link": "latency",
+    "view": "colour depth layout level",
+    "policy": "accepted forbid require",
+}
+"""Keys that only pages and lists show: a card is short."""
+CARD_WORDS = {
+    "node name": "ROS name",
+    "node namespace": "ROS name",
+    "container name": "ROS name",
+    "container namespace": "ROS name",
+    "requirement verified_by": "verified by",
+}
+"""Keys that a card calls otherwise."""
+NOT_SEARCHED = {"policy": "a rule, not a part of the system"}
+SEARCH_WORDS = {"output": "port", "input": "port"}
+"""Kinds that the search calls otherwise."""
 ROBOT = """\
 archgen: 1
 project: {id: robot, title: Robot, version: "1", description: D, middleware: orocos}
@@ -414,6 +442,27 @@ def test_what_cards_show_is_compared(lookup: Lookup) -> None:
         for fact, _ in make_card(lookup, kind, element_id).facts
     }
     assert [(k, fact) for k, fact in sorted(shown) if fact not in {*table_keys(k), *CARD_ONLY}] == []
+
+
+def test_a_card_shows_each_key_that_is_not_for_pages_alone(lookup: Lookup) -> None:
+    shown: dict[str, set[str]] = {}
+    for element_id, kinds in kinds_by_id(lookup).items():
+        for kind in kinds:
+            card = make_card(lookup, kind, element_id)
+            shown.setdefault(kind.replace(" ", "_"), set()).update(name for name, _ in (*card.facts, *card.lists))
+    hidden = {
+        f"{kind} {key}"
+        for kind in SECTIONS
+        for key in SCHEMA["$defs"][kind]["properties"]
+        if key != "title" and CARD_WORDS.get(f"{kind} {key}", key) not in shown[kind]
+    }
+    assert hidden == {f"{kind} {key}" for kind, keys in NOT_ON_CARDS.items() for key in keys.split()}
+
+
+def test_the_search_finds_elements_of_each_kind(lookup: Lookup) -> None:
+    found = {entry.kind for entry in make_search_entries(lookup, ())}
+    missing_kinds = [kind for kind in SECTIONS if SEARCH_WORDS.get(kind, kind.replace("_", " ")) not in found]
+    assert missing_kinds == list(NOT_SEARCHED)
 
 
 def test_the_kinds_are_those_of_the_model_and_of_the_cards(lookup: Lookup) -> None:
