@@ -6,9 +6,9 @@ import json
 import unicodedata
 from typing import Any
 
-from tests.running import ROOT
+from archgen.language.language_tables import ENTRIES, KEYS, SECTION_KINDS
+from tests.language_samples import SCHEMA, list_elements
 
-SCHEMA = json.loads((ROOT / "schemas" / "archgen.schema.json").read_text(encoding="utf-8"))
 TEXTS = {
     "markup": (
         "<script>alert(1)</script>"
@@ -27,31 +27,8 @@ TEXTS = {
     "long": "w" * 5000,
 }
 """By what they attack: documents and pages; spreadsheets, terminals, workflows and alphabets; layouts."""
-ELEMENTS = {
-    "partners": "partner",
-    "use_cases": "use_case",
-    "actors": "actor",
-    "requirements": "requirement",
-    "groups": "group",
-    "component_types": "component_type",
-    "components": "component",
-    "inputs": "input",
-    "outputs": "output",
-    "performance": "indicator",
-    "nodes": "node",
-    "types": "type",
-    "fields": "field",
-    "constants": "constant",
-    "hosts": "host",
-    "containers": "container",
-    "links": "link",
-    "frames": "frame",
-    "chains": "chain",
-    "views": "view",
-    "policies": "policy",
-    "variants": "variant",
-    "properties": "property_declaration",
-}
+FILLED_KINDS = SCHEMA["$defs"].keys() & {"project", *ENTRIES.values()} & KEYS.keys() - {"parameter", "library"}
+"""Kinds that are filled with text: the project, and what is written by ids; values of parameters are data."""
 NAMES = {
     *(("node", "name"), ("node", "namespace"), ("container", "name"), ("container", "namespace")),
     *(("view", "show"), ("forbid", "from"), ("forbid", "to"), ("variant", "without")),
@@ -155,12 +132,11 @@ def project(text: str) -> dict[str, Any]:
         "properties": {"declared": {"type": "string"}, "chosen": {"of": ["component"], "choices": [text]}},
         "glossary": {kind[:90].strip(): text, "functionality": text},
     }
-    _fill(data["project"], "project", text)
-    for section in ELEMENTS.keys() & data.keys():
-        for element in data[section].values():
-            _fill(element, ELEMENTS[section], text)
-    for element in data["libraries"]["lib"]["component_types"].values():
-        _fill(element, "component_type", text)
+    for section in SECTION_KINDS:
+        data.setdefault(section, {"added": {}})
+    for kind_name, element in list(list_elements(data)):
+        if kind_name in FILLED_KINDS:
+            _fill(element, kind_name, text)
     return data
 
 
@@ -192,10 +168,7 @@ def _component(inputs: dict[str, Any], kind: str, text: str) -> dict[str, Any]:
 def _fill(element: dict[str, Any], kind: str, text: str) -> None:
     for key, part in SCHEMA["$defs"][kind]["properties"].items():
         sort = part.get("$ref", "").rpartition("/")[2]
-        if key in ELEMENTS and isinstance(element.get(key), dict):
-            for inner in element[key].values():
-                _fill(inner, ELEMENTS[key], text)
-        elif key not in element and (kind, key) not in NAMES and (key != "external" or element.get("medium")):
+        if key not in element and (kind, key) not in NAMES and (key != "external" or element.get("medium")):
             filled: dict[str, dict[str, Any]] = {
                 "text": {key: text},
                 "prose": {key: text},

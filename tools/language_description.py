@@ -60,6 +60,9 @@ _OTHER_WORDS = frozenset(
             "named_by_id",
             "element",
             "see",
+            "unit",
+            "unrecorded",
+            "common_word",
         ),
         *("effect", "worse", "form", "attribute", "default", "names", "told", "noun", "verb", "verbs", "new_verb"),
     }
@@ -131,12 +134,14 @@ def load_description(folder: Path = FOLDER) -> Description:
     """Read the files of the description. Raise DescriptionError for YAML that cannot be read."""
     kinds: dict[str, Part] = {}
     for name in KIND_FILES:
-        for kind, part in _read_file(folder / f"{name}.yaml").items():
+        for kind, part in read_description_file(folder / f"{name}.yaml").items():
             if kind in kinds:
                 message = f"{name}.yaml: the kind `{kind}` stands in another file, too"
                 raise DescriptionError(message)
             kinds[kind] = part
-    description = Description(_read_file(folder / "common.yaml"), _read_file(folder / "types.yaml"), kinds)
+    description = Description(
+        read_description_file(folder / "common.yaml"), read_description_file(folder / "types.yaml"), kinds
+    )
     for part in description.types.values():
         _list_named_kinds(part, description)
     if twice := description.types.keys() & kinds.keys():
@@ -153,7 +158,8 @@ def _list_named_kinds(part: Part, description: Description) -> None:
         _list_named_kinds(part["items"], description)
 
 
-def _read_file(path: Path) -> Part:
+def read_description_file(path: Path) -> Part:
+    """Return what a file of the description says. Raise DescriptionError for YAML that cannot be read."""
     document, diagnostics = parse_yaml(path.name, path.read_text(encoding="utf-8"))
     if diagnostics or document is None:
         message = "\n".join(f"{each.span}: {each.message}" for each in diagnostics)
@@ -291,6 +297,9 @@ def find_faults(description: Description) -> Iterator[str]:
         yield from _find_part_faults(kind, part, description)
         for name, key in description.keys_of(kind).items():
             yield from _find_part_faults(f"{kind}.{name}", key, description)
+            is_known = key.get("type", kind) in description.parts
+            if is_known and not _make_key_schema(description, key).keys() & {"examples", "defaultSnippets"}:
+                yield f"{kind}.{name}: neither the key nor its type has an `example` or a `snippet`"
             if part.get("supporting") and "declares" not in key:
                 yield f"{kind}.{name}: `declares` says whether a file that says only this declares a {kind}"
 

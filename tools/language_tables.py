@@ -52,46 +52,51 @@ def make_tables(description: Description) -> str:
             _format_literal("KindName", description.kinds),
             _format_literal("SectionName", keys[SLICE]),
             "",
-            _format_table("KEYS", keys, "The part that stands at each key of each kind."),
-            _format_table("ENTRIES", entries, "Mappings by id: the part of their values."),
-            _format_table(
+            format_table("KEYS", keys, "The part that stands at each key of each kind."),
+            format_table("ENTRIES", entries, "Mappings by id: the part of their values."),
+            format_table(
                 "ITEMS",
                 {name: part["items"] for name, part in parts.items() if "items" in part},
                 "Lists: the part of their items.",
             ),
-            _format_table(
+            format_table(
                 "LIST_ORDERS",
                 orders,
                 "Lists whose order says nothing. `gathered`: both sides may begin one; `headed`: the first item says more.",
             ),
-            _format_names("BARE_PARTS", filter(lambda name: _is_bare(parts[name]), parts), "Values that are no text."),
-            _format_names(
+            format_names("BARE_PARTS", filter(lambda name: _is_bare(parts[name]), parts), "Values that are no text."),
+            format_names(
                 "DATA_PARTS",
                 (name for name, part in parts.items() if part.get("data")),
                 "What other programs read: it stays as it was written, whatever its keys are called.",
             ),
-            _format_table(
+            format_table(
                 "OFFERS",
                 {name: _as_tuple(part["offers"]) for name, part in parts.items() if "offers" in part},
                 "Which names of a project fit at a part.",
             ),
-            _format_table("SECTION_KINDS", sections, "Sections whose keys are ids of elements: the kind of these."),
-            _format_names(
+            format_names(
+                "COMMON_SECTIONS",
+                (name for name, key in description.keys_of(SLICE).items() if key.get("common_word")),
+                "Sections that files of other programs may have, too.",
+            ),
+            format_table("SECTION_KINDS", sections, "Sections whose keys are ids of elements: the kind of these."),
+            format_names(
                 "LISTED_PARTS",
                 (name for name, part in parts.items() if part.get("listed")),
                 "Lists in whose place a scalar is a list of one.",
             ),
-            _format_table(
+            format_table(
                 "SHORT_KEYS",
                 {kind: _as_tuple(part["short"]) for kind, part in description.kinds.items() if "short" in part},
                 "The keys that a scalar or a list in the place of an element stands for.",
             ),
-            _format_table(
+            format_table(
                 "PLAIN_SECTIONS",
                 {kind: section for section, kind in sections.items() if description.kinds[kind].get("named_by_id")},
                 "Kinds of elements that are named by their id alone, not by a path, and their sections.",
             ),
-            _format_table(
+            format_table(
                 "DECLARING_KEYS",
                 declaring,
                 "Keys of which a new element has one, where any other key only adds to one.",
@@ -101,7 +106,7 @@ def make_tables(description: Description) -> str:
                 description.kinds_with("properties"),
                 "Kinds of elements that may have properties and hints.",
             ),
-            _format_table("SUPPORTING_KEYS", supporting, "Keys that say something of an element that others declare."),
+            format_table("SUPPORTING_KEYS", supporting, "Keys that say something of an element that others declare."),
         ]
     )
     return f"{_HEAD}{tables}\n"
@@ -160,7 +165,8 @@ def _format_literal(name: str, values: Iterable[str]) -> str:
     return "\n".join([f"{name} = Literal[", *wrap_items([f'"{value}"' for value in values], "    "), "]"])
 
 
-def _format_names(name: str, values: Iterable[str], says: str) -> str:
+def format_names(name: str, values: Iterable[str], says: str) -> str:
+    """Return the text of a set of names."""
     lines = [
         f"{name}: frozenset[str] = frozenset({{",
         *wrap_items([f'"{value}"' for value in sorted(values)], "    "),
@@ -174,7 +180,8 @@ def _format_tuple(name: str, values: Iterable[str], says: str) -> str:
     return "\n".join([*lines, f'"""{says}"""'])
 
 
-def _format_table(name: str, table: Mapping[str, Any], says: str) -> str:
+def format_table(name: str, table: Mapping[str, Any], says: str) -> str:
+    """Return the text of a table of names, of tuples of them, or of tables of them."""
     first_value = next(iter(table.values()))
     if isinstance(first_value, Mapping):
         annotation = "Mapping[str, str]"

@@ -10,6 +10,7 @@ from pathlib import Path
 from language_comparison import find_comparison_faults, make_comparison_tables
 from language_description import DescriptionError, add_rule_settings, find_faults, load_description, make_schema
 from language_page import renew_page
+from language_record import load_record, make_record_schema, make_record_tables
 from language_tables import make_tables
 
 from archgen.compare.kinds import KIND_ORDER
@@ -26,6 +27,7 @@ def make_files() -> Mapping[Path, str]:
     if faults := [*find_faults(description), *find_comparison_faults(description)]:
         message = "\n".join(faults)
         raise DescriptionError(message)
+    record = load_record(description)
     page = ROOT / "docs" / "language.md"
     comparison_schema = ROOT / "schemas" / "diff.schema.json"
     return {
@@ -34,6 +36,8 @@ def make_files() -> Mapping[Path, str]:
         comparison_schema: _renew_kinds(comparison_schema.read_text(encoding="utf-8")),
         ROOT / "archgen" / "language" / "language_tables.py": make_tables(description),
         ROOT / "archgen" / "language" / "comparison_tables.py": make_comparison_tables(description),
+        ROOT / "schemas" / "resolved.schema.json": json.dumps(make_record_schema(record), indent=2) + "\n",
+        ROOT / "archgen" / "language" / "record_tables.py": make_record_tables(record),
     }
 
 

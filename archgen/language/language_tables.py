@@ -436,6 +436,10 @@ OFFERS: Mapping[str, tuple[str, ...]] = {
     "chain": ("waypoints",),
 }
 """Which names of a project fit at a part."""
+COMMON_SECTIONS: frozenset[str] = frozenset({
+    "frames", "glossary", "libraries", "properties", "variants",
+})
+"""Sections that files of other programs may have, too."""
 SECTION_KINDS: Mapping[str, str] = {
     "partners": "partner", "use_cases": "use_case", "requirements": "requirement", "properties": "property_declaration",
     "component_types": "component_type", "libraries": "library", "groups": "group", "nodes": "node", "types": "type",

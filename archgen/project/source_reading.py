@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import find_closest
+from archgen.language.language_tables import COMMON_SECTIONS
 from archgen.model.review_settings import agreement_file
 from archgen.project import baseline_reading
 from archgen.project.project_search import PROJECT_FILE
@@ -38,10 +39,6 @@ PROJECT_KEY = "archgen"
 """The key that marks a project: it stands in `archgen.yaml`."""
 _OTHER_FILE_KEYS = frozenset({PROJECT_KEY, baseline_reading.BASELINE_KEY})
 """Keys of files that are not slices: projects of their own (a packed one, for instance) and baselines."""
-
-
-_UNMARKING_SECTIONS = frozenset({"frames", "glossary", "libraries", "properties", "variants"})
-"""Sections that other programs' files may have, too: one of these alone makes no slice of a file that nobody names."""
 
 
 def read_slice(state: ReadingState, file: str) -> None:
@@ -121,7 +118,7 @@ def _is_pass(parsed_slice: Slice) -> bool:
 
 def _read_all_slices(state: ReadingState) -> None:
     """Read every YAML file below that holds a section, and list those that do not in one note."""
-    known_sections, ignored_files = list_sections() - _UNMARKING_SECTIONS, list[tuple[str, str | None]]()
+    known_sections, ignored_files = list_sections() - COMMON_SECTIONS, list[tuple[str, str | None]]()
     for file in file_patterns.list_yaml_files(state.files, skipped_folders=SKIPPED_FOLDERS):
         if file in state.seen_files or state.is_library_file(file):
             continue
@@ -161,7 +158,7 @@ def _read_all_slices(state: ReadingState) -> None:
 
 def read_library_slices(state: ReadingState, folder: str) -> None:
     """Read every YAML file of a library that holds a section; what does not is nobody's mistake here."""
-    known_sections = list_sections() - _UNMARKING_SECTIONS
+    known_sections = list_sections() - COMMON_SECTIONS
     for file in file_patterns.list_yaml_files(state.files, folder, SKIPPED_FOLDERS):
         state.seen_files.add(file)
         parsed_slice = parse_file(state, file)
@@ -200,7 +197,7 @@ def _is_meant_as_slice(document: YamlDocument) -> bool:
 
     # Other programs' files may have thousands of keys.
     entries = islice(document.root, _MAX_SECTIONS)
-    return any(is_meant_for_language(entry) for entry in entries if entry.key not in _UNMARKING_SECTIONS)
+    return any(is_meant_for_language(entry) for entry in entries if entry.key not in COMMON_SECTIONS)
 
 
 def _leave_out_frames(state: ReadingState, document: YamlDocument) -> bool:

@@ -18,24 +18,25 @@ KeyPath = tuple[str | int, ...]
 
 _TELLING_NOTHING = frozenset({"title", "description"})
 """Keys that nearly every element has."""
+_SETTING_SECTIONS = frozenset({"component_types", "libraries", "properties"})
+"""Sections whose elements have no keys by which they could be told from components, or from data."""
+_ELEMENT_SECTIONS = {section: kind for section, kind in SECTION_KINDS.items() if section not in _SETTING_SECTIONS}
+_HOMELESS_KINDS = frozenset({"requirement", "view", "policy"})
+"""Kinds whose own keys are words of many meanings: `parent`, `kind`, `source`, `show`, `level`, `accepted`."""
 _HOMES = {
     "node": "`nodes: {{NODE: {{{implements}{key}: ...}}}}`",
     "topic_use": "`nodes: {{NODE: {{{implements}{use}: {{{port}: {{{key}: ...}}}}}}}}`",
     "timing": "`timing: {{{key}: ...}}` of the component or of its node",
     "type": "`types: {{{type}: {{{key}: ...}}}}`",
     "component": "`groups: {{GROUP: {{components: {{COMPONENT: {{{key}: ...}}}}}}}}`",
-    "group": "`groups: {{GROUP: {{{key}: ...}}}}`",
-    "host": "`hosts: {{HOST: {{{key}: ...}}}}`",
-    "container": "`containers: {{CONTAINER: {{{key}: ...}}}}`",
-    "resource": "`resources: {{RESOURCE: {{{key}: ...}}}}`",
-    "link": "`links: {{LINK: {{{key}: ...}}}}`",
-    "chain": "`chains: {{CHAIN: {{{key}: ...}}}}`",
-    "partner": "`partners: {{PARTNER: {{{key}: ...}}}}`",
-    "frame": "`frames: {{FRAME: {{{key}: ...}}}}`",
-    "variant": "`variants: {{VARIANT: {{{key}: ...}}}}`",
-    "use_case": "`use_cases: {{USE-CASE: {{{key}: ...}}}}`",
 }
-"""Where the keys of each kind are written. The first kind that has a key is its home."""
+"""Where the keys of a kind are written, where that is not below its section alone."""
+_HOMES |= {
+    kind: f"`{section}: {{{{{kind.upper().replace('_', '-')}: {{{{{{key}}: ...}}}}}}}}`"
+    for section, kind in _ELEMENT_SECTIONS.items()
+    if kind not in {*_HOMES, *_HOMELESS_KINDS}
+}
+"""The first kind that has a key is its home."""
 _GIVER_KEYS = frozenset({"promise"})
 """Keys that only an output has."""
 _READER_KEYS = frozenset({"freshness", "optional"})
@@ -53,9 +54,6 @@ _PORT_HOMES = ("type", "topic_use", "timing", "node")
 """The order at an input or an output: its message is that of its type, its topic and QoS are the node's."""
 _NAMED_ELEMENTS = {"node": "nodes", "nodes": "nodes", "type": "types", "host": "hosts", "chain": "chains"}
 """Words for an element where an element of another kind is written, and their sections."""
-_ALIKE_SECTIONS = frozenset({"component_types", "libraries", "properties"})
-"""Sections whose elements have no keys by which they could be told from components, or from data."""
-_ELEMENT_SECTIONS = {section: kind for section, kind in SECTION_KINDS.items() if section not in _ALIKE_SECTIONS}
 
 
 def find_key_home(key: str, path: KeyPath, kind: str) -> str | None:

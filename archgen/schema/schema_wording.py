@@ -13,7 +13,8 @@ from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import AskedName, Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.diagnostics.suggestions import did_you_mean, did_you_shorten
-from archgen.language.language_tables import SECTION_KINDS
+from archgen.language.key_paths import find_part
+from archgen.language.language_tables import OFFERS, SECTION_KINDS
 from archgen.schema import list_wording
 from archgen.schema.language_schema import load_schema, resolve_part
 from archgen.schema.quantity_wording import clip_text, describe_wrong_quantity, find_dimension
@@ -85,10 +86,6 @@ def diagnose_wrong_value(kind: str, place: ErrorPlace, schema_part: dict[str, An
     return Diagnostic(rule, message, span, help=help_line, element=element_of_path(place.path), asked_name=asked_name)
 
 
-_KINDS_BY_KEY = {"owner": "partner", "host": "host", "connects": "host", "container": "container", "uses": "resource"}
-"""What an id at a key names."""
-
-
 def _find_asked_name(place: ErrorPlace, schema_part: dict[str, Any]) -> AskedName | None:
     """Return what a text that is no id, or no dotted path, should name; None where it names nothing."""
     if not isinstance(place.node, ScalarNode):
@@ -97,9 +94,11 @@ def _find_asked_name(place: ErrorPlace, schema_part: dict[str, Any]) -> AskedNam
     is_list = "items" in schema_part and bool(list_wording.split_ids(place.node.text, schema_part))
     if schema_part.get("pattern") == definitions["reference_item"]["pattern"]:
         return AskedName("part", is_list)
-    key = next((step for step in reversed(place.path) if isinstance(step, str)), "")
-    is_id = schema_part.get("pattern") == definitions["id"]["pattern"]
-    return AskedName(_KINDS_BY_KEY[key], is_list) if is_id and key in _KINDS_BY_KEY else None
+    if schema_part.get("pattern") != definitions["id"]["pattern"]:
+        return None
+    path = place.path[:-1] if place.path and isinstance(place.path[-1], int) else place.path
+    kind = next((SECTION_KINDS[name] for name in OFFERS.get(find_part(path), ()) if name in SECTION_KINDS), None)
+    return AskedName(kind, is_list) if kind else None
 
 
 def _describe_wrong_type(name: str, node: YamlNode, schema_part: dict[str, Any]) -> tuple[str, str, str | None]:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
+from archgen.language.language_tables import SECTION_KINDS
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 from archgen.model.message_types import full_message_name
@@ -11,28 +14,23 @@ from archgen.views import inline_text
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Inlines, Text
 
+_SHARED_IDS = ("component_type", "node", "group", "requirement", "chain")
+"""Kinds that are meant by an id which others share, in this order."""
+_LAST_KINDS = frozenset({"type", "partner"})
+"""Kinds that are meant by an id only where no other is."""
+_PLACELESS_SECTIONS = frozenset({"libraries", "properties", "policies", "views", "resources"})
+"""Sections whose elements have no place of their own on the site."""
+_OTHER_KINDS = [
+    kind
+    for section, kind in SECTION_KINDS.items()
+    if section not in _PLACELESS_SECTIONS and kind not in {*_SHARED_IDS, *_LAST_KINDS}
+]
+_REFERABLE_KINDS = (*_SHARED_IDS, *_OTHER_KINDS, *sorted(_LAST_KINDS, reverse=True))
+
 
 def find_reference(architecture: Architecture, name: str) -> str | None:
     """Return the anchor of the element with this id; of a port that of its component. None for a name of nothing."""
-    for kind, elements in (
-        ("component", architecture.components),
-        ("component", architecture.shells),
-        ("component_type", architecture.component_types),
-        ("node", architecture.nodes),
-        ("group", architecture.groups),
-        ("requirement", architecture.requirements),
-        ("use_case", architecture.use_cases),
-        ("chain", architecture.chains),
-        ("host", architecture.hosts),
-        ("container", architecture.containers),
-        ("link", architecture.links),
-        ("frame", architecture.frames),
-        ("variant", architecture.variants),
-        ("type", architecture.types),
-        ("topic", architecture.topics),
-        ("channel", architecture.channels),
-        ("partner", architecture.partners),
-    ):
+    for kind, elements in _list_referable(architecture):
         if name in elements:
             return f"{kind}:{name}"
     port = architecture.inputs.get(name) or architecture.outputs.get(name)
@@ -42,6 +40,17 @@ def find_reference(architecture: Architecture, name: str) -> str | None:
         return f"component:{shell.id}"
     # A short name is none: `my_group/Part` may be anything.
     return f"message:{name}" if full_message_name(name) == name else None
+
+
+def _list_referable(architecture: Architecture) -> Iterator[tuple[str, Mapping[str, object]]]:
+    """Yield elements by kind, in the order in which an id that several kinds share is found."""
+    sections = {kind: section for section, kind in SECTION_KINDS.items()}
+    yield "component", architecture.components
+    yield "component", architecture.shells
+    for kind in _REFERABLE_KINDS:
+        yield kind, getattr(architecture, sections[kind])
+    yield "topic", architecture.topics
+    yield "channel", architecture.channels
 
 
 def _find_shell(architecture: Architecture, port_id: str) -> Component | None:

@@ -6,6 +6,7 @@ reason; an entry that is no longer needed fails, too.
 
 from __future__ import annotations
 
+import contextlib
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
@@ -19,13 +20,18 @@ from archgen.compare.kinds import ELEMENT_KINDS, KIND_ORDER, MATCHING_ORDER, Eff
 from archgen.compare.kinds.component_type_kind import OWN_KEYS
 from archgen.language.comparison_tables import KEY_FACTS, KeyFacts
 from archgen.language.language_tables import ENTRIES, KEYS
+from archgen.language.record_tables import RECORD_KEYS
 from archgen.model.architecture import Architecture, ProjectInfo
 from archgen.model.component import ComponentType
 from archgen.model.declared_timing import Timing
 from archgen.views.elements.element_card import make_card
 from archgen.views.elements.element_names import kinds_by_id
 from archgen.views.lookup import Lookup, make_lookup
+from archgen.views.records import element_record
+from archgen.views.records.record_sources import SOURCES
 from archgen.views.records.resolved_record import make_record
+from archgen.views.search import make_search_entries
+from tests.language_samples import SCHEMA, complete_project, read_data
 from tests.running import ROOT
 
 DESCRIBED = {kind: KEY_FACTS[kind] for kind in KEY_FACTS if kind in ELEMENT_KINDS}
@@ -156,6 +162,33 @@ CARD_ONLY = {
     "message": "that of the type",
     "values": "the kind `message`",
 }
+NOT_ON_CARDS = {
+    "requirement": "urls",
+    "component_type": "autoconnect containers description layout node open performance requirements role tags timing urls",
+    "group": "autoconnect layout urls",
+    "component": "autoconnect components containers description frames from layout node open performance same_as urls",
+    "output": "external from to",
+    "input": "external from optional",
+    "node": "arguments calls description internal language parameter_commands parameter_files plugin publishes remaps "
+    "serves subscribes tags urls",
+    "type": "constants feedback request response status",
+    "host": "tags",
+    "link": "latency",
+    "view": "colour depth layout level",
+    "policy": "accepted forbid require",
+}
+"""Keys that only pages and lists show: a card is short."""
+CARD_WORDS = {
+    "node name": "ROS name",
+    "node namespace": "ROS name",
+    "container name": "ROS name",
+    "container namespace": "ROS name",
+    "requirement verified_by": "verified by",
+}
+"""Keys that a card calls otherwise."""
+NOT_SEARCHED = {"policy": "a rule, not a part of the system"}
+SEARCH_WORDS = {"output": "port", "input": "port"}
+"""Kinds that the search calls otherwise."""
 ROBOT = """\
 archgen: 1
 project: {id: robot, title: Robot, version: "1", description: D, middleware: orocos}
@@ -197,17 +230,18 @@ groups:
         operations: {reset: {title: R, request: {hard: bool}, response: T, call: asynchronous, visibility: private, description: D}}
         inputs: {i: {external: the world, type: T, medium: digital, optional: true, freshness: 1 s, frame: base, description: D, urls: {a: a.dbc}, properties: {q: 1}, hints: {x: {a: 1}}}}
         outputs: {o: {type: T, external: the world, frame: base, promise: {rate: 1 Hz, max_gap: 2 s, max_age: 3 s, unit: m, frame: base, range: [0, 1]}, version: 2, deprecated: {until: 2999-01-01, use: o2}, description: D, urls: {a: a.dbc}, properties: {q: 1}, hints: {x: {a: 1}}}, o2: {external: the world}}
-        frames: {base: {title: B, parent: map, rate: 10 Hz, properties: {q: 1}, hints: {x: {a: 1}}}, eye: {parent: base, static: true}}
+        frames: {base: {title: B, parent: map, by: a, rate: 10 Hz, properties: {q: 1}, hints: {x: {a: 1}}}, eye: {parent: base, static: true}}
       b:
         inputs: {i: {external: the world}, j: {external: the world}, k: {external: the world}}
         outputs: {p: T}
         timing: {behaviour: event, trigger: {match: [i, j], within: 1 ms}, every: 2, dropped: forgotten, inputs: {k: {wcet: 1 ms, bcet: 0 ms}}}
-      whole: {components: {part: {is: drum, outputs: {o: {external: the world}}}}}
+      whole: {requirements: [R-1], components: {part: {is: drum, outputs: {o: {external: the world}}}}}
       copy: {same_as: drum}
+  h: {components: {d: {outputs: {q: {medium: mqtt}}}, e: {inputs: {q: d.q}}}}
 component_types:
   drum: {is: box<T>, title: D, functionality: F, description: D, owner: certh, version: 3, deprecated: {until: 2999-01-01, use: spare}}
   box: {generic: [X], abstract: true, inputs: {i: {type: X, external: the world}}, outputs: {o: X}, components: {c: C}}
-  spare: {status: adapted, contact: c@d.eu, image: a.png, properties: {p: 1 kg}, hints: {x: {a: 1}}, parameters: {p: 1}, open: [q], operations: {r: T}, frames: {u: {parent: map}}}
+  spare: {status: adapted, contact: c@d.eu, image: a.png, properties: {p: 1 kg}, hints: {x: {a: 1}}, parameters: {p: 1}, open: [q], operations: {r: T}, frames: {u: {parent: map}}, inputs: {u: {}}, outputs: {v: {}}}
 types:
   T: {message: sensor_msgs/msg/Image, comment: C, size: 1 kB, status: planned, frame: map, version: 4, deprecated: {until: 2999-01-01, use: V}, properties: {q: 1}, hints: {x: {a: 1}}}
   S: {request: T, response: T, feedback: T}
@@ -249,8 +283,10 @@ nodes:
     publishes: {o: {topic: /o, own_name: w}}
   m: b
   r: [whole, copy]
+  s: {timing: {rate: 1 Hz}}
+  t: [d, e]
 hosts: {pc: {title: P, cores: 4, scheduling: edf, description: D, tags: [t], properties: {q: 1}, hints: {x: {a: 1}}}, arm: {scheduling: {0: fifo}}}
-containers: {box: {title: B, host: pc, threads: 2, scheduling: fifo, namespace: /s, name: boxes, package: p, executable: e, parameters: {rate: 5}, properties: {q: 1}, hints: {x: {a: 1}}}}
+containers: {bare: pc, box: {title: B, host: pc, threads: 2, scheduling: fifo, namespace: /s, name: boxes, package: p, executable: e, parameters: {rate: 5}, properties: {q: 1}, hints: {x: {a: 1}}}}
 resources: {gpu: {title: G, host: pc, scheduling: fifo, properties: {q: 1}, hints: {x: {a: 1}}}}
 links: {lan: {title: L, connects: [pc, arm, b], protocol: can, bandwidth: 1 Gbit/s, latency: {best: 1 ms, worst: 2 ms}, properties: {q: 1}, hints: {x: {a: 1}}}}
 frames: {map: }
@@ -261,7 +297,7 @@ variants:
   in: {title: I}
   sim: {title: S, description: D, of: [in], without: "g.whole", drop: [links.lan.title], changes: {hosts: {pc: {cores: 2}}}}
 """
-"""A project in which every kind has every field."""
+"""A project in which every kind has every field that wants a place of its own; `complete_project` adds the others."""
 
 
 def table_keys(kind: str) -> set[str]:
@@ -310,7 +346,8 @@ def test_what_timing_can_be_written_is_compared() -> None:
 @pytest.fixture(scope="module")
 def lookup(tmp_path_factory: pytest.TempPathFactory) -> Lookup:
     file = tmp_path_factory.mktemp("robot") / "robot.yaml"
-    file.write_text(ROBOT, encoding="utf-8")
+    whole = complete_project(read_data(ROBOT), {kind: RECORD_KEYS.get(kind, {}) for kind in MODEL_CLASSES})
+    file.write_text(json.dumps(whole), encoding="utf-8")
     checked = pipeline.check_project(file)
     assert [str(finding) for finding in checked.findings if finding.severity == "error"] == []
     return make_lookup(checked.architecture)
@@ -320,6 +357,19 @@ def test_the_record_of_a_project_that_has_everything_follows_its_schema(lookup: 
     schema = json.loads((ROOT / "schemas" / "resolved.schema.json").read_text(encoding="utf-8"))
     data = json.loads(json.dumps(make_record(lookup)))
     assert [error.message for error in jsonschema_rs.Draft202012Validator(schema).iter_errors(data)] == []
+
+
+def test_every_source_of_the_record_is_needed(lookup: Lookup, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without its source a key is read off the field that is called like it: where that gives the same, there is no need."""
+    lookups = [lookup, make_lookup(pipeline.check_project(ROOT / "examples" / "first_robot").architecture)]
+    whole = [make_record(each) for each in lookups]
+    needless = []
+    for place in list(SOURCES):
+        with monkeypatch.context() as without, contextlib.suppress(AttributeError, TypeError):
+            without.setattr(element_record, "SOURCES", {each: SOURCES[each] for each in SOURCES if each != place})
+            if [make_record(each) for each in lookups] == whole:
+                needless.append(place)
+    assert needless == []
 
 
 def record_keys(record: Mapping[str, Any], kind: str) -> set[str]:
@@ -348,6 +398,27 @@ def test_what_cards_show_is_compared(lookup: Lookup) -> None:
         for fact, _ in make_card(lookup, kind, element_id).facts
     }
     assert [(k, fact) for k, fact in sorted(shown) if fact not in {*table_keys(k), *CARD_ONLY}] == []
+
+
+def test_a_card_shows_each_key_that_is_not_for_pages_alone(lookup: Lookup) -> None:
+    shown: dict[str, set[str]] = {}
+    for element_id, kinds in kinds_by_id(lookup).items():
+        for kind in kinds:
+            card = make_card(lookup, kind, element_id)
+            shown.setdefault(kind.replace(" ", "_"), set()).update(name for name, _ in (*card.facts, *card.lists))
+    hidden = {
+        f"{kind} {key}"
+        for kind in SECTIONS
+        for key in SCHEMA["$defs"][kind]["properties"]
+        if key != "title" and CARD_WORDS.get(f"{kind} {key}", key) not in shown[kind]
+    }
+    assert hidden == {f"{kind} {key}" for kind, keys in NOT_ON_CARDS.items() for key in keys.split()}
+
+
+def test_the_search_finds_elements_of_each_kind(lookup: Lookup) -> None:
+    found = {entry.kind for entry in make_search_entries(lookup, ())}
+    missing_kinds = [kind for kind in SECTIONS if SEARCH_WORDS.get(kind, kind.replace("_", " ")) not in found]
+    assert missing_kinds == list(NOT_SEARCHED)
 
 
 def test_the_kinds_are_those_of_the_model_and_of_the_cards(lookup: Lookup) -> None:

@@ -47,6 +47,10 @@ def test_generated_files_are_fresh(import_tool: Callable[[str], ModuleType]) -> 
             lambda d: d.kinds["host"]["keys"]["cores"].update(type="cuont"),
             "host.cores: there is no type or kind `cuont`",
         ),
+        (
+            lambda d: d.types["flag"].pop("example"),
+            "node.reentrant: neither the key nor its type has an `example` or a `snippet`",
+        ),
         (lambda d: d.types["hosts"].update(entries="hots"), "hosts: there is no type or kind `hots`"),
         (lambda d: d.types["count"].update(biggest=3), "count: `biggest` is no word of a part"),
     ],
@@ -129,3 +133,44 @@ def test_a_kind_in_two_files_is_refused(import_tool: Callable[[str], ModuleType]
         ros.write("host: {title: Host, says: Twice., keys: {}}\n")
     with pytest.raises(tool.DescriptionError, match="the kind `host` stands in another file, too"):
         tool.load_description(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("spoil", "fault"),
+    [
+        (lambda own: own["host"]["order"].append("colour"), "host: there is no key `colour`"),
+        (lambda own: own["channel"]["without"].update(none=["colour"]), "channel: there is no key `colour`"),
+        (lambda own: own["host"].update(odd=1), "host: `odd` is no word of a part"),
+        (lambda own: own["chain"]["keys"]["through"].update(odd=1), "chain.through: `odd` is no word of a part"),
+        (
+            lambda own: own["chain"]["keys"].update(colour={"says": "Red."}),
+            "chain.colour: no key of the language, and nothing says what stands there",
+        ),
+    ],
+)
+def test_what_is_wrong_about_the_record_is_told(
+    import_tool: Callable[[str], ModuleType], spoil: Callable[[Any], object], fault: str
+) -> None:
+    tool = import_tool("language_record")
+    record = copy.deepcopy(tool.load_record(import_tool("language_description").load_description()))
+    spoil(record.own["parts"])
+    assert list(tool.find_faults(record)) == [f"record.yaml: {fault}"]
+
+
+def test_a_key_is_in_the_record_unless_it_says_why_not(import_tool: Callable[[str], ModuleType]) -> None:
+    tool = import_tool("language_record")
+    description = copy.deepcopy(import_tool("language_description").load_description())
+    description.kinds["host"]["keys"]["voltage"] = {"type": "text", "says": "What it runs on."}
+    record = tool.load_record(description)
+    assert list(record.keys_of("host")) == [
+        "title",
+        "description",
+        "cores",
+        "tags",
+        "scheduling",
+        "properties",
+        "hints",
+        "voltage",
+    ]
+    description.kinds["host"]["keys"]["voltage"]["unrecorded"] = "a secret"
+    assert "voltage" not in record.keys_of("host")

@@ -19,7 +19,6 @@ REASONS = {
     "edit/imported_slices.py": "the mappings by id that models of other tools bring",
     "importers/xmi/xmi_import.py": "the files that a model becomes",
     "model/document_chapters.py": "chapters, some of which are called like sections",
-    "schema/key_places.py": "a sentence for each kind",
     "views/changes/site_changes.py": "kinds with a page of their own",
     "views/elements/element_card.py": "the function that makes each card",
     "views/elements/element_names.py": "the order in which an id that several kinds share is found, and what is named otherwise",
@@ -28,7 +27,7 @@ REASONS = {
     "views/graph_shapes.py": "kinds of pictures, some of which are called like kinds of elements",
     "views/offered_names.py": "sections of which something else than each title is offered",
     "views/pages/report_outline.py": "chapters, some of which are called like sections",
-    "views/records/resolved_record.py": "the order of a record, and what makes each part",
+    "views/records/record_sources.py": "what the record takes from elsewhere than from a field, by part",
 }
 
 

@@ -6,7 +6,8 @@ import pytest
 
 from archgen import pipeline
 from archgen.views.lookup import Lookup, make_lookup
-from archgen.views.records import component_record, deployment_record, frame_record, node_record
+from archgen.views.records.element_record import write_record
+from archgen.views.records.resolved_record import make_record, write_section
 
 ROBOT = """\
 archgen: 1
@@ -36,7 +37,7 @@ def lookup(tmp_path_factory: pytest.TempPathFactory) -> Lookup:
 
 
 def test_a_component_with_its_ports_and_nodes(lookup: Lookup) -> None:
-    record = component_record.record_component(lookup, lookup.architecture.components["g.eye"])
+    record = write_record("component", lookup.architecture.components["g.eye"], lookup)
     assert record == {
         "title": "Eye",
         "group": "g",
@@ -56,7 +57,7 @@ def test_a_component_with_its_ports_and_nodes(lookup: Lookup) -> None:
 
 
 def test_an_output_names_who_reads_it(lookup: Lookup) -> None:
-    record = component_record.record_component(lookup, lookup.architecture.components["g.camera"])
+    record = write_record("component", lookup.architecture.components["g.camera"], lookup)
     assert record["outputs"] == {
         "image": {
             "id": "g.camera.image",
@@ -70,47 +71,45 @@ def test_an_output_names_who_reads_it(lookup: Lookup) -> None:
 
 
 def test_a_project_without_composition_has_no_section_of_it(lookup: Lookup) -> None:
-    assert component_record.record_composition(lookup) == {}
+    assert not {"composed", "component_types"} & make_record(lookup).keys()
 
 
 def test_a_host_says_the_order_of_single_cores(lookup: Lookup) -> None:
-    hosts = lookup.architecture.hosts
-    assert deployment_record.record_host(hosts["pc"]) == {"title": "Pc", "cores": 2, "scheduling": {"0": "fifo"}}
-    assert deployment_record.record_host(hosts["arm_pc"]) == {"title": "Arm Pc"}
+    assert write_section("hosts", lookup) == {
+        "pc": {"title": "Pc", "cores": 2, "scheduling": {"0": "fifo"}},
+        "arm_pc": {"title": "Arm Pc"},
+    }
 
 
 def test_the_root_namespace_of_a_container_is_left_out(lookup: Lookup) -> None:
-    records = {name: deployment_record.record_container(each) for name, each in lookup.architecture.containers.items()}
-    assert records == {
+    assert write_section("containers", lookup) == {
         "box": {"title": "Box", "host": "pc", "threads": 2, "namespace": "/eyes"},
         "bare": {"title": "Bare", "host": "pc"},
     }
 
 
 def test_links_and_resources(lookup: Lookup) -> None:
-    assert deployment_record.record_link(lookup.architecture.links["lan"]) == {
-        "title": "Lan",
-        "connects": ["pc", "arm_pc"],
-        "bandwidth": {"text": "1 Mbit/s", "value": 1_000_000, "unit": "bit/s"},
-        "best": {"text": "1 ms", "value": 1_000_000, "unit": "ns"},
-        "worst": {"text": "2 ms", "value": 2_000_000, "unit": "ns"},
+    assert write_section("links", lookup) == {
+        "lan": {
+            "title": "Lan",
+            "connects": ["pc", "arm_pc"],
+            "bandwidth": {"text": "1 Mbit/s", "value": 1_000_000, "unit": "bit/s"},
+            "best": {"text": "1 ms", "value": 1_000_000, "unit": "ns"},
+            "worst": {"text": "2 ms", "value": 2_000_000, "unit": "ns"},
+        }
     }
-    assert deployment_record.record_resources(lookup.architecture) == {
-        "resources": {"bus": {"title": "Bus", "host": "pc"}}
-    }
+    assert write_section("resources", lookup) == {"bus": {"title": "Bus", "host": "pc"}}
 
 
 def test_frames_of_the_project_and_of_components(lookup: Lookup) -> None:
-    assert frame_record.record_frames(lookup.architecture) == {
-        "frames": {
-            "base": {"title": "base", "rate": {"text": "20 Hz", "value": 20, "unit": "Hz"}},
-            "lens": {"title": "lens", "parent": "base", "by": "g.camera", "static": True},
-        }
+    assert write_section("frames", lookup) == {
+        "base": {"title": "base", "rate": {"text": "20 Hz", "value": 20, "unit": "Hz"}},
+        "lens": {"title": "lens", "parent": "base", "by": "g.camera", "static": True},
     }
 
 
 def test_a_node_says_whether_it_is_written(lookup: Lookup) -> None:
-    written, derived = (node_record.record_node(lookup, lookup.architecture.nodes[name]) for name in ("see", "camera"))
+    written, derived = (write_record("node", lookup.architecture.nodes[name], lookup) for name in ("see", "camera"))
     assert [each["use"] for each in written.pop("endpoints")] == ["publishes", "subscribes"]  # type: ignore[attr-defined]
     assert written == {
         "title": "See",

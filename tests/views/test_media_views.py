@@ -16,7 +16,7 @@ from archgen.views.graphs.ros_graph import draw_ros_graph
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.pages.context_pages import make_topic_pages, make_topic_tables
 from archgen.views.pages.host_pages import make_host_pages
-from archgen.views.records.carrier_record import record_carriers, record_endpoints
+from archgen.views.records.resolved_record import make_record
 from archgen.views.search.implementation_entries import make_channel_entries
 from archgen.views.shapes import Facts, Inlines, Table
 from archgen.views.tables.element_rows import list_element_rows
@@ -128,13 +128,13 @@ def test_the_explorer_has_their_medium_with_flows_and_links(lookup: Lookup) -> N
 
 
 def test_the_record_gives_them_apart_from_topics(lookup: Lookup) -> None:
-    record = record_carriers(lookup)
-    assert [each["name"] for each in record["topics"]] == ["/air/drone/image"]  # type: ignore[attr-defined]
-    assert [(each["name"], each["medium"], each["writers"]) for each in record["channels"]] == [  # type: ignore[attr-defined]
+    record = make_record(lookup)
+    assert [each["name"] for each in record["topics"]] == ["/air/drone/image"]
+    assert [(each["name"], each["medium"], each["writers"]) for each in record["channels"]] == [
         ("fleet/pose", "mqtt", ["drone"]),
         ("ground.depot.orders", "rest", ["depot"]),
     ]
-    assert [each["name"] for each in record_endpoints(lookup, "drone")] == ["/air/drone/image"]
+    assert [each["name"] for each in record["nodes"]["drone"]["endpoints"]] == ["/air/drone/image"]
 
 
 def test_the_page_of_a_host_names_links_and_devices(lookup: Lookup) -> None:

@@ -11,7 +11,7 @@ from archgen.views.elements.functional_level import make_component_blocks
 from archgen.views.elements.implementation_level import make_node_blocks
 from archgen.views.elements.parameter_blocks import make_parameter_blocks
 from archgen.views.lookup import Lookup, make_lookup
-from archgen.views.records.parameter_record import record_effective, record_parameter
+from archgen.views.records.element_record import write_record
 from archgen.views.report.condensed_blocks import condense_component
 from archgen.views.shapes import Inlines, Table
 from archgen.views.tables.element_rows import list_element_rows
@@ -114,9 +114,12 @@ def test_a_node_shows_what_counts_and_where_it_comes_from(tmp_path: Path) -> Non
         "Follow.x = cat y <- command (archgen.yaml:18)",
     ):
         assert line in card
-    assert record_effective(lookup.architecture, node)["map"] == {"origin": "none"}
-    assert record_effective(lookup.architecture, node)["speed"] == {"origin": "file", "value": 1}
-    assert record_parameter(lookup.architecture.components["g.c"].parameters["side"]) == {"from": "self.side"}
+    effective = write_record("node", node, lookup)["effective_parameters"]
+    assert isinstance(effective, dict)
+    assert effective["map"] == {"origin": "none"}
+    assert effective["speed"] == {"origin": "file", "value": 1}
+    side = lookup.architecture.components["g.c"].parameters["side"]
+    assert write_record("parameter", side, lookup) == {"from": "self.side"}
 
 
 def test_lists_have_a_row_for_each_parameter_of_a_node_and_each_operation(tmp_path: Path) -> None:

@@ -6,11 +6,15 @@ from collections.abc import Iterable, Mapping
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import replace
+from archgen.language.language_tables import SECTION_KINDS
 from archgen.model.architecture import Architecture
 from archgen.model.made_elements import find_made_element
 from archgen.views.element_references import place_run
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Page
+
+_PLACELESS = frozenset({"types", "variants", "libraries"})
+"""What ships with archgen is in none of the project's files, but in those of its packed form; variants are in several."""
 
 
 def place_pages(lookup: Lookup, pages: Iterable[Page]) -> tuple[Page, ...]:
@@ -32,19 +36,7 @@ def _place_page(lookup: Lookup, page: Page, place: Span) -> Page:
 
 def _list_spans(architecture: Architecture) -> Mapping[str, Span]:
     """Return where each element with a page is written, by the page's anchor."""
-    kinds = (
-        ("group", architecture.groups),
-        ("component", architecture.components),
-        ("component", architecture.shells),
-        ("component_type", architecture.component_types),
-        ("node", architecture.nodes),
-        ("requirement", architecture.requirements),
-        ("use_case", architecture.use_cases),
-        ("chain", architecture.chains),
-        ("host", architecture.hosts),
-        ("container", architecture.containers),
-        ("partner", architecture.partners),
-    )
+    kinds = [("component", architecture.components), ("component", architecture.shells)]
+    kinds += [(kind, getattr(architecture, name)) for name, kind in SECTION_KINDS.items() if name not in _PLACELESS]
     spans = {f"{kind}:{name}": element.at for kind, elements in kinds for name, element in elements.items()}
-    # Types have none: what ships with archgen is in none of the project's files, but in those of its packed form.
     return {anchor: span for anchor, span in spans.items() if span is not NO_SPAN}

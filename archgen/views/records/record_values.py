@@ -4,24 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
-from typing import Protocol
 
-from archgen.model.element_annotations import ElementAnnotations, read_figure
+from archgen.model.element_annotations import read_figure
 from archgen.model.quantity import Quantity
-
-
-class HasAnnotations(Protocol):
-    """An element of any kind."""
-
-    @property
-    def annotations(self) -> ElementAnnotations:
-        """What it says of itself beside its own keys."""
-
-
-def pick_fields(element: object, *keys: str) -> dict[str, object]:
-    """Return the named fields of an element that are known; tuples become lists."""
-    values = {key: getattr(element, key) for key in keys}
-    return drop_unknown({key: list(value) if isinstance(value, tuple) else value for key, value in values.items()})
 
 
 def drop_unknown(data: dict[str, object]) -> dict[str, object]:
@@ -40,16 +25,8 @@ def to_number(value: Fraction) -> int | float:
     return int(value) if value.denominator == 1 else float(value)
 
 
-def record_annotations(element: HasAnnotations) -> dict[str, object]:
-    """Return the properties of an element (text, number and unit, as far as they are such), and its hints as they are."""
-    annotations = element.annotations
-    if not annotations.properties and not annotations.hints:
-        return {}
-    properties = {name: _record_property(text) for name, text in annotations.properties.items()}
-    return drop_unknown({"properties": properties, "hints": to_plain(annotations.hints)})
-
-
-def _record_property(text: str) -> dict[str, object]:
+def record_property(text: str) -> dict[str, object]:
+    """Return a property as text, number and unit, as far as it is such."""
     figure = read_figure(text)
     number = {"value": to_number(Fraction(figure.value))} if figure else {}
     return {"text": text, **number, **({"unit": figure.unit} if figure and figure.unit else {})}

@@ -7,8 +7,9 @@ from collections.abc import Collection
 from archgen.bringup.plan_shapes import DroppedWait, RosLaunch, StartPlan, StartStep
 from archgen.model.architecture import Architecture
 from archgen.model.start_up import PHASES
+from archgen.views.lookup import Lookup, make_lookup
+from archgen.views.records.element_record import write_record
 from archgen.views.records.record_values import drop_unknown, record_quantity, to_plain
-from archgen.views.records.start_record import record_ready
 from archgen.views.start_phrases import NamedWait, name_waits
 
 VERSION = 1
@@ -19,12 +20,13 @@ def record_plan(
     architecture: Architecture, plan: StartPlan, shown_ids: Collection[str] | None = None
 ) -> dict[str, object]:
     """Return a plan as plain data: all steps, or those shown with their numbers in the whole plan. Durations are in ns."""
+    lookup = make_lookup(architecture)
     return {
         "version": VERSION,
         "project": architecture.project.id,
         "phases": list(PHASES),
         "steps": [
-            {"number": number, **_record_step(step)}
+            {"number": number, **_record_step(step, lookup)}
             for number, step in enumerate(plan.steps, start=1)
             if shown_ids is None or step.id in shown_ids
         ],
@@ -33,7 +35,7 @@ def record_plan(
     }
 
 
-def _record_step(step: StartStep) -> dict[str, object]:
+def _record_step(step: StartStep, lookup: Lookup) -> dict[str, object]:
     return drop_unknown(
         {
             "id": step.id,
@@ -48,7 +50,7 @@ def _record_step(step: StartStep) -> dict[str, object]:
             "ros": _record_launch(step.ros) if step.ros else None,
             "log_file": step.log_file,
             "waits": [_record_wait(wait) for wait in name_waits(step)],
-            "ready": record_ready(step.ready),
+            "ready": write_record("start_ready", step.ready, lookup),
             "seconds_at_most": step.seconds_at_most,
             "once": step.once or None,
             "state": step.state,

@@ -9,8 +9,8 @@ from archgen.views.elements import type_fields
 from archgen.views.elements.element_card import make_card
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.pages.message_pages import MessagePages
+from archgen.views.records.element_record import write_record
 from archgen.views.records.resolved_record import make_record
-from archgen.views.records.type_record import record_type
 from archgen.views.search.implementation_entries import make_message_entries
 from archgen.views.shapes import Facts, Table
 from archgen.views.tables import type_tables
@@ -109,7 +109,7 @@ def test_the_record_has_both_words(lookup: Lookup) -> None:
     }
     assert types["Fetch"]["part_fields"]["request"] == [{"name": "what", "type": "string", "ros_type": "string"}]
     assert (types["Mode"]["values"], types["Box"]["generic"]) == (["IDLE", "RUN"], ["T"])
-    assert record_type(lookup.architecture.types["Box"], lookup.architecture.interfaces) == {
+    assert write_record("type", lookup.architecture.types["Box"], lookup) == {
         "generic": ["T"],
         "fields": [{"name": "content", "type": "T"}],
     }

@@ -1,0 +1,211 @@
+"""What the resolved record takes from elsewhere than from the field that is called like the key.
+
+A key that stands in no table here is read off the element, and written as its type says.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+from archgen.model.component import Component, Group, Input, Output
+from archgen.model.declared_timing import Timing
+from archgen.model.deployment import Host
+from archgen.model.message_types import PART_KEYS
+from archgen.model.node import Node
+from archgen.model.parameter_values import EffectiveParameter, find_effective_parameters
+from archgen.model.port_media import ROS, is_physical, name_on_medium, word_of_medium
+from archgen.model.promise import Promise, describe_deprecation, format_range
+from archgen.model.step_connections import ConnectedStep
+from archgen.views.lookup import Lookup
+from archgen.views.records.record_values import to_number
+from archgen.views.records.recorded_fields import list_part_fields, list_type_fields
+
+Source = Callable[[Any, Lookup], object]
+"""Gives what stands at a key of an element, before it is written in the form of its type."""
+
+
+def _list_ids(elements: Iterable[Any]) -> list[str]:
+    return [each.id for each in elements]
+
+
+def _list_sources(port: Input, _lookup: Lookup) -> list[str]:
+    return list(dict.fromkeys(output for connection in port.connections for output in connection.outputs))
+
+
+def _list_readers(port: Output, lookup: Lookup) -> list[str]:
+    return list(dict.fromkeys(connection.input for connection in lookup.readers_of.get(port.id, ())))
+
+
+def _list_behind(shell: Component, lookup: Lookup) -> dict[str, tuple[str, ...]]:
+    """Return the leaves' ports behind each port of a composed component."""
+    return {
+        f"{kind} {port.name}": lookup.architecture.leaf_ports_of(kind, port.id)
+        for kind, ports in (("input", shell.inputs), ("output", shell.outputs))
+        for port in ports.values()
+    }
+
+
+def _list_port_types(ports: Mapping[str, str | None]) -> dict[str, str]:
+    return {name: type_name or "" for name, type_name in ports.items()}
+
+
+def _list_endpoints(node: Node, lookup: Lookup) -> list[object]:
+    """Return what a node uses over ROS: who generates launch files from it knows nothing else."""
+    return [each for each in lookup.endpoints_of.get(node.id, ()) if each.medium == ROS]
+
+
+def _name_activities(node: Node, _lookup: Lookup) -> dict[str, Timing]:
+    # The key is "" for a node that implements no component; the record calls it "node".
+    return {component or "node": timing for component, timing in node.timing.items()}
+
+
+def _list_effective(node: Node, lookup: Lookup) -> dict[str, EffectiveParameter]:
+    """Return the values that count at a node, each with where it comes from; nothing where all are the node's own."""
+    parameters = find_effective_parameters(lookup.architecture, node)
+    return {} if all(each.origin == "node" for each in parameters.values()) else parameters
+
+
+def _read_host_order(host: Host, _lookup: Lookup) -> object:
+    """Return the order by core where single cores have one of their own."""
+    return host.core_scheduling or host.scheduling
+
+
+def _list_steps(use_case: Any, lookup: Lookup) -> list[ConnectedStep]:  # noqa: ANN401  # as all sources
+    """Return the steps of a use case; those with an end that names nothing are left out."""
+    return [each for each in lookup.steps.by_use_case.get(use_case.id, ()) if each.step.is_resolved]
+
+
+def _list_step_outputs(connected: ConnectedStep, _lookup: Lookup) -> list[str]:
+    return list(dict.fromkeys(each.output for each in connected.connections if each.output))
+
+
+def _list_step_inputs(connected: ConnectedStep, _lookup: Lookup) -> list[str]:
+    return list(dict.fromkeys(each.input for each in connected.connections if each.input and not each.output))
+
+
+def _list_components(group: Group, lookup: Lookup) -> list[str]:
+    return _list_ids(lookup.shown_components(group.id))
+
+
+def _read_message(port: Output, lookup: Lookup) -> str | None:
+    return lookup.architecture.message_of(port)
+
+
+def _read_range(promise: Promise, _lookup: Lookup) -> tuple[tuple[float, float], str | None] | None:
+    return None if promise.range is None else (promise.range, promise.unit)
+
+
+def _keep_finite(limit: float) -> float | None:
+    # JSON has no infinity.
+    return limit if math.isfinite(limit) else None
+
+
+def _list_percentiles(timing: Timing, _lookup: Lookup) -> object:
+    return timing.measured_times.percentiles if timing.measured_times else None
+
+
+def _list_users(ends: str) -> Source:
+    """Return a source of the nodes at the ends of a topic or channel, each once."""
+    return lambda carrier, _: list(dict.fromkeys(endpoint.node for endpoint in getattr(carrier, ends)))
+
+
+def _read_part(part: str) -> Source:
+    """Return a source of the fields of a part of a service or an action."""
+    return lambda fields, _: fields.get(part)
+
+
+_COMPONENT: Mapping[str, Source] = {
+    "is": lambda component, _: component.component_type,
+    "requirements": lambda component, _: [use.text for use in component.requirements],
+    "nodes": lambda component, lookup: _list_ids(lookup.nodes_of.get(component.id, ())),
+}
+_CARRIER: Mapping[str, Source] = {
+    "writers": _list_users("writers"),
+    "readers": _list_users("readers"),
+}
+_PORT: Mapping[str, Source] = {"medium": lambda port, _: word_of_medium(port)}
+_PARTS: Mapping[str, Mapping[str, Source]] = {
+    "project": {
+        "middleware": lambda project, _: None if project.middleware == ROS else project.middleware,
+        "distro": lambda _, lookup: lookup.architecture.distro,
+        # Of one name the last value counts.
+        "parameters": lambda _, lookup: {each.name: each.value for each in lookup.architecture.ros_parameters},
+    },
+    "use_case": {
+        "actors": lambda use_case, _: {actor.id: actor.title for actor in use_case.actors.values()},
+        "steps": _list_steps,
+    },
+    "step": {
+        "from": lambda connected, _: connected.step.source,
+        "to": lambda connected, _: connected.step.target,
+        "say": lambda connected, _: connected.step.say,
+        "outputs": _list_step_outputs,
+        "inputs": _list_step_inputs,
+    },
+    "requirement": {
+        "parent": lambda requirement, _: requirement.parents,
+        "served_by": lambda each, lookup: _list_ids(lookup.components_for_requirement.get(each.id, ())),
+        "served_by_chains": lambda each, lookup: _list_ids(lookup.chains_for_requirement.get(each.id, ())),
+    },
+    "property_declaration": {"range": lambda each, _: [str(limit) for limit in each.range or ()]},
+    "group": {"components": _list_components},
+    "component": _COMPONENT,
+    "composed": {**_COMPONENT, "components": lambda shell, _: shell.children, "behind": _list_behind},
+    "input": {**_PORT, "sources": _list_sources},
+    "output": {**_PORT, "message": _read_message, "readers": _list_readers},
+    "promise": {"range": _read_range},
+    "value_range": {
+        "text": lambda limits_and_unit, _: format_range(*limits_and_unit),
+        "least": lambda limits_and_unit, _: _keep_finite(limits_and_unit[0][0]),
+        "greatest": lambda limits_and_unit, _: _keep_finite(limits_and_unit[0][1]),
+    },
+    "deprecation": {
+        "text": lambda deprecated, _: describe_deprecation(deprecated),
+        "replacement": lambda deprecated, _: deprecated.target,
+    },
+    "component_type": {
+        "is": lambda each, _: each.base,
+        "abstract": lambda each, _: each.is_abstract,
+        "inputs": lambda each, _: _list_port_types(each.inputs),
+        "outputs": lambda each, _: _list_port_types(each.outputs),
+    },
+    "parameter": {"from": lambda parameter, _: parameter.handed_from},
+    "edge": {
+        "from": lambda edge, _: edge.output,
+        "to": lambda edge, _: edge.input,
+        "type": lambda edge, lookup: lookup.architecture.outputs[edge.output].type,
+        "message": lambda edge, lookup: _read_message(lookup.architecture.outputs[edge.output], lookup),
+        "physical": lambda edge, lookup: is_physical(lookup.architecture.outputs[edge.output]),
+    },
+    "node": {
+        "kind": lambda node, _: node.kinds,
+        "derived": lambda node, _: not node.written,
+        "endpoints": _list_endpoints,
+        "timing": _name_activities,
+        "effective_parameters": _list_effective,
+    },
+    "endpoint": {"qos": lambda endpoint, _: endpoint.qos if endpoint.flow == "topic" else None},
+    "topic": _CARRIER,
+    "channel": {**_CARRIER, "name": lambda channel, _: name_on_medium(channel)},
+    "start": {
+        "after": lambda start, _: _list_ids(start.after),
+        "by": lambda start, _: start.by.id if start.by else None,
+    },
+    "timing": {
+        "percentiles": _list_percentiles,
+        "wcet_measured": lambda timing, _: timing.measured_times and timing.measured_times.is_measured,
+        "calls": lambda timing, _: {name: to_number(count) for name, count in timing.calls.items()},
+    },
+    "timing_input": {"stored": lambda each, _: "at_once" if each.stored_at_once else None},
+    "type": {"fields": list_type_fields, "part_fields": list_part_fields},
+    "part_fields": {part: _read_part(part) for part in PART_KEYS},
+    "host": {"scheduling": _read_host_order},
+    "container": {"namespace": lambda container, _: None if container.namespace == "/" else container.namespace},
+    "variant": {"changes": lambda variant, _: {change.path: change.value for change in variant.changes}},
+}
+SOURCES: Mapping[tuple[str, str], Source] = {
+    (part, key): source for part, sources in _PARTS.items() for key, source in sources.items()
+}
+"""By the part of the record and its key."""
