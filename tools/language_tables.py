@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from language_description import SLICE, Description, Part, list_accepted
+from language_description import SLICE, Description, Part, list_accepted, list_fields
 
 _HEAD = '''\
 """The language as tables. Written by `make language` from the description in `language/`: edit that, never this.
@@ -47,6 +47,9 @@ def make_tables(description: Description) -> str:
         if not part.keys() & {"supporting", "like"}
         and (names := tuple(name for name, key in description.keys_of(kind).items() if key.get("declares")))
     }
+    modelled = {
+        kind: description.keys_of(kind) for kind, part in description.kinds.items() if part.get("element", True)
+    }
     tables = "\n".join(
         [
             _format_literal("KindName", description.kinds),
@@ -74,6 +77,35 @@ def make_tables(description: Description) -> str:
                 "OFFERS",
                 {name: _as_tuple(part["offers"]) for name, part in parts.items() if "offers" in part},
                 "Which names of a project fit at a part.",
+            ),
+            _format_table(
+                "WORDS",
+                {name: tuple(part["values"]) for name, part in parts.items() if _is_word(part)},
+                "The words of which one stands at a part.",
+            ),
+            _format_table(
+                "PART_TYPES",
+                {name: part["type"] for name, part in parts.items() if "type" in part},
+                "The types of the parts that say more than their type.",
+            ),
+            _format_table(
+                "ATTRIBUTES",
+                {
+                    f"{kind}.{name}": tuple(list_fields(name, key))
+                    for kind, keys_by_name in modelled.items()
+                    for name, key in keys_by_name.items()
+                    if "attribute" in key
+                },
+                "The fields of the model that hold a key, where they are not called as it.",
+            ),
+            _format_table(
+                "PLACED_KEYS",
+                {
+                    kind: names
+                    for kind, keys_by_name in modelled.items()
+                    if (names := tuple(name for name, key in keys_by_name.items() if "place" in key))
+                },
+                "Keys whose values keep their places, each in a field `KEY_at`.",
             ),
             _format_table("SECTION_KINDS", sections, "Sections whose keys are ids of elements: the kind of these."),
             _format_names(
@@ -129,6 +161,7 @@ def _name_references(place: str, part: Part, description: Description, parts: di
         # A key that says more than its type of what stands there is a part of its own.
         base = parts_of(inner["type"]) if "type" in inner else inner
         parts[name] = _name_references(name, {**base, **own_facts}, description, parts)
+        parts[name] |= {"type": inner["type"]} if "type" in inner else {}
         return name
 
     def parts_of(name: str) -> Part:
@@ -150,6 +183,10 @@ def _name_references(place: str, part: Part, description: Description, parts: di
 def _is_bare(part: Part) -> bool:
     scalars = set(list_accepted(part)) - {"null", "object", "array"}
     return bool(part.get("bare")) or (bool(scalars) and scalars <= _TEXTLESS_KINDS)
+
+
+def _is_word(part: Part) -> bool:
+    return "values" in part and "string" in list_accepted(part)
 
 
 def _as_tuple(value: str | list[str]) -> tuple[str, ...]:
