@@ -288,28 +288,27 @@ def find_faults(description: Description) -> Iterator[str]:
         yield from _find_part_faults(f"common.{name}", part, description)
     for name, part in description.types.items():
         yield from _find_part_faults(name, part, description)
+        yield from _find_field_faults(name, part)
+        if "place" in part:
+            yield f"{name}: `place` is a word of keys"
     for kind, part in description.kinds.items():
         yield from _find_part_faults(kind, part, description)
         for name, key in description.keys_of(kind).items():
             yield from _find_part_faults(f"{kind}.{name}", key, description)
-            yield from _find_field_faults(name, f"{kind}.{name}", key)
+            yield from _find_field_faults(f"{kind}.{name}", key)
             if part.get("supporting") and "declares" not in key:
                 yield f"{kind}.{name}: `declares` says whether a file that says only this declares a {kind}"
 
 
-def _find_field_faults(name: str, place: str, key: Part) -> Iterator[str]:
-    """Yield what is wrong with what a key says of the fields that hold it."""
-    fields = list_fields(name, key)
-    if "attribute" in key and (fields == [name] or len(set(fields)) < len(fields) or not all(map(_is_field, fields))):
-        yield f"{place}: `attribute` is the field that holds it, where that is called otherwise, or a list of fields"
-    if key.get("place", True) is not True:
+def _find_field_faults(place: str, part: Part) -> Iterator[str]:
+    """Yield what is wrong with what a key or a type says of the fields that hold it."""
+    if "attribute" in part:
+        attribute, name = part["attribute"], place.rpartition(".")[2]
+        names = attribute if isinstance(attribute, list) else [attribute]
+        if names == [name] or len(set(names)) < len(names) or not all(map(_is_field, names)):
+            yield f"{place}: `attribute` is the field that holds it where that is called otherwise, or a list of fields"
+    if part.get("place", True) is not True:
         yield f"{place}: `place` is `true`, or left out"
-
-
-def list_fields(name: str, key: Part) -> list[PlainData]:
-    """Return the fields of the model's class that hold what a key says."""
-    attribute = key.get("attribute", name)
-    return attribute if isinstance(attribute, list) else [attribute]
 
 
 def _is_field(name: PlainData) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from language_description import SLICE, Description, Part, list_accepted, list_fields
+from language_description import SLICE, Description, Part, list_accepted
 
 _HEAD = '''\
 """The language as tables. Written by `make language` from the description in `language/`: edit that, never this.
@@ -91,12 +91,11 @@ def make_tables(description: Description) -> str:
             _format_table(
                 "ATTRIBUTES",
                 {
-                    f"{kind}.{name}": tuple(list_fields(name, key))
-                    for kind, keys_by_name in modelled.items()
-                    for name, key in keys_by_name.items()
-                    if "attribute" in key
+                    name: _as_tuple(part["attribute"])
+                    for name, part in (*description.types.items(), *_name_keys(modelled))
+                    if "attribute" in part
                 },
-                "The fields of the model that hold a key, where they are not called as it.",
+                "The fields of the model that hold what stands at a key, or keys of a type, where they are not called as it.",
             ),
             _format_table(
                 "PLACED_KEYS",
@@ -183,6 +182,10 @@ def _name_references(place: str, part: Part, description: Description, parts: di
 def _is_bare(part: Part) -> bool:
     scalars = set(list_accepted(part)) - {"null", "object", "array"}
     return bool(part.get("bare")) or (bool(scalars) and scalars <= _TEXTLESS_KINDS)
+
+
+def _name_keys(kinds: Mapping[str, Mapping[str, Part]]) -> Iterable[tuple[str, Part]]:
+    return ((f"{kind}.{name}", key) for kind, keys in kinds.items() for name, key in keys.items())
 
 
 def _is_word(part: Part) -> bool:

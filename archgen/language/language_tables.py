@@ -474,36 +474,24 @@ PART_TYPES: Mapping[str, str] = {
 }
 """The types of the parts that say more than their type."""
 ATTRIBUTES: Mapping[str, tuple[str, ...]] = {
-    "partner.properties": ("annotations",), "partner.hints": ("annotations",), "use_case.properties": ("annotations",),
-    "use_case.hints": ("annotations",), "requirement.parent": ("parents", "parent_at"),
-    "requirement.properties": ("annotations",), "requirement.hints": ("annotations",),
-    "view.properties": ("annotations",), "view.hints": ("annotations",), "group.properties": ("annotations",),
-    "group.hints": ("annotations",), "component.is": ("component_type",), "component.same_as": ("is_reference",),
-    "component.properties": ("annotations",), "component.hints": ("annotations",), "component_type.is": ("base",),
-    "component_type.properties": ("annotations",), "component_type.hints": ("annotations",),
-    "component_type.abstract": ("is_abstract",), "input.from": ("connections", "from_written"),
-    "input.medium": ("medium", "medium_written"), "input.properties": ("annotations",), "input.hints": ("annotations",),
-    "output.medium": ("medium", "medium_written"), "output.properties": ("annotations",),
-    "output.hints": ("annotations",), "type.properties": ("annotations",), "type.hints": ("annotations",),
-    "frame.by": ("by", "by_kind", "by_written"), "frame.properties": ("annotations",), "frame.hints": ("annotations",),
-    "node.kind": ("kinds",), "node.properties": ("annotations",), "node.hints": ("annotations",),
-    "host.scheduling": ("scheduling", "core_scheduling", "core_places"), "host.properties": ("annotations",),
-    "host.hints": ("annotations",), "container.properties": ("annotations",), "container.hints": ("annotations",),
-    "resource.properties": ("annotations",), "resource.hints": ("annotations",),
+    "hints": ("annotations",), "properties": ("annotations",), "report.large_paper": ("has_large_paper",),
+    "requirement.parent": ("parents", "parent_at"), "component.is": ("component_type",),
+    "component.same_as": ("is_reference",), "component_type.is": ("base",), "component_type.abstract": ("is_abstract",),
+    "input.from": ("connections", "from_written"), "input.medium": ("medium", "medium_written"),
+    "output.medium": ("medium", "medium_written"), "parameter_declaration.from": ("handed_from",),
+    "parameter_declaration.hints": ("hints", "hint_places"), "frame.by": ("by", "by_kind", "by_written"),
+    "node.kind": ("kinds",), "host.scheduling": ("scheduling", "core_scheduling", "core_places"),
     "link.connects": ("connects", "devices", "unresolved"), "link.latency": ("best", "worst"),
-    "link.properties": ("annotations",), "link.hints": ("annotations",),
-    "policy.forbid": ("forbid_from", "forbid_to", "from_at", "to_at"),
-    "policy.accepted": ("accepted", "accepted_places"), "policy.properties": ("annotations",),
-    "policy.hints": ("annotations",), "chain.through": ("through", "unresolved"),
-    "chain.requirements": ("requirements", "requirement_places"), "chain.properties": ("annotations",),
-    "chain.hints": ("annotations",),
+    "start.by": ("by", "by_written"), "policy.forbid": ("forbid_from", "forbid_to", "from_at", "to_at"),
+    "policy.accepted": ("accepted", "accepted_places"), "timing.wcet": ("wcet", "measured_times"),
+    "chain.through": ("through", "unresolved"), "chain.requirements": ("requirements", "requirement_places"),
 }
-"""The fields of the model that hold a key, where they are not called as it."""
+"""The fields of the model that hold what stands at a key, or keys of a type, where they are not called as it."""
 PLACED_KEYS: Mapping[str, tuple[str, ...]] = {
     "view": ("show",), "component": ("role",), "component_type": ("role",),
     "input": ("medium", "type", "freshness", "frame"), "output": ("type", "medium", "frame"),
-    "type": ("message", "frame"), "frame": ("parent",), "node": ("name", "kind", "command", "container"),
-    "container": ("name",), "link": ("connects", "protocol"),
+    "parameter_declaration": ("value",), "type": ("message", "frame"), "frame": ("parent",),
+    "node": ("name", "kind", "command", "container"), "container": ("name",), "link": ("connects", "protocol"),
 }
 """Keys whose values keep their places, each in a field `KEY_at`."""
 SECTION_KINDS: Mapping[str, str] = {

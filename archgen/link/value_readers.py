@@ -14,10 +14,12 @@ from typing import Any
 from archgen.diagnostics.source_span import Span
 from archgen.language.language_tables import ATTRIBUTES, DATA_PARTS, KEYS, PART_TYPES, PLACED_KEYS, WORDS
 from archgen.link import mapping_values
-from archgen.model.component import DiagramLayout, RequirementUse
+from archgen.model.component import PerformanceIndicator, RequirementUse
 from archgen.model.declared_timing import SchedulingOrder
 from archgen.model.element_annotations import ElementAnnotations
+from archgen.model.parameter import Operation
 from archgen.model.path_resolver import title_from_id
+from archgen.model.use_case_steps import Actor
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode
 
 ValueReader = Callable[[MappingNode, str], Any]
@@ -59,7 +61,7 @@ def store_value(values: dict[str, Any], names: tuple[str, ...], value: Any) -> N
 
 def list_fields(kind: str, key: str) -> tuple[str, ...]:
     """Return the fields that hold a key."""
-    return ATTRIBUTES.get(f"{kind}.{key}", (key,))
+    return ATTRIBUTES.get(f"{kind}.{key}") or ATTRIBUTES.get(find_type(kind, key), (key,))
 
 
 def find_type(kind: str, key: str) -> str:
@@ -73,14 +75,18 @@ def _list_readers(
     kind: str, made_class: type
 ) -> tuple[Mapping[str, tuple[tuple[str, ...], ValueReader]], tuple[tuple[str, str], ...]]:
     """Return the readers of the keys that a class has fields for, and the fields that keep the places of values."""
-    field_names = {field.name for field in fields(made_class)}
+    held_keys = list_held_keys(kind, made_class)
     readers = {
-        key: (list_fields(kind, key), reader)
-        for key in KEYS[kind]
-        if field_names.issuperset(list_fields(kind, key)) and (reader := find_value_reader(kind, key))
+        key: (names, reader) for key, names in held_keys.items() if (reader := find_value_reader(kind, key)) is not None
     }
-    places = ((key, f"{key}_at") for key in PLACED_KEYS.get(kind, ()))
-    return readers, tuple(place for place in places if place[1] in field_names)
+    return readers, tuple((key, f"{key}_at") for key in PLACED_KEYS.get(kind, ()) if key in held_keys)
+
+
+def list_held_keys(kind: str, made_class: type) -> dict[str, tuple[str, ...]]:
+    """Return the keys of a kind for which a class has fields, with these."""
+    field_names = {field.name for field in fields(made_class)}
+    keys = {key: list_fields(kind, key) for key in KEYS[kind]}
+    return {key: names for key, names in keys.items() if field_names.issuperset(names)}
 
 
 def find_value_reader(kind: str, key: str) -> ValueReader | None:
@@ -119,15 +125,32 @@ def _read_node_kinds(mapping: MappingNode, key: str) -> tuple[str, ...] | None:
 
 
 def _read_annotations(mapping: MappingNode, _key: str) -> ElementAnnotations:
-    return mapping_values.get_annotations(mapping)
+    """Return an element's properties and hints, whichever of the two keys is read."""
+    properties = {entry.key: entry.value for entry in mapping_values.get_mapping(mapping, "properties")}
+    return ElementAnnotations(
+        properties=mapping_values.get_text_mapping(mapping, "properties"),
+        hints=mapping_values.get_data(mapping, "hints"),
+        property_places={name: value.span for name, value in properties.items()},
+        hint_places=dict(mapping_values.list_hint_places(mapping_values.get_mapping(mapping, "hints"))),
+    )
 
 
-def _read_layout(mapping: MappingNode, _key: str) -> DiagramLayout:
-    return mapping_values.get_layout(mapping)
+def read_operations(mapping: MappingNode, key: str) -> dict[str, Operation]:
+    """Return what can be called at a component, by id."""
+    return _make_elements(mapping, key, "operation", Operation)
 
 
-def _read_message(mapping: MappingNode, _key: str) -> str | None:
-    return mapping_values.get_message(mapping)
+def _read_actors(mapping: MappingNode, key: str) -> dict[str, Actor]:
+    return _make_elements(mapping, key, "actor", Actor)
+
+
+def _read_performance(mapping: MappingNode, key: str) -> tuple[PerformanceIndicator, ...]:
+    return tuple(_make_elements(mapping, key, "indicator", PerformanceIndicator).values())
+
+
+def _make_elements(mapping: MappingNode, key: str, kind: str, made_class: type[Any]) -> dict[str, Any]:
+    elements = mapping_values.iterate_elements(mapping, key)
+    return {name: made_class(**read_element(kind, made_class, entry, body)) for name, entry, body in elements}
 
 
 def _read_text_lists(mapping: MappingNode, key: str) -> Mapping[str, tuple[str, ...]]:
@@ -177,16 +200,19 @@ def _read_host_orders(
 VALUE_READERS: Mapping[str, ValueReader | None] = {
     # What takes more than its value.
     **dict.fromkeys(("chain.deadline", "component_type.abstract", "input.freshness", "frame.rate"), None),
-    **dict.fromkeys(("property_declaration.required", "start_ready.within"), None),
+    **dict.fromkeys(("property_declaration.required", "start_ready.within", "timing.deadline"), None),
     **dict.fromkeys(("text", "prose", "requirement_word", "topic_name_or_nothing"), mapping_values.get_text),
-    **dict.fromkeys(("system_user", "frame_name", "report.date", "project.id"), mapping_values.get_text),
+    **dict.fromkeys(
+        ("system_user", "frame_name", "report.date", "project.id", "parameter_declaration.from"),
+        mapping_values.get_text,
+    ),
     **dict.fromkeys(
         ("project.title", "requirement.title", "use_case.title", "frame.title", "node.name"), _read_filled_text
     ),
     **dict.fromkeys(("texts", "tags", "reviewers", "open_sets", "variant_ids"), mapping_values.get_texts),
     **dict.fromkeys(("key_paths", "property_declaration.choices", "report.authors"), mapping_values.get_texts),
     **dict.fromkeys(("count", "port_number", "index", "view.depth"), mapping_values.get_integer),
-    "flag": mapping_values.get_flag,
+    **dict.fromkeys(("flag", "report.large_paper"), mapping_values.get_flag),
     "duration": partial(mapping_values.get_quantity, dimension="duration"),
     "frequency": partial(mapping_values.get_quantity, dimension="frequency"),
     "size": partial(mapping_values.get_quantity, dimension="size"),
@@ -194,14 +220,17 @@ VALUE_READERS: Mapping[str, ValueReader | None] = {
     **dict.fromkeys(("urls", "remaps", "start_environment"), mapping_values.get_text_mapping),
     **dict.fromkeys(("project.middleware", "link.protocol"), mapping_values.get_medium),
     **dict.fromkeys(("node.namespace", "container.namespace"), mapping_values.get_absolute_name),
-    "layout": _read_layout,
-    "message": _read_message,
+    "layout": mapping_values.get_layout,
+    "message": mapping_values.get_message,
     **dict.fromkeys(("properties", "hints"), _read_annotations),
     **dict.fromkeys(("type_name", "message_part"), _read_type_name),
     "declared_of": _read_distinct_texts,
     "node_kinds": _read_node_kinds,
     "parameter_commands": _read_text_lists,
+    "actors": _read_actors,
+    "operations": read_operations,
     "operation_fields": _read_operation_types,
+    "performance": _read_performance,
     "component_requirements": _read_requirement_uses,
     "host_scheduling": _read_host_orders,
     "chain.requirements": _read_placed_texts,

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
-from typing import Any
+from typing import Any, get_args, get_origin, get_type_hints
 
 import jsonschema_rs
 import pytest
@@ -17,15 +17,10 @@ import pytest
 from archgen import pipeline
 from archgen.compare.kinds import ELEMENT_KINDS, KIND_ORDER, MATCHING_ORDER, Effect, find_effect, find_key
 from archgen.compare.kinds.shared_keys import TIMING_KEYS
-from archgen.model.architecture import Architecture, Chain, Partner, Policy, ProjectInfo, UseCase, View
-from archgen.model.component import Component, ComponentType, Group, Input, Output
-from archgen.model.coordinate_frames import Frame
+from archgen.language.language_tables import ENTRIES, KEYS
+from archgen.link.value_readers import list_fields
+from archgen.model.architecture import Architecture, ProjectInfo
 from archgen.model.declared_timing import Timing
-from archgen.model.deployment import Container, Host, Link, Resource
-from archgen.model.message_types import ConceptualType
-from archgen.model.node import Node
-from archgen.model.requirement import Requirement
-from archgen.model.variant import Variant
 from archgen.views.elements.element_card import make_card
 from archgen.views.elements.element_names import kinds_by_id
 from archgen.views.lookup import Lookup, make_lookup
@@ -33,50 +28,15 @@ from archgen.views.records.resolved_record import make_record
 from tests.running import ROOT
 
 SCHEMA = json.loads((ROOT / "schemas" / "archgen.schema.json").read_text(encoding="utf-8"))
+_MAPPED_CLASSES = {
+    name: get_args(hint)[1] for name, hint in get_type_hints(Architecture).items() if get_origin(hint) is Mapping
+}
+SECTIONS = {kind: name for name in _MAPPED_CLASSES if (kind := ENTRIES.get(name, "")) in ELEMENT_KINDS}
+"""Each kind with its section of the architecture."""
 MODEL_CLASSES: Mapping[str, type] = {
     "project": ProjectInfo,
-    "partner": Partner,
-    "use_case": UseCase,
-    "requirement": Requirement,
-    "component_type": ComponentType,
-    "group": Group,
-    "component": Component,
-    "output": Output,
-    "input": Input,
-    "type": ConceptualType,
-    "node": Node,
-    "host": Host,
-    "container": Container,
-    "resource": Resource,
-    "link": Link,
-    "frame": Frame,
-    "chain": Chain,
-    "policy": Policy,
-    "variant": Variant,
-    "view": View,
+    **{kind: _MAPPED_CLASSES[section] for kind, section in SECTIONS.items()},
 }
-SECTIONS = {
-    "partner": "partners",
-    "use_case": "use_cases",
-    "requirement": "requirements",
-    "component_type": "component_types",
-    "group": "groups",
-    "component": "components",
-    "output": "outputs",
-    "input": "inputs",
-    "type": "types",
-    "node": "nodes",
-    "host": "hosts",
-    "container": "containers",
-    "resource": "resources",
-    "link": "links",
-    "frame": "frames",
-    "chain": "chains",
-    "policy": "policies",
-    "variant": "variants",
-    "view": "views",
-}
-"""Each kind with its section of the architecture."""
 
 NOT_WRITTEN_KINDS = {
     "chapter": "a file of its own",
@@ -134,16 +94,12 @@ TABLE_ONLY_FOR_SCHEMA = {
     **dict.fromkeys(("project properties", "project glossary"), "sections of their own"),
 }
 MODEL_ONLY = {
-    **{f"{kind} annotations": "the keys `properties` and `hints`" for kind in SECTIONS if kind != "variant"},
     "component parent": "the beginning of the id",
     "component children": "elements of their own",
-    "component component_type": "the key `is`",
     "component is_reference": "the key `is`",
     "output is_made": "what it gives on, as `autoconnect` follows from all that is written",
-    "component_type base": "the key `is`",
     "component_type library": "the beginning of the id",
     "type library": "where it is declared",
-    "component_type is_abstract": "the key `abstract`",
     "component_type frames": "those of its instances",
     "node wholes": "its components are in the key `implements`",
     **{f"{kind} id": "the key of the element" for kind in SECTIONS if kind != "type"},
@@ -158,34 +114,11 @@ MODEL_ONLY = {
     **dict.fromkeys(("node implements_written", "node written"), "only for rules"),
     **dict.fromkeys(("component inputs_known", "component outputs_known"), "in the keys `inputs` and `outputs`"),
     "component requirements_known": "only for rules",
-    **dict.fromkeys(("input medium_written", "output medium_written"), "the key `medium`"),
-    "node kinds": "the key `kind`",
-    "host core_scheduling": "the keys below `scheduling`",
     "node uses": "the kind `port`",
-    **dict.fromkeys(("link best", "link worst"), "the keys below `latency`"),
-    **dict.fromkeys(("policy forbid_from", "policy forbid_to"), "the keys below `forbid`"),
-    "chain unresolved": "only for rules",
-    "requirement parents": "the key `parent`",
-    "link unresolved": "only for rules",
-    "frame by_kind": "what the key `by` names",
     "frame component": "where it is written",
-    "frame by_written": "only for rules",
 }
 TABLE_ONLY_FOR_MODEL = {
-    **{
-        f"{kind} {key}": "the field `annotations`"
-        for kind in SECTIONS
-        if kind != "variant"
-        for key in ("properties", "hints")
-    },
-    "component is": "the fields `component_type` and `is_reference`",
     **{f"component_type {key}": "the field of its pattern" for key in READ_OFF_PATTERNS - _SHOWN_SETTINGS},
-    "component_type is": "the field `base`",
-    "component_type abstract": "the field `is_abstract`",
-    "node kind": "the field `kinds`",
-    "requirement parent": "the field `parents`",
-    "link latency": "the fields `best` and `worst`",
-    "policy forbid": "the fields `forbid_from` and `forbid_to`",
     "component mapped": "follows from the nodes",
     **{
         f"project {key}": "a field of the architecture or of the version"
@@ -360,6 +293,11 @@ def table_keys(kind: str) -> set[str]:
     return {key.name.partition(".")[0] for key in ELEMENT_KINDS[kind].keys}
 
 
+def find_fields(kind: str, key: str) -> tuple[str, ...]:
+    """Return the fields of the model that hold a key of the table."""
+    return list_fields(kind, key) if key in KEYS[kind] else (key,)
+
+
 def missing(kind: str, names: Iterable[str], exceptions: Mapping[str, str], known: Iterable[str]) -> list[str]:
     """Return the names that are neither known nor excepted."""
     return sorted(name for name in set(names) - set(known) if f"{kind} {name}" not in exceptions)
@@ -375,8 +313,10 @@ def test_what_the_schema_lets_one_write_is_compared(kind: str) -> None:
 @pytest.mark.parametrize("kind", list(MODEL_CLASSES))
 def test_what_the_model_holds_is_compared(kind: str) -> None:
     held = [field.name for field in fields(MODEL_CLASSES[kind]) if field.compare]
-    assert missing(kind, held, MODEL_ONLY, table_keys(kind)) == [], "fields of the model without a KeySpec"
-    assert missing(kind, table_keys(kind), TABLE_ONLY_FOR_MODEL, held) == [], "keys without a field"
+    compared = {name for key in table_keys(kind) for name in find_fields(kind, key)}
+    assert missing(kind, held, MODEL_ONLY, compared) == [], "fields of the model without a KeySpec"
+    known = {key for key in table_keys(kind) if find_fields(kind, key)[0] in held}
+    assert missing(kind, table_keys(kind), TABLE_ONLY_FOR_MODEL, known) == [], "keys without a field"
 
 
 def test_what_timing_can_be_written_is_compared() -> None:

@@ -9,10 +9,10 @@ from archgen.compose import ExpandedProject
 from archgen.compose.library_types import library_of_type
 from archgen.compose.type_table import is_abstract, list_generic_names
 from archgen.link import mapping_values
-from archgen.link.declare.parameter_declaration import declare_operations, declare_parameters
+from archgen.link.declare.parameter_declaration import declare_parameters
 from archgen.link.promise_reading import read_deprecation
 from archgen.link.reference_resolution import ReferenceResolver
-from archgen.link.value_readers import read_element, read_values
+from archgen.link.value_readers import read_element, read_operations, read_values
 from archgen.model.component import ComponentType
 from archgen.model.coordinate_frames import Frame
 from archgen.model.promise import Deprecation
@@ -47,7 +47,6 @@ def declare_component_types(expansion: ExpandedProject, resolver: ReferenceResol
             outputs=_read_port_types(whole_body, "outputs"),
             components=tuple(mapping_values.get_mapping(whole_body, "components").entries),
             parameters=declare_parameters(whole_body),
-            operations=declare_operations(whole_body),
             frames=tuple(_read_frames(whole_body)),
             inner_types=frozenset(_list_inner_types(whole_body)),
             at=entry.key_span,
@@ -75,7 +74,7 @@ def _list_inner_types(body: MappingNode) -> Iterator[str]:
     for _, _, part in mapping_values.iterate_elements(body, "components"):
         for side in ("inputs", "outputs"):
             yield from filter(None, _read_port_types(part, side).values())
-        for operation in declare_operations(part).values():
+        for operation in read_operations(part, "operations").values():
             yield from operation.type_names
         for key in ("is", "same_as"):
             expression = mapping_values.get_text(part, key) or ""

@@ -1,19 +1,11 @@
-"""Declare what links connect, and how long a message is on its way over one."""
+"""Declare what links connect: hosts, and components that are devices."""
 
 from __future__ import annotations
 
-from archgen.link import mapping_values, sanity_checks
+from archgen.link import mapping_values
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.path_resolver import ElementRef
-from archgen.model.quantity import Quantity
 from archgen.syntax.yaml_tree import MappingNode
-
-
-def read_latency(
-    body: MappingNode, key: str, link_id: str, resolver: ReferenceResolver
-) -> tuple[Quantity | None, Quantity | None]:
-    """Return the best and the worst latency of a link."""
-    return sanity_checks.read_latency(mapping_values.get_mapping(body, key), link_id, resolver.diagnostics)
 
 
 def read_link_ends(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import field
 from typing import NamedTuple, TypeVar
 
@@ -11,7 +11,6 @@ from archgen.frozen import dataclass, replace
 from archgen.link import mapping_values
 from archgen.link.automatic_connections import join_ports
 from archgen.link.declare.handed_parameters import HandedParameters
-from archgen.link.declare.parameter_declaration import declare_operations
 from archgen.link.declare.promise_declaration import PromisedOutputs
 from archgen.link.declare.timing_declaration import declare_timing
 from archgen.link.element_outline import ElementOutline
@@ -29,7 +28,6 @@ from archgen.model.component import (
     Group,
     Input,
     Output,
-    PerformanceIndicator,
 )
 from archgen.model.message_types import ConceptualType
 from archgen.model.path_resolver import title_from_id
@@ -250,7 +248,6 @@ class _GroupDeclarer:
             owner=next(iter(owners), None),
             co_owners=owners[1:],
             requirements_known=body.get("requirements") is not None,
-            performance=tuple(_read_performance(body)),
             inputs={port_name: self._fill_in_frame(port) for port_name, port in inputs.items()},
             # Absent means not known yet, `{}` means known to be none: three of these flags keep the difference.
             inputs_known=body.get("inputs") is not None,
@@ -260,7 +257,6 @@ class _GroupDeclarer:
             },
             outputs_known=body.get("outputs") is not None,
             parameters=self.parameters.find_parameters(component_id),
-            operations=declare_operations(body),
             timing=declare_timing(
                 entry,
                 PortResolver(self.resolver, component_id, (component_id,), self.outline.port_names),
@@ -268,8 +264,3 @@ class _GroupDeclarer:
             ),
             at=entry.key_span,
         )
-
-
-def _read_performance(body: MappingNode) -> Iterator[PerformanceIndicator]:
-    for _, entry, indicator_body in mapping_values.iterate_elements(body, "performance"):
-        yield PerformanceIndicator(**read_element("indicator", PerformanceIndicator, entry, indicator_body))

@@ -202,7 +202,7 @@ def _declare_use(
         port=port,
         topics=tuple(scalar.text for scalar in names),
         own_name=mapping_values.get_text(use_body, "own_name"),
-        message=mapping_values.get_message(use_body),
+        message=mapping_values.get_message(use_body, "message"),
         qos=_read_qos(use, use_body),
         internal=is_internal,
         at=entry.key_span,

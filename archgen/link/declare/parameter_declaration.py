@@ -1,16 +1,14 @@
-"""Declare the parameters and operations of components."""
+"""Declare the parameters of components."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import cast
 
-from archgen.diagnostics.source_span import NO_SPAN
 from archgen.link import mapping_values
-from archgen.link.value_readers import read_element, read_values
-from archgen.model.parameter import Operation, Parameter, format_parameter
+from archgen.link.value_readers import read_values
+from archgen.model.parameter import Parameter, format_parameter
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, node_to_data
 
 _HANDED_PREFIX = "self."
@@ -32,7 +30,6 @@ def _declare_parameter(entry: MappingEntry, declaration: MappingNode) -> Paramet
     ]
     choices = declaration.get("choices")
     value = declaration.get("value")
-    hints = declaration.get("hints")
     return Parameter(
         name=entry.key,
         **read_values("parameter_declaration", Parameter, declaration),
@@ -41,11 +38,9 @@ def _declare_parameter(entry: MappingEntry, declaration: MappingNode) -> Paramet
         choices=None
         if choices is None
         else tuple(item.value for item in mapping_values.get_scalars(declaration, "choices")),
-        handed_from=mapping_values.get_text(declaration, "from"),
-        hints=cast("Mapping[str, object]", node_to_data(hints)) if isinstance(hints, MappingNode) else {},
-        hint_places=dict(mapping_values.list_hint_places(hints)) if isinstance(hints, MappingNode) else {},
+        hints=mapping_values.get_data(declaration, "hints"),
+        hint_places=dict(mapping_values.list_hint_places(mapping_values.get_mapping(declaration, "hints"))),
         at=entry.key_span,
-        value_at=value.span if value is not None else NO_SPAN,
     )
 
 
@@ -91,11 +86,3 @@ def fill_in_text(text: str, outer_parameters: Mapping[str, Parameter]) -> tuple[
         return match[0] if parameter is None or parameter.value is None else format_parameter(parameter.value)
 
     return _REFERENCE_PATTERN.sub(replace_reference, text), tuple(missing_names)
-
-
-def declare_operations(body: MappingNode) -> dict[str, Operation]:
-    """Declare the operations of a component, by id."""
-    return {
-        name: Operation(**read_element("operation", Operation, entry, operation))
-        for name, entry, operation in mapping_values.iterate_elements(body, "operations")
-    }

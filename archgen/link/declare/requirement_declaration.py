@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.link import mapping_values
@@ -25,12 +23,7 @@ def read_verifications(
     body: MappingNode, key: str, requirement_id: str, resolver: ReferenceResolver
 ) -> tuple[Verification, ...]:
     """Return what shows that a requirement is met, each once; of what is both a use case and a chain nothing."""
-    return tuple(_read_verifications(body, key, requirement_id, resolver))
-
-
-def _read_verifications(
-    body: MappingNode, key: str, requirement_id: str, resolver: ReferenceResolver
-) -> Iterator[Verification]:
+    found: list[Verification] = []
     seen_texts: set[str] = set()
     for scalar in mapping_values.get_scalars(body, key):
         text = scalar.text.strip()
@@ -51,9 +44,10 @@ def _read_verifications(
                 )
             )
         elif use_case_span:
-            yield Verification("use_case", text, scalar.span)
+            found.append(Verification("use_case", text, scalar.span))
         elif chain_span:
-            yield Verification("chain", text, scalar.span)
+            found.append(Verification("chain", text, scalar.span))
         else:
             is_sentence = any(letter.isspace() for letter in text)
-            yield Verification("text" if is_sentence else "file", text, scalar.span)
+            found.append(Verification("text" if is_sentence else "file", text, scalar.span))
+    return tuple(found)

@@ -20,12 +20,9 @@ def declare_use_cases(root: MappingNode, resolver: ReferenceResolver) -> dict[st
     """Declare the use cases."""
     use_cases: dict[str, UseCase] = {}
     for name, entry, body in mapping_values.iterate_elements(root, "use_cases"):
-        actors = {
-            actor_id: Actor(**read_element("actor", Actor, actor, actor_body))
-            for actor_id, actor, actor_body in mapping_values.iterate_elements(body, "actors")
-        }
-        steps = tuple(_declare_steps(body, actors, name, resolver))
-        use_cases[name] = UseCase(**read_element("use_case", UseCase, entry, body), actors=actors, steps=steps)
+        values = read_element("use_case", UseCase, entry, body)
+        steps = tuple(_declare_steps(body, values.get("actors", {}), name, resolver))
+        use_cases[name] = UseCase(**values, steps=steps)
     return use_cases
 
 
