@@ -84,7 +84,7 @@ def _list_compared(description: Description) -> list[str]:
 def list_key_facts(description: Description, kind: str) -> Mapping[str, Facts]:
     """Return what a comparison knows of each key of a kind, but for those whose changes are told elsewhere."""
     return {
-        name: _gather_facts(description, kind, said)
+        name: _gather_facts(description, kind, key_name, said)
         for key_name, key in description.keys_of(kind).items()
         if "told" not in key
         for name, said in _list_rows(description, key_name, key)
@@ -99,6 +99,7 @@ def _list_rows(description: Description, name: str, key: Part) -> Iterator[tuple
     part = description.type_of(key)
     shared = {word: part[word] for word in _SHARED_WORDS if word in part}
     said = {**shared, **{word: value for word, value in key.items() if word in {*_SHARED_WORDS, *_OWN_WORDS}}}
+    said |= _find_first_field(name, key)
     accepted = set(list_accepted(part)) - {"null"}
     is_mapping = "object" in accepted and said.get("form") not in _PLAIN_FORMS
     is_both = is_mapping and accepted != {"object"} and "short" not in part
@@ -108,8 +109,16 @@ def _list_rows(description: Description, name: str, key: Part) -> Iterator[tuple
     if is_mapping:
         below = shared if is_both else said
         is_inner = key.get("type") in _list_compared(description)
+        if is_inner and isinstance(key.get("attribute"), list):  # several fields: what reads it knows them
+            below = {word: value for word, value in below.items() if word != "attribute"}
         inner = {"inner": key["type"]} if is_inner else {"form": below.get("form") or _find_form(description, part)}
         yield f"{name}.", {**below, **inner}
+
+
+def _find_first_field(name: str, key: Part) -> Part:
+    """Return the field that a comparison reads; nothing to say where that is called as the key."""
+    fields = key.get("attribute", name)
+    return {"attribute": fields[0] if isinstance(fields, list) else fields}
 
 
 def _find_plain_form(part: Part, accepted: set[str]) -> str:
@@ -127,12 +136,12 @@ def _find_form(description: Description, part: Part) -> str:
     return "entries" if holds_elements else "mapping"
 
 
-def _gather_facts(description: Description, kind: str, said: Part) -> Facts:
+def _gather_facts(description: Description, kind: str, name: str, said: Part) -> Facts:
     """Return what stands in the table: what goes without saying is left out."""
     limit = EFFECTS.index(description.kinds[kind]["effect"])
     effect = EFFECTS[min(limit, EFFECTS.index(said.get("effect", EFFECTS[limit])))]
     facts = {**said, "effect": effect, "names": said.get("names") or _find_offered_kind(description, said)}
-    unsaid = {"effect": EFFECTS[-1], "names": None, "form": "value"}
+    unsaid = {"effect": EFFECTS[-1], "names": None, "form": "value", "attribute": name}
     return {word: facts[word] for word in _TABLE_WORDS if word in facts and facts[word] != unsaid.get(word, "")}
 
 

@@ -63,6 +63,7 @@ _OTHER_WORDS = frozenset(
             "unit",
             "unrecorded",
             "common_word",
+            "place",
         ),
         *("effect", "worse", "form", "attribute", "default", "names", "told", "noun", "verb", "verbs", "new_verb"),
     }
@@ -293,6 +294,9 @@ def find_faults(description: Description) -> Iterator[str]:
         yield from _find_part_faults(f"common.{name}", part, description)
     for name, part in description.types.items():
         yield from _find_part_faults(name, part, description)
+        yield from _find_field_faults(name, part)
+        if "place" in part:
+            yield f"{name}: `place` is a word of keys"
     for kind, part in description.kinds.items():
         yield from _find_part_faults(kind, part, description)
         for name, key in description.keys_of(kind).items():
@@ -300,8 +304,24 @@ def find_faults(description: Description) -> Iterator[str]:
             is_known = key.get("type", kind) in description.parts
             if is_known and not _make_key_schema(description, key).keys() & {"examples", "defaultSnippets"}:
                 yield f"{kind}.{name}: neither the key nor its type has an `example` or a `snippet`"
+            yield from _find_field_faults(f"{kind}.{name}", key)
             if part.get("supporting") and "declares" not in key:
                 yield f"{kind}.{name}: `declares` says whether a file that says only this declares a {kind}"
+
+
+def _find_field_faults(place: str, part: Part) -> Iterator[str]:
+    """Yield what is wrong with what a key or a type says of the fields that hold it."""
+    if "attribute" in part:
+        attribute, name = part["attribute"], place.rpartition(".")[2]
+        names = attribute if isinstance(attribute, list) else [attribute]
+        if names == [name] or len(set(names)) < len(names) or not all(map(_is_field, names)):
+            yield f"{place}: `attribute` is the field that holds it where that is called otherwise, or a list of fields"
+    if part.get("place", True) is not True:
+        yield f"{place}: `place` is `true`, or left out"
+
+
+def _is_field(name: PlainData) -> bool:
+    return isinstance(name, str) and name.isidentifier() and name.islower()
 
 
 def _find_part_faults(place: str, part: Part, description: Description) -> Iterator[str]:

@@ -47,6 +47,9 @@ def make_tables(description: Description) -> str:
         if not part.keys() & {"supporting", "like"}
         and (names := tuple(name for name, key in description.keys_of(kind).items() if key.get("declares")))
     }
+    modelled = {
+        kind: description.keys_of(kind) for kind, part in description.kinds.items() if part.get("element", True)
+    }
     tables = "\n".join(
         [
             _format_literal("KindName", description.kinds),
@@ -79,6 +82,34 @@ def make_tables(description: Description) -> str:
                 "COMMON_SECTIONS",
                 (name for name, key in description.keys_of(SLICE).items() if key.get("common_word")),
                 "Sections that files of other programs may have, too.",
+            ),
+            format_table(
+                "WORDS",
+                {name: tuple(part["values"]) for name, part in parts.items() if _is_word(part)},
+                "The words of which one stands at a part.",
+            ),
+            format_table(
+                "PART_TYPES",
+                {name: part["type"] for name, part in parts.items() if "type" in part},
+                "The types of the parts that say more than their type.",
+            ),
+            format_table(
+                "ATTRIBUTES",
+                {
+                    name: _as_tuple(part["attribute"])
+                    for name, part in (*description.types.items(), *_name_keys(modelled))
+                    if "attribute" in part
+                },
+                "The fields of the model that hold what stands at a key, or keys of a type, where they are not called as it.",
+            ),
+            format_table(
+                "PLACED_KEYS",
+                {
+                    kind: names
+                    for kind, keys_by_name in modelled.items()
+                    if (names := tuple(name for name, key in keys_by_name.items() if "place" in key))
+                },
+                "Keys whose values keep their places, each in a field `KEY_at`.",
             ),
             format_table("SECTION_KINDS", sections, "Sections whose keys are ids of elements: the kind of these."),
             format_names(
@@ -134,6 +165,7 @@ def _name_references(place: str, part: Part, description: Description, parts: di
         # A key that says more than its type of what stands there is a part of its own.
         base = parts_of(inner["type"]) if "type" in inner else inner
         parts[name] = _name_references(name, {**base, **own_facts}, description, parts)
+        parts[name] |= {"type": inner["type"]} if "type" in inner else {}
         return name
 
     def parts_of(name: str) -> Part:
@@ -155,6 +187,14 @@ def _name_references(place: str, part: Part, description: Description, parts: di
 def _is_bare(part: Part) -> bool:
     scalars = set(list_accepted(part)) - {"null", "object", "array"}
     return bool(part.get("bare")) or (bool(scalars) and scalars <= _TEXTLESS_KINDS)
+
+
+def _name_keys(kinds: Mapping[str, Mapping[str, Part]]) -> Iterable[tuple[str, Part]]:
+    return ((f"{kind}.{name}", key) for kind, keys in kinds.items() for name, key in keys.items())
+
+
+def _is_word(part: Part) -> bool:
+    return "values" in part and "string" in list_accepted(part)
 
 
 def _as_tuple(value: str | list[str]) -> tuple[str, ...]:

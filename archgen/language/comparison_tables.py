@@ -121,7 +121,7 @@ KEY_FACTS: Mapping[str, Mapping[str, KeyFacts]] = {
         "title": {"form": "title", "effect": "text"},
         "functionality": {"form": "prose", "effect": "text"},
         "description": {"form": "prose", "effect": "text"},
-        "is": {"effect": "system", "noun": "component type", "verb": "is made from"},
+        "is": {"attribute": "component_type", "effect": "system", "noun": "component type", "verb": "is made from"},
         "owner": {"names": "partner", "effect": "system", "verb": "belongs to"},
         "role": {"effect": "system", "verb": "is a"},
         "requirements": {

@@ -440,6 +440,65 @@ COMMON_SECTIONS: frozenset[str] = frozenset({
     "frames", "glossary", "libraries", "properties", "variants",
 })
 """Sections that files of other programs may have, too."""
+WORDS: Mapping[str, tuple[str, ...]] = {
+    "autoconnect": ("ports", "types"), "behaviour": ("periodic", "event", "on_demand", "once"),
+    "code_language": ("python", "cpp"),
+    "declared_of[]": ("partner", "use_case", "requirement", "view", "group", "component", "component_type", "input", "output", "type", "frame", "node", "host", "container", "resource", "link", "policy", "chain"),
+    "direction": ("left-right", "top-bottom"), "dropped": ("kept", "forgotten"),
+    "level": ("functional", "implementation"),
+    "node_kind_item": ("node", "lifecycle", "composable", "driver", "nodelet", "program"),
+    "node_status": ("planned", "existing", "adapted"), "qos_durability": ("volatile", "transient_local"),
+    "qos_history": ("keep_last", "keep_all"), "qos_liveliness": ("automatic", "manual_by_topic"),
+    "qos_profile": ("default", "sensor_data", "services", "parameters", "parameter_events", "system_default"),
+    "qos_reliability": ("reliable", "best_effort"), "role": ("source", "filter", "sink", "reactive"),
+    "severity": ("note", "off", "warning", "error"), "start_phase": ("network", "simulators", "core", "components"),
+    "start_state": ("unconfigured", "inactive", "active"), "status": ("planned", "existing"),
+    "visibility": ("public", "protected", "private"), "report.lists[]": ("figures", "tables"),
+    "property_declaration.type": ("boolean", "integer", "float", "string", "date"),
+    "view.colour": ("group", "owner", "role", "status", "host", "package", "tag"),
+    "operation.call": ("synchronous", "asynchronous"),
+    "parameter_declaration.type": ("boolean", "integer", "float", "string", "boolean[]", "integer[]", "float[]", "string[]"),
+    "timing_input.stored": ("at_once",),
+}
+"""The words of which one stands at a part."""
+PART_TYPES: Mapping[str, str] = {
+    "project.middleware": "medium", "review.backends": "texts", "review.passes": "texts", "variant.of": "variant_ids",
+    "variant.without": "text", "step.from": "step_end", "step.to": "step_end",
+    "requirement.parent": "requirement_parents", "requirement.verified_by": "verifications",
+    "requirement.use_cases": "requirement_ids", "view.show": "text", "component_node.container": "id",
+    "component_node.host": "id", "input.from": "references", "input.medium": "medium", "input.frame": "frame_name",
+    "output.medium": "medium", "output.frame": "frame_name", "type_input.medium": "medium",
+    "type_input.frame": "frame_name", "operation.request": "operation_fields", "operation.response": "operation_fields",
+    "type.message": "message", "type.frame": "frame_name", "frame.parent": "frame_name", "frame.by": "frame_writer",
+    "promise.frame": "frame_name", "node.implements": "references", "node.container": "id", "node.host": "id",
+    "topic_use.message": "message", "call_use.message": "message", "container.host": "id", "resource.host": "id",
+    "link.connects": "link_ends", "link.protocol": "medium", "start.after": "references", "start.by": "start_manager",
+    "require.of": "text", "require.inputs_from": "text", "forbid.from": "text", "forbid.to": "text",
+    "chain.through": "way", "chain.requirements": "requirement_ids",
+}
+"""The types of the parts that say more than their type."""
+ATTRIBUTES: Mapping[str, tuple[str, ...]] = {
+    "hints": ("annotations",), "properties": ("annotations",), "report.large_paper": ("has_large_paper",),
+    "requirement.parent": ("parents", "parent_at"), "component.is": ("component_type",),
+    "component.same_as": ("is_reference",), "component_type.is": ("base",), "component_type.abstract": ("is_abstract",),
+    "input.from": ("connections", "from_written"), "input.medium": ("medium", "medium_written"),
+    "output.medium": ("medium", "medium_written"), "parameter_declaration.from": ("handed_from",),
+    "parameter_declaration.hints": ("hints", "hint_places"), "frame.by": ("by", "by_kind", "by_written"),
+    "node.kind": ("kinds",), "host.scheduling": ("scheduling", "core_scheduling", "core_places"),
+    "link.connects": ("connects", "devices", "unresolved"), "link.latency": ("best", "worst"),
+    "start.by": ("by", "by_written"), "policy.forbid": ("forbid_from", "forbid_to", "from_at", "to_at"),
+    "policy.accepted": ("accepted", "accepted_places"), "forbid.from": ("forbid_from",), "forbid.to": ("forbid_to",),
+    "timing.wcet": ("wcet", "measured_times"), "chain.through": ("through", "unresolved"),
+    "chain.requirements": ("requirements", "requirement_places"),
+}
+"""The fields of the model that hold what stands at a key, or keys of a type, where they are not called as it."""
+PLACED_KEYS: Mapping[str, tuple[str, ...]] = {
+    "view": ("show",), "component": ("role",), "component_type": ("role",),
+    "input": ("medium", "type", "freshness", "frame"), "output": ("type", "medium", "frame"),
+    "parameter_declaration": ("value",), "type": ("message", "frame"), "frame": ("parent",),
+    "node": ("name", "kind", "command", "container"), "container": ("name",), "link": ("connects", "protocol"),
+}
+"""Keys whose values keep their places, each in a field `KEY_at`."""
 SECTION_KINDS: Mapping[str, str] = {
     "partners": "partner", "use_cases": "use_case", "requirements": "requirement", "properties": "property_declaration",
     "component_types": "component_type", "libraries": "library", "groups": "group", "nodes": "node", "types": "type",

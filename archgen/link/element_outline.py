@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 from archgen.compose import ExpandedProject
 from archgen.compose.expanded_project import ComponentShell
@@ -13,6 +12,7 @@ from archgen.diagnostics.suggestions import did_you_mean
 from archgen.link import mapping_values
 from archgen.link.link_memory import LinkMemory, OutlinedPorts
 from archgen.link.promise_reading import read_deprecation, read_promise
+from archgen.link.value_readers import read_values
 from archgen.model.component import Output
 from archgen.model.port_media import ROS
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
@@ -162,28 +162,17 @@ def _outline_ports(element_outline: ElementOutline, component_id: str, body: Map
 
 def _declare_output(element_outline: ElementOutline, component: str, entry: MappingEntry) -> Output:
     body = mapping_values.get_body(entry)
-    type_text = mapping_values.get_text(body, "type")
-    said: dict[str, Any] = {}
+    said = read_values("output", Output, body)
     if not _PROMISING_KEYS.isdisjoint(body.entries):
         element_outline.promises_something = True
         said["promise"] = read_promise(body, component, element_outline.diagnostics)
-        said["version"] = mapping_values.get_text(body, "version")
         said["deprecated"] = read_deprecation(body, component, element_outline.diagnostics)
     return Output(
         id=f"{component}.{entry.key}",
         name=entry.key,
         component=component,
-        type=mapping_values.normalise_type_name(type_text) if type_text else None,
-        external=mapping_values.get_text(body, "external"),
         medium=mapping_values.get_medium(body, "medium") or element_outline.middleware,
         medium_written=mapping_values.get_medium(body, "medium") is not None,
-        frame=mapping_values.get_text(body, "frame"),
-        description=mapping_values.get_text(body, "description"),
-        urls=mapping_values.get_text_mapping(body, "urls"),
-        annotations=mapping_values.get_annotations(body),
         at=entry.key_span,
-        medium_at=mapping_values.get_span(body, "medium"),
-        type_at=mapping_values.get_span(body, "type"),
-        frame_at=mapping_values.get_span(body, "frame"),
         **said,
     )

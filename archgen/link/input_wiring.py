@@ -11,6 +11,7 @@ from archgen.link import mapping_values, sanity_checks
 from archgen.link.element_outline import ElementOutline
 from archgen.link.port_sources import PortSources
 from archgen.link.reference_resolution import ReferenceResolver
+from archgen.link.value_readers import read_values
 from archgen.model.architecture import PortEdge
 from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.message_types import ConceptualType
@@ -62,33 +63,24 @@ class InputWiring:
 
     def _make_input(self, component_id: str, entry: MappingEntry, connections: tuple[Connection, ...]) -> Input:
         body = mapping_values.get_body(entry)
-        type_text = mapping_values.get_text(body, "type")
+        values = read_values("input", Input, body)
         # What comes into a composed component from outside of the system comes so to what reads it there.
         outside = self.sources.find_outside(("input", f"{component_id}.{entry.key}")) if self.sources else body
+        values["external"] = mapping_values.get_text(outside, "external")
         return Input(
+            **values,
             id=f"{component_id}.{entry.key}",
             name=entry.key,
             component=component_id,
             connections=connections,
-            external=mapping_values.get_text(outside, "external"),
             medium=self._find_medium(body, outside, connections),
             medium_written=any(mapping_values.get_medium(each, "medium") for each in (body, outside)),
-            type=mapping_values.normalise_type_name(type_text) if type_text else None,
-            optional=mapping_values.get_flag(body, "optional"),
             freshness=sanity_checks.read_positive(
                 body, "freshness", "duration", component_id, self.resolver.diagnostics
             ),
-            frame=mapping_values.get_text(body, "frame"),
-            description=mapping_values.get_text(body, "description"),
             from_written=body.get("from") is not None
             or (self.sources is not None and ("input", f"{component_id}.{entry.key}") in self.sources.ambiguous_ports),
-            urls=mapping_values.get_text_mapping(body, "urls"),
-            annotations=mapping_values.get_annotations(body),
             at=entry.key_span,
-            medium_at=mapping_values.get_span(body, "medium"),
-            type_at=mapping_values.get_span(body, "type"),
-            freshness_at=mapping_values.get_span(body, "freshness"),
-            frame_at=mapping_values.get_span(body, "frame"),
         )
 
     def brings_same(self, component: Component) -> bool:

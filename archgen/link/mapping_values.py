@@ -13,7 +13,6 @@ from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.model import quantity
 from archgen.model.component import DiagramLayout
 from archgen.model.declared_timing import SchedulingOrder
-from archgen.model.element_annotations import NO_ANNOTATIONS, ElementAnnotations
 from archgen.model.message_types import full_message_name
 from archgen.model.path_resolver import title_from_id
 from archgen.model.port_media import normalise_medium
@@ -120,20 +119,6 @@ def get_text_mapping(mapping: MappingNode, key: str) -> Mapping[str, str]:
     return {e.key: e.value.text for e in texts_mapping if type(e.value) is ScalarNode and e.value.value is not None}
 
 
-def get_annotations(mapping: MappingNode) -> ElementAnnotations:
-    """Return an element's properties and hints."""
-    entries = mapping.entries
-    if "properties" not in entries and "hints" not in entries:  # nearly every element
-        return NO_ANNOTATIONS
-    properties = {entry.key: entry.value for entry in get_mapping(mapping, "properties")}
-    return ElementAnnotations(
-        properties=get_text_mapping(mapping, "properties"),
-        hints=get_data(mapping, "hints"),
-        property_places={name: value.span for name, value in properties.items()},
-        hint_places=dict(list_hint_places(get_mapping(mapping, "hints"))),
-    )
-
-
 def list_hint_places(hints: MappingNode) -> Iterator[tuple[tuple[str | int, ...], Span]]:
     """Yield where each part of an element's hints is written, by the keys and positions that lead there."""
     waiting: list[tuple[tuple[str | int, ...], object]] = [((), hints)]
@@ -155,9 +140,9 @@ def iterate_elements(mapping: MappingNode, key: str) -> Iterator[tuple[str, Mapp
         yield entry.key, entry, get_body(entry)
 
 
-def get_layout(mapping: MappingNode) -> DiagramLayout:
+def get_layout(mapping: MappingNode, key: str) -> DiagramLayout:
     """Return an element's layout."""
-    direction = get_text(get_mapping(mapping, "layout"), "direction")
+    direction = get_text(get_mapping(mapping, key), "direction")
     return DiagramLayout(direction) if direction in {"left-right", "top-bottom"} else DiagramLayout()  # type: ignore[arg-type]
 
 
@@ -174,7 +159,7 @@ def normalise_type_name(text_written: str) -> str:
     return full_message_name(folded) or folded
 
 
-def get_message(mapping: MappingNode) -> str | None:
+def get_message(mapping: MappingNode, key: str) -> str | None:
     """Return the full name of the message that an element names, None where there is none."""
-    message_text = get_text(mapping, "message")
+    message_text = get_text(mapping, key)
     return None if message_text is None else full_message_name(message_text.strip())

@@ -6,14 +6,14 @@ from archgen.compose import ExpandedProject
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.link import mapping_values
-from archgen.link.declare import deployment_declaration, policy_declaration, property_declaration, section_declaration
+from archgen.link.declare import policy_declaration, property_declaration, section_declaration
 from archgen.link.declare.component_nodes import declare_component_nodes
 from archgen.link.declare.component_type_declaration import declare_component_types
+from archgen.link.declare.element_declaration import declare_elements, declare_sections
 from archgen.link.declare.frame_declaration import declare_frames
 from archgen.link.declare.group_declaration import declare_groups
 from archgen.link.declare.handed_parameters import HandedParameters
 from archgen.link.declare.node_declaration import NodeContext, declare_nodes, resolve_implements
-from archgen.link.declare.requirement_declaration import declare_requirements
 from archgen.link.declare.type_declaration import DeclaredTypes
 from archgen.link.declare.use_case_declaration import declare_use_cases
 from archgen.link.declare.variant_declaration import declare_variants
@@ -23,6 +23,7 @@ from archgen.link.merged_timing import TimingMerger, find_shared_components
 from archgen.link.parameter_flattening import flatten_parameters
 from archgen.link.reference_resolution import SECTIONS_OF_PLAIN_NAMES, ReferenceResolver
 from archgen.model.architecture import Architecture
+from archgen.model.deployment import Container
 from archgen.model.known_interfaces import Interfaces
 from archgen.syntax.yaml_tree import MappingNode
 
@@ -66,23 +67,21 @@ def link_project(  # noqa: PLR0913 - all by name
         element_outline, expansion, written_targets, declared_groups, parameters, resolver
     )
     implements = implemented.implements
-    containers = deployment_declaration.declare_containers(implemented.root, resolver)
+    containers = declare_elements(implemented.root, "container", Container, resolver)
     timing_merger = TimingMerger(components, find_shared_components(implements.values()), diagnostics)
     nodes = declare_nodes(
         implemented.root,
         NodeContext(element_outline, resolver, components, containers, timing_merger, memory),
         implemented,
     )
-    requirements = declare_requirements(root, resolver)
+    declared_sections = declare_sections(root, resolver)
     use_cases = declare_use_cases(root, resolver)
-    resources = deployment_declaration.declare_resources(root, resolver)
-    links = deployment_declaration.declare_links(root, resolver)
     chains = section_declaration.declare_chains(root, resolver, implements, declared_groups.list_leaf_ports)
     shell_entries = {shell.id: shell.entry for shell in element_outline.shells.values()}
     frames = declare_frames(root, {**element_outline.components, **shell_entries}, resolver, parameters)
     component_types = declare_component_types(expansion, resolver)
     policies = policy_declaration.declare_policies(root, resolver)
-    properties = property_declaration.declare_properties(root, diagnostics)
+    views = section_declaration.declare_views(root, resolver)
     glossary = property_declaration.declare_glossary(root, diagnostics)
     suspected_ids = resolver.finish_resolving()
     ros_section = mapping_values.get_mapping(root, "ros")
@@ -92,10 +91,9 @@ def link_project(  # noqa: PLR0913 - all by name
         distro_at=mapping_values.get_span(ros_section, "distro"),
         shared_topics=mapping_values.get_texts(ros_section, "shared_topics"),
         ros_parameters=tuple(flatten_parameters(mapping_values.get_mapping(ros_section, "parameters"))),
-        layout=mapping_values.get_layout(root),
-        partners=section_declaration.declare_partners(root),
+        layout=mapping_values.get_layout(root, "layout"),
+        **declared_sections,
         use_cases=use_cases,
-        requirements=requirements,
         groups=declared_groups.groups,
         components=components,
         shells=shells,
@@ -107,16 +105,12 @@ def link_project(  # noqa: PLR0913 - all by name
         edges=declared_groups.edges,
         types=types,
         nodes=nodes,
-        hosts=deployment_declaration.declare_hosts(root),
         containers=containers,
-        resources=resources,
-        links=links,
         frames=frames,
         chains=chains,
-        views=section_declaration.declare_views(root),
+        views=views,
         policies=policies,
         variants=declare_variants(root),
-        properties=properties,
         glossary=glossary,
         review=section_declaration.declare_review(root),
         repository=section_declaration.declare_repository(root),

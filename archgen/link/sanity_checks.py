@@ -14,6 +14,7 @@ from typing import Any
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.link import mapping_values
+from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.declared_timing import Timing
 from archgen.model.quantity import Quantity
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, SequenceNode
@@ -181,9 +182,10 @@ def check_match(  # noqa: PLR0913 - what a match consists of
 
 
 def read_latency(
-    mapping: MappingNode, element_id: str, diagnostics: list[Diagnostic]
+    link_body: MappingNode, key: str, link_id: str, resolver: ReferenceResolver
 ) -> tuple[Quantity | None, Quantity | None]:
     """Read the best and the worst latency of a link; the best is None, and reported, if it is above the worst."""
+    mapping = mapping_values.get_mapping(link_body, key)
     best, worst = (
         mapping_values.get_quantity(mapping, "best", "duration"),
         mapping_values.get_quantity(mapping, "worst", "duration"),
@@ -192,9 +194,8 @@ def read_latency(
         return best, worst
     label = Label(mapping_values.get_span(mapping, "worst"), "the worst")
     message = f"the best latency ({best}) is above the worst ({worst})"
-    diagnostics.append(
-        _diagnose_senseless(message, mapping_values.get_span(mapping, "best"), "exchange them", element_id, label)
-    )
+    span = mapping_values.get_span(mapping, "best")
+    resolver.diagnostics.append(_diagnose_senseless(message, span, "exchange them", link_id, label))
     return None, worst
 
 

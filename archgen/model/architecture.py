@@ -96,7 +96,7 @@ class View:
 
     id: str
     title: str
-    show: str
+    show: str = ""
     colour: str | None = None
     level: Literal["functional", "implementation"] = "functional"
     depth: int | None = None

@@ -104,9 +104,9 @@ def test_a_title_is_written_or_made_from_the_id(mapping: MappingNode) -> None:
 
 
 def test_a_layout_that_says_nothing_known_is_the_usual_one(mapping: MappingNode) -> None:
-    usual = mapping_values.get_layout(mapping_values.get_mapping(mapping, "odd"))
-    assert mapping_values.get_layout(mapping).direction == "top-bottom"
-    assert mapping_values.get_layout(mapping_values.get_mapping(mapping, "wrong_layout")) == usual
+    usual = mapping_values.get_layout(mapping_values.get_mapping(mapping, "odd"), "layout")
+    assert mapping_values.get_layout(mapping, "layout").direction == "top-bottom"
+    assert mapping_values.get_layout(mapping_values.get_mapping(mapping, "wrong_layout"), "layout") == usual
 
 
 @pytest.mark.parametrize(

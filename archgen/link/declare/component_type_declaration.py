@@ -9,9 +9,10 @@ from archgen.compose import ExpandedProject
 from archgen.compose.library_types import library_of_type
 from archgen.compose.type_table import is_abstract, list_generic_names
 from archgen.link import mapping_values
-from archgen.link.declare.parameter_declaration import declare_operations, declare_parameters
+from archgen.link.declare.parameter_declaration import declare_parameters
 from archgen.link.promise_reading import read_deprecation
 from archgen.link.reference_resolution import ReferenceResolver
+from archgen.link.value_readers import read_element, read_operations, read_values
 from archgen.model.component import ComponentType
 from archgen.model.coordinate_frames import Frame
 from archgen.model.promise import Deprecation
@@ -29,30 +30,25 @@ def declare_component_types(expansion: ExpandedProject, resolver: ReferenceResol
         library = library_of_type(name)
         if library is None:
             resolver.resolve_owners(body, name, ())
+        values = read_values("component_type", ComponentType, whole_body)
+        # What a type does not inherit.
+        values["title"] = mapping_values.get_title(body, name.rpartition(".")[2])
+        values["version"] = mapping_values.get_text(body, "version")
         types[name] = ComponentType(
+            **values,
             id=name,
-            title=mapping_values.get_title(body, name.rpartition(".")[2]),
-            functionality=mapping_values.get_text(whole_body, "functionality"),
-            description=mapping_values.get_text(whole_body, "description"),
             owner=mapping_values.get_text(body, "owner"),
             base=mapping_values.get_text(body, "is"),
             library=library,
             generic=list_generic_names(entry),
             is_abstract=is_abstract(entry),
-            version=mapping_values.get_text(body, "version"),
             deprecated=_name_replacement(read_deprecation(body, name, resolver.diagnostics), expansion),
             inputs=_read_port_types(whole_body, "inputs"),
             outputs=_read_port_types(whole_body, "outputs"),
             components=tuple(mapping_values.get_mapping(whole_body, "components").entries),
             parameters=declare_parameters(whole_body),
-            open=mapping_values.get_texts(whole_body, "open"),
-            operations=declare_operations(whole_body),
             frames=tuple(_read_frames(whole_body)),
             inner_types=frozenset(_list_inner_types(whole_body)),
-            status=mapping_values.get_text(whole_body, "status"),  # type: ignore[arg-type]
-            contact=mapping_values.get_text(whole_body, "contact"),
-            image=mapping_values.get_text(whole_body, "image"),
-            annotations=mapping_values.get_annotations(whole_body),
             at=entry.key_span,
         )
     return types
@@ -78,7 +74,7 @@ def _list_inner_types(body: MappingNode) -> Iterator[str]:
     for _, _, part in mapping_values.iterate_elements(body, "components"):
         for side in ("inputs", "outputs"):
             yield from filter(None, _read_port_types(part, side).values())
-        for operation in declare_operations(part).values():
+        for operation in read_operations(part, "operations").values():
             yield from operation.type_names
         for key in ("is", "same_as"):
             expression = mapping_values.get_text(part, key) or ""
@@ -89,13 +85,6 @@ def _list_inner_types(body: MappingNode) -> Iterator[str]:
 
 def _read_frames(body: MappingNode) -> Iterator[Frame]:
     """Yield the frames as they are written: what their names stand for, and who writes them, each instance says."""
-    for name, entry, frame in mapping_values.iterate_elements(body, "frames"):
-        yield Frame(
-            id=name,
-            title=mapping_values.get_text(frame, "title") or name,
-            parent=mapping_values.get_text(frame, "parent"),
-            rate=mapping_values.get_quantity(frame, "rate", "frequency"),
-            annotations=mapping_values.get_annotations(frame),
-            static=mapping_values.get_flag(frame, "static"),
-            at=entry.key_span,
-        )
+    for _, entry, frame in mapping_values.iterate_elements(body, "frames"):
+        rate = mapping_values.get_quantity(frame, "rate", "frequency")
+        yield Frame(**read_element("frame", Frame, entry, frame), rate=rate)

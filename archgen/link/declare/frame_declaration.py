@@ -10,6 +10,7 @@ from archgen.link import mapping_values, sanity_checks
 from archgen.link.declare.handed_parameters import HandedParameters
 from archgen.link.inner_names import find_inner_component
 from archgen.link.reference_resolution import ReferenceResolver
+from archgen.link.value_readers import read_values
 from archgen.model.coordinate_frames import Frame
 from archgen.model.path_resolver import ElementRef
 from archgen.model.quantity import Quantity
@@ -55,33 +56,23 @@ def _declare_frame(
     written_frame: _WrittenFrame, resolver: ReferenceResolver, parameters: HandedParameters | None
 ) -> Frame:
     component_id, entry, body = written_frame
-    name, parent, is_static = (
-        entry.key,
-        mapping_values.get_text(body, "parent"),
-        mapping_values.get_flag(body, "static"),
-    )
+    name, values = entry.key, read_values("frame", Frame, body)
     if parameters and component_id:
         name = parameters.fill_in_name(name, component_id, entry.key_span)
-        parent = (
-            parameters.fill_in_name(parent, component_id, mapping_values.get_span(body, "parent")) if parent else None
-        )
+        if "parent" in values:
+            values["parent"] = parameters.fill_in_name(values["parent"], component_id, values["parent_at"]) or None
     reference = mapping_values.get_scalar(body, "by")
     own_component = ElementRef("component", component_id) if component_id else None
     writer = _resolve_writer(reference, name, component_id, resolver) if reference else own_component
     return Frame(
+        **{"title": name, **values},
         id=name,
-        # No words are made of a name: `base_link` is what TF calls it.
-        title=mapping_values.get_text(body, "title") or name,
-        parent=parent,
         by=writer.id if writer else None,
         by_kind="node" if writer and writer.kind == "node" else "component",
-        rate=_read_rate(body, component_id or name, resolver, is_static=is_static),
-        static=is_static,
+        rate=_read_rate(body, component_id or name, resolver, is_static=values.get("static", False)),
         component=component_id,
         by_written=reference is not None,
-        annotations=mapping_values.get_annotations(body),
         at=entry.key_span,
-        parent_at=mapping_values.get_span(body, "parent"),
     )
 
 

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import field
-from typing import NamedTuple, TypeVar, get_args
+from typing import NamedTuple, TypeVar
 
 from archgen.compose.expanded_project import ComponentShell
 from archgen.frozen import dataclass, replace
 from archgen.link import mapping_values
 from archgen.link.automatic_connections import join_ports
 from archgen.link.declare.handed_parameters import HandedParameters
-from archgen.link.declare.parameter_declaration import declare_operations
 from archgen.link.declare.promise_declaration import PromisedOutputs
 from archgen.link.declare.timing_declaration import declare_timing
 from archgen.link.element_outline import ElementOutline
@@ -21,24 +20,20 @@ from archgen.link.open_shells import OpenShells
 from archgen.link.port_resolution import PortResolver
 from archgen.link.port_sources import PortSources
 from archgen.link.reference_resolution import ReferenceResolver
+from archgen.link.value_readers import read_element, read_values
 from archgen.model.architecture import PortEdge, list_leaf_ports
 from archgen.model.component import (
     Component,
-    ComponentRole,
-    ComponentStatus,
     Connection,
     Group,
     Input,
     Output,
-    PerformanceIndicator,
-    RequirementUse,
 )
 from archgen.model.message_types import ConceptualType
+from archgen.model.path_resolver import title_from_id
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
 _Port = TypeVar("_Port", Input, Output)
-_ROLES = frozenset(get_args(ComponentRole))
-_STATUSES = frozenset(get_args(ComponentStatus))
 
 
 class DeclaredGroups(NamedTuple):
@@ -130,17 +125,10 @@ class _GroupDeclarer:
                 path = shell.id.removeprefix(f"{group_id}.")
                 components[path] = self._declare_rest(shell, open_shells)
         return Group(
-            id=group_id,
-            title=mapping_values.get_title(body, group_id),
-            description=mapping_values.get_text(body, "description"),
+            **read_element("group", Group, entry, body),
             owner=next(iter(owners), None),
             co_owners=owners[1:],
-            tags=mapping_values.get_texts(body, "tags"),
-            urls=mapping_values.get_text_mapping(body, "urls"),
-            layout=mapping_values.get_layout(body),
-            annotations=mapping_values.get_annotations(body),
             components=components,
-            at=entry.key_span,
         )
 
     def declare_shell(self, shell: ComponentShell) -> Component:
@@ -248,22 +236,18 @@ class _GroupDeclarer:
         owners = self._find_owners(component_id, group_id, entry)
         expansion = self.outline.expansion
         origin = expansion.instances.get(component_id) if expansion else None
+        values = {"title": title_from_id(name), **read_values("component", Component, body)}
         return Component(
+            **values,
             id=component_id,
             name=name,
             group=group_id,
-            title=mapping_values.get_title(body, name),
             parent=expansion.parents.get(component_id) if expansion else None,
             component_type=str(origin.expression) if origin else None,
             is_reference=origin.is_reference if origin else False,
-            functionality=mapping_values.get_text(body, "functionality"),
-            description=mapping_values.get_text(body, "description"),
             owner=next(iter(owners), None),
             co_owners=owners[1:],
-            role=_read_role(body),
-            requirements=tuple(_read_requirements(body)),
             requirements_known=body.get("requirements") is not None,
-            performance=tuple(_read_performance(body)),
             inputs={port_name: self._fill_in_frame(port) for port_name, port in inputs.items()},
             # Absent means not known yet, `{}` means known to be none: three of these flags keep the difference.
             inputs_known=body.get("inputs") is not None,
@@ -273,48 +257,10 @@ class _GroupDeclarer:
             },
             outputs_known=body.get("outputs") is not None,
             parameters=self.parameters.find_parameters(component_id),
-            open=mapping_values.get_texts(body, "open"),
-            operations=declare_operations(body),
             timing=declare_timing(
                 entry,
                 PortResolver(self.resolver, component_id, (component_id,), self.outline.port_names),
                 self.resolver.diagnostics,
             ),
-            tags=mapping_values.get_texts(body, "tags"),
-            urls=mapping_values.get_text_mapping(body, "urls"),
-            status=_read_status(body),
-            contact=mapping_values.get_text(body, "contact"),
-            image=mapping_values.get_text(body, "image"),
-            layout=mapping_values.get_layout(body),
-            annotations=mapping_values.get_annotations(body),
-            at=entry.key_span,
-            role_at=mapping_values.get_span(body, "role"),
-        )
-
-
-def _read_role(body: MappingNode) -> ComponentRole | None:
-    role = mapping_values.get_text(body, "role")
-    return role if role in _ROLES else None  # type: ignore[return-value]
-
-
-def _read_status(body: MappingNode) -> ComponentStatus | None:
-    status = mapping_values.get_text(body, "status")
-    return status if status in _STATUSES else None  # type: ignore[return-value]
-
-
-def _read_requirements(body: MappingNode) -> Iterator[RequirementUse]:
-    """Yield the entries of `requirements`: one that contains a blank is free text, any other is an id."""
-    for scalar in mapping_values.get_scalars(body, "requirements"):
-        text = scalar.text.strip()
-        yield RequirementUse(text, not any(letter.isspace() for letter in text), scalar.span)
-
-
-def _read_performance(body: MappingNode) -> Iterator[PerformanceIndicator]:
-    for name, entry, indicator_body in mapping_values.iterate_elements(body, "performance"):
-        yield PerformanceIndicator(
-            id=name,
-            title=mapping_values.get_title(indicator_body, name),
-            accuracy=mapping_values.get_text(indicator_body, "accuracy"),
-            execution_time=mapping_values.get_quantity(indicator_body, "execution_time", "duration"),
             at=entry.key_span,
         )

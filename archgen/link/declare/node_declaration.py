@@ -5,7 +5,6 @@ from __future__ import annotations
 import operator
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import get_args
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.frozen import dataclass
@@ -20,9 +19,10 @@ from archgen.link.merged_timing import TimingMerger
 from archgen.link.parameter_flattening import flatten_parameters
 from archgen.link.port_resolution import PortResolver
 from archgen.link.reference_resolution import ReferenceResolver
+from archgen.link.value_readers import read_element, read_values
 from archgen.model.component import Component
 from archgen.model.deployment import Container
-from archgen.model.node import CodeLanguage, Node, NodeKind, NodeStatus, PortUse, Qos, UseKind
+from archgen.model.node import Node, PortUse, Qos, UseKind
 from archgen.model.parameter import ParameterValue
 from archgen.model.qos_profiles import qos_profile
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
@@ -35,10 +35,6 @@ _PORT_KINDS: Mapping[UseKind, str] = {
     "subscribes": "input",
     "calls": "input",
 }
-_NODE_KINDS = frozenset(get_args(NodeKind))
-_NODE_STATUSES = frozenset(get_args(NodeStatus))
-_CODE_LANGUAGES = frozenset(get_args(CodeLanguage))
-_QOS_DURATIONS = ("deadline", "lifespan", "lease_duration")
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +101,6 @@ def _recall_node(
 def _declare_node(node_id: str, entry: MappingEntry, context: NodeContext, implemented: ImplementingNodes) -> Node:
     implements, wholes = implemented.implements[node_id], implemented.wholes.get(node_id, ())
     body, resolver = mapping_values.get_body(entry), context.resolver
-    kinds = tuple(dict.fromkeys(kind for kind in mapping_values.get_texts(body, "kind") if kind in _NODE_KINDS))
     container = resolver.resolve_plain_id(mapping_values.get_scalar(body, "container"), "container", node_id)
     host = resolver.resolve_plain_id(mapping_values.get_scalar(body, "host"), "host", node_id)
     if host and container and context.containers[container].host not in {None, host}:
@@ -120,50 +115,26 @@ def _declare_node(node_id: str, entry: MappingEntry, context: NodeContext, imple
     )
     ports = _make_port_resolver(node_id, body, context, tuple(dict.fromkeys(port_holders)))
     resolver.diagnostics.extend(_find_shared_own_names(node_id, body))
+    status = "planned" if node_id in implemented.planned_ids else None
+    values = {"name": node_id, "status": status, **read_element("node", Node, entry, body)}
     return Node(
-        id=node_id,
-        title=mapping_values.get_title(body, node_id),
+        **values,
         implements=implements,
         wholes=wholes,
-        description=mapping_values.get_text(body, "description"),
         owner=next(iter(owners), None),
         co_owners=owners[1:],
-        name=mapping_values.get_text(body, "name") or node_id,
-        namespace=mapping_values.get_absolute_name(body, "namespace"),
-        kinds=kinds or ("node",),  # type: ignore[arg-type]
-        package=mapping_values.get_text(body, "package"),
-        executable=mapping_values.get_text(body, "executable"),
-        plugin=mapping_values.get_text(body, "plugin"),
-        language=_read_language(body),
         command=read_command(body, resolver, node_id),
-        arguments=mapping_values.get_texts(body, "arguments"),
-        remaps=mapping_values.get_text_mapping(body, "remaps"),
         container=container,
         host=host or (context.containers[container].host if container else None),
-        threads=mapping_values.get_integer(body, "threads"),
-        scheduling=mapping_values.get_order(body, "scheduling"),
         callback_groups=declare_callback_groups(body, resolver, node_id, implements),
-        reentrant=mapping_values.get_flag(body, "reentrant"),
-        status=_read_status(body) or ("planned" if node_id in implemented.planned_ids else None),
         uses=tuple(_declare_uses(body, ports, implemented)),
         timing=context.timing_merger.merge_timing(
             node_id, declare_timing(entry, ports, resolver.diagnostics), implements
         ),
-        parameters=mapping_values.get_data(body, "parameters"),
-        parameter_files=mapping_values.get_texts(body, "parameter_files"),
-        parameter_commands=_read_commands(body),
         start=declare_start(body, resolver, node_id),
         own_values=tuple(_list_own_values(body)),
-        tags=mapping_values.get_texts(body, "tags"),
-        urls=mapping_values.get_text_mapping(body, "urls"),
         written=node_id not in implemented.planned_ids,
         implements_written=body.get("implements") is not None,
-        annotations=mapping_values.get_annotations(body),
-        at=entry.key_span,
-        name_at=mapping_values.get_span(body, "name"),
-        kind_at=mapping_values.get_span(body, "kind"),
-        container_at=mapping_values.get_span(body, "container"),
-        command_at=mapping_values.get_span(body, "command"),
         executor_places={key: mapping_values.get_span(body, key) for key in EXECUTOR_KEYS if key in body.entries},
     )
 
@@ -177,21 +148,6 @@ def _diagnose_other_host(body: MappingNode, node_id: str, container: Container) 
         help="leave `host` out: a node in a container runs on the container's host",
         element=node_id,
     )
-
-
-def _read_status(body: MappingNode) -> NodeStatus | None:
-    status = mapping_values.get_text(body, "status")
-    return status if status in _NODE_STATUSES else None  # type: ignore[return-value]
-
-
-def _read_language(body: MappingNode) -> CodeLanguage | None:
-    language = mapping_values.get_text(body, "language")
-    return language if language in _CODE_LANGUAGES else None  # type: ignore[return-value]
-
-
-def _read_commands(body: MappingNode) -> Mapping[str, tuple[str, ...]]:
-    commands = mapping_values.get_mapping(body, "parameter_commands")
-    return {entry.key: mapping_values.get_texts(commands, entry.key) for entry in commands}
 
 
 def _list_own_values(body: MappingNode) -> Iterator[ParameterValue]:
@@ -246,7 +202,7 @@ def _declare_use(
         port=port,
         topics=tuple(scalar.text for scalar in names),
         own_name=mapping_values.get_text(use_body, "own_name"),
-        message=mapping_values.get_message(use_body),
+        message=mapping_values.get_message(use_body, "message"),
         qos=_read_qos(use, use_body),
         internal=is_internal,
         at=entry.key_span,
@@ -260,17 +216,6 @@ def _read_qos(use: UseKind, use_body: MappingNode) -> Qos | None:
     qos_body = mapping_values.get_mapping(use_body, "qos")
     if not qos_body.entries:
         return None
-    values: dict[str, object] = {
-        key: mapping_values.get_text(qos_body, key)
-        for key in ("reliability", "durability", "history", "liveliness")
-        if mapping_values.get_scalar(qos_body, key)
-    }
-    values |= {
-        key: mapping_values.get_quantity(qos_body, key, "duration")
-        for key in _QOS_DURATIONS
-        if mapping_values.get_scalar(qos_body, key)
-    }
-    if mapping_values.get_scalar(qos_body, "depth"):
-        values["depth"] = mapping_values.get_integer(qos_body, "depth")
+    values = read_values("qos", Qos, qos_body)
     base = qos_profile(mapping_values.get_text(qos_body, "profile") or "default", use)
-    return replace(base, **values, written=True, at=mapping_values.get_span(use_body, "qos"))  # type: ignore[arg-type]
+    return replace(base, **values, written=True, at=mapping_values.get_span(use_body, "qos"))

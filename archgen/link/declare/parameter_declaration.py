@@ -1,19 +1,16 @@
-"""Declare the parameters and operations of components."""
+"""Declare the parameters of components."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import cast, get_args
 
-from archgen.diagnostics.source_span import NO_SPAN
 from archgen.link import mapping_values
-from archgen.model.parameter import CallMode, Operation, Parameter, Visibility, format_parameter
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, node_to_data
+from archgen.link.value_readers import read_values
+from archgen.model.parameter import Parameter, format_parameter
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, node_to_data
 
-_VISIBILITIES = frozenset(get_args(Visibility))
-_CALL_MODES = frozenset(get_args(CallMode))
 _HANDED_PREFIX = "self."
 _OPENING = "$("
 _REFERENCE_PATTERN = re.compile(r"\$\$\(|\$\(self\.(?P<name>[^\s()]{1,200})\)")
@@ -33,24 +30,17 @@ def _declare_parameter(entry: MappingEntry, declaration: MappingNode) -> Paramet
     ]
     choices = declaration.get("choices")
     value = declaration.get("value")
-    hints = declaration.get("hints")
     return Parameter(
         name=entry.key,
-        type=mapping_values.get_text(declaration, "type"),
+        **read_values("parameter_declaration", Parameter, declaration),
         value=None if value is None else node_to_data(value),
-        unit=mapping_values.get_text(declaration, "unit"),
         range=(limits[0], limits[1]) if len(limits) == 2 else None,  # noqa: PLR2004 - least and greatest
         choices=None
         if choices is None
         else tuple(item.value for item in mapping_values.get_scalars(declaration, "choices")),
-        description=mapping_values.get_text(declaration, "description"),
-        read_only=mapping_values.get_flag(declaration, "read_only"),
-        visibility=_read_visibility(declaration),
-        handed_from=mapping_values.get_text(declaration, "from"),
-        hints=cast("Mapping[str, object]", node_to_data(hints)) if isinstance(hints, MappingNode) else {},
-        hint_places=dict(mapping_values.list_hint_places(hints)) if isinstance(hints, MappingNode) else {},
+        hints=mapping_values.get_data(declaration, "hints"),
+        hint_places=dict(mapping_values.list_hint_places(mapping_values.get_mapping(declaration, "hints"))),
         at=entry.key_span,
-        value_at=value.span if value is not None else NO_SPAN,
     )
 
 
@@ -96,39 +86,3 @@ def fill_in_text(text: str, outer_parameters: Mapping[str, Parameter]) -> tuple[
         return match[0] if parameter is None or parameter.value is None else format_parameter(parameter.value)
 
     return _REFERENCE_PATTERN.sub(replace_reference, text), tuple(missing_names)
-
-
-def declare_operations(body: MappingNode) -> dict[str, Operation]:
-    """Declare the operations of a component, by id."""
-    return {
-        name: Operation(
-            id=name,
-            title=mapping_values.get_title(operation, name),
-            request=_read_types(operation, "request"),
-            response=_read_types(operation, "response"),
-            call=_read_call_mode(operation),
-            visibility=_read_visibility(operation),
-            description=mapping_values.get_text(operation, "description"),
-            at=entry.key_span,
-        )
-        for name, entry, operation in mapping_values.iterate_elements(body, "operations")
-    }
-
-
-def _read_types(operation: MappingNode, key: str) -> str | Mapping[str, str] | None:
-    """Return one type, or types by the names of fields."""
-    node = operation.get(key)
-    if isinstance(node, ScalarNode):
-        return mapping_values.normalise_type_name(node.text) if node.value is not None else None
-    fields = mapping_values.get_text_mapping(operation, key)
-    return {name: mapping_values.normalise_type_name(text) for name, text in fields.items()} if fields else None
-
-
-def _read_visibility(body: MappingNode) -> Visibility | None:
-    word = mapping_values.get_text(body, "visibility")
-    return word if word in _VISIBILITIES else None  # type: ignore[return-value]
-
-
-def _read_call_mode(body: MappingNode) -> CallMode | None:
-    word = mapping_values.get_text(body, "call")
-    return word if word in _CALL_MODES else None  # type: ignore[return-value]

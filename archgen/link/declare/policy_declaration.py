@@ -5,6 +5,7 @@ from __future__ import annotations
 from archgen.diagnostics.source_span import Span
 from archgen.link import mapping_values
 from archgen.link.reference_resolution import ReferenceResolver
+from archgen.link.value_readers import read_element
 from archgen.model.architecture import Policy, SourceDemand
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
@@ -20,14 +21,11 @@ def declare_policies(root: MappingNode, resolver: ReferenceResolver) -> dict[str
             continue
         accepted, places = _resolve_accepted(body, resolver, name)
         policies_by_id[name] = Policy(
-            id=name,
-            title=mapping_values.get_title(body, name),
+            **read_element("policy", Policy, entry, body),
             forbid_from=(mapping_values.get_text(forbid, "from") or "") if has_flow else "",
             forbid_to=(mapping_values.get_text(forbid, "to") or "") if has_flow else "",
             require=demand,
             accepted=accepted,
-            annotations=mapping_values.get_annotations(body),
-            at=entry.key_span,
             from_at=mapping_values.get_span(forbid, "from"),
             to_at=mapping_values.get_span(forbid, "to"),
             accepted_places=places,

@@ -1,56 +1,32 @@
-"""Declare what a project says of properties, and its glossary."""
+"""Declare what properties may be, and the glossary."""
 
 from __future__ import annotations
 
 import unicodedata
 from decimal import Decimal
-from typing import get_args
 
 from archgen.diagnostics.diagnostic import Diagnostic, diagnose_repetition
 from archgen.link import mapping_values
+from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.architecture import GlossaryTerm
-from archgen.model.element_annotations import PropertyDeclaration, PropertyType, read_figure
+from archgen.model.element_annotations import read_figure
 from archgen.syntax.yaml_tree import MappingNode
 
-_TYPES = frozenset(get_args(PropertyType))
 
-
-def declare_properties(root: MappingNode, diagnostics: list[Diagnostic]) -> dict[str, PropertyDeclaration]:
-    """Return the declared properties by id. What contradicts itself is reported, and left out."""
-    return {
-        name: PropertyDeclaration(
-            id=name,
-            title=mapping_values.get_title(body, name),
-            description=mapping_values.get_text(body, "description"),
-            of=tuple(dict.fromkeys(mapping_values.get_texts(body, "of"))),
-            type=_read_type(body),
-            unit=mapping_values.get_text(body, "unit"),
-            range=_read_range(body, name, diagnostics),
-            choices=mapping_values.get_texts(body, "choices"),
-            required=_read_required(body, name, diagnostics),
-            at=entry.key_span,
-        )
-        for name, entry, body in mapping_values.iterate_elements(root, "properties")
-    }
-
-
-def _read_type(body: MappingNode) -> PropertyType | None:
-    word = mapping_values.get_text(body, "type")
-    return word if word in _TYPES else None  # type: ignore[return-value]
-
-
-def _read_range(body: MappingNode, name: str, diagnostics: list[Diagnostic]) -> tuple[Decimal, Decimal] | None:
-    texts = mapping_values.get_texts(body, "range")
+def read_range(
+    body: MappingNode, key: str, property_id: str, resolver: ReferenceResolver
+) -> tuple[Decimal, Decimal] | None:
+    """Return the smallest and the greatest number of a property; what is none is reported."""
+    texts = mapping_values.get_texts(body, key)
     if not texts:
         return None
     numbers = [limit for limit in map(_read_limit, texts) if limit is not None]
     if len(texts) == len(numbers) == 2 and numbers[0] <= numbers[1]:  # noqa: PLR2004 - smallest and greatest
         return numbers[0], numbers[1]
-    message = f"the range of the property `{name}` is not its smallest and its greatest number"
+    message = f"the range of the property `{property_id}` is not its smallest and its greatest number"
     help_line = "write `range: [1, 9]`; what they are measured in is `unit`"
-    diagnostics.append(
-        Diagnostic("wrong-value", message, mapping_values.get_span(body, "range"), help=help_line, element=name)
-    )
+    span = mapping_values.get_span(body, key)
+    resolver.diagnostics.append(Diagnostic("wrong-value", message, span, help=help_line, element=property_id))
     return None
 
 
@@ -61,15 +37,15 @@ def _read_limit(text: str) -> Decimal | None:
     return figure.value if figure and not figure.unit else None
 
 
-def _read_required(body: MappingNode, name: str, diagnostics: list[Diagnostic]) -> bool:
-    is_required = mapping_values.get_flag(body, "required")
+def read_required(body: MappingNode, key: str, property_id: str, resolver: ReferenceResolver) -> bool:
+    """Return whether every element of some kinds has a property; of which ones is reported where it is not said."""
+    is_required = mapping_values.get_flag(body, key)
     if not is_required or mapping_values.get_texts(body, "of"):
         return is_required
-    message = f"the property `{name}` is required of every kind of element"
+    message = f"the property `{property_id}` is required of every kind of element"
     help_line = "say of which ones: `of: [component]`"
-    diagnostics.append(
-        Diagnostic("wrong-value", message, mapping_values.get_span(body, "required"), help=help_line, element=name)
-    )
+    span = mapping_values.get_span(body, key)
+    resolver.diagnostics.append(Diagnostic("wrong-value", message, span, help=help_line, element=property_id))
     return False
 
 

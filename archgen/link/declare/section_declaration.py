@@ -1,4 +1,4 @@
-"""Declare the sections of small elements: project, partners, chains, views, review and so on."""
+"""Declare the sections of small elements: project, chains, views, review and so on."""
 
 from __future__ import annotations
 
@@ -6,10 +6,11 @@ from collections.abc import Callable, Collection, Mapping
 
 from archgen.diagnostics.diagnostic import Severity
 from archgen.link import mapping_values, sanity_checks
+from archgen.link.declare.element_declaration import declare_element
 from archgen.link.reference_resolution import ReferenceResolver
-from archgen.model.architecture import Chain, Partner, ProjectInfo, View, Waypoint
+from archgen.link.value_readers import read_values
+from archgen.model.architecture import Chain, ProjectInfo, View, Waypoint
 from archgen.model.path_resolver import ElementRef
-from archgen.model.port_media import ROS
 from archgen.model.review_settings import BREAK_CATEGORIES, AcceptedChange, BreakPolicy, ReviewSettings
 from archgen.model.source_repository import DEFAULT_BRANCH, SourceRepository
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode
@@ -20,32 +21,10 @@ _WAYPOINT_KINDS = ("node", "component", "output")
 def declare_project(root: MappingNode, default_id: str, default_title: str) -> ProjectInfo:
     """Declare the project itself, with defaults for its id and title."""
     body = mapping_values.get_mapping(root, "project")
-    entry = root.entries.get("project")
-    return ProjectInfo(
-        id=mapping_values.get_text(body, "id") or default_id,
-        title=mapping_values.get_text(body, "title") or default_title,
-        version=mapping_values.get_text(body, "version"),
-        description=mapping_values.get_text(body, "description"),
-        middleware=mapping_values.get_medium(body, "middleware") or ROS,
-        # Without the section the field keeps its default, which this module would otherwise have to repeat.
-        **({"at": entry.key_span} if entry else {}),
-    )
-
-
-def declare_partners(root: MappingNode) -> dict[str, Partner]:
-    """Declare the partners."""
-    return {
-        name: Partner(
-            name,
-            mapping_values.get_title(body, name),
-            mapping_values.get_text(body, "description"),
-            mapping_values.get_text(body, "contact"),
-            mapping_values.get_texts(body, "reviewers"),
-            annotations=mapping_values.get_annotations(body),
-            at=entry.key_span,
-        )
-        for name, entry, body in mapping_values.iterate_elements(root, "partners")
-    }
+    values = {"id": default_id, "title": default_title, **read_values("project", ProjectInfo, body)}
+    if entry := root.entries.get("project"):
+        values["at"] = entry.key_span
+    return ProjectInfo(**values)
 
 
 def declare_chains(
@@ -65,16 +44,13 @@ def declare_chains(
             (resolver.resolve_reference(scalar, _WAYPOINT_KINDS, name, implements=implements), scalar)
             for scalar in mapping_values.get_scalars(body, "through")
         ]
-        chains_by_id[name] = Chain(
-            id=name,
-            title=mapping_values.get_title(body, name),
+        chains_by_id[name] = declare_element(
+            "chain",
+            Chain,
+            entry,
+            resolver,
             through=tuple(_make_waypoint(target, scalar, list_leaf_ports) for target, scalar in waypoints if target),
-            deadline=sanity_checks.read_positive(body, "deadline", "duration", name, resolver.diagnostics),
-            requirements=mapping_values.get_texts(body, "requirements"),
-            annotations=mapping_values.get_annotations(body),
-            at=entry.key_span,
             unresolved=tuple(scalar.text for target, scalar in waypoints if target is None),
-            requirement_places=tuple(scalar.span for scalar in mapping_values.get_scalars(body, "requirements")),
         )
     return chains_by_id
 
@@ -91,26 +67,13 @@ def _make_waypoint(
     return Waypoint(target.kind, target.id, scalar.span)  # type: ignore[arg-type]
 
 
-def declare_views(root: MappingNode) -> dict[str, View]:
+def declare_views(root: MappingNode, resolver: ReferenceResolver) -> dict[str, View]:
     """Declare the views, except one without `show`, which merging has reported."""
-    views_by_id: dict[str, View] = {}
-    for name, entry, body in mapping_values.iterate_elements(root, "views"):
-        if body.get("show") is None:
-            continue
-        level = mapping_values.get_text(body, "level")
-        views_by_id[name] = View(
-            id=name,
-            title=mapping_values.get_title(body, name),
-            show=mapping_values.get_text(body, "show") or "",
-            colour=mapping_values.get_text(body, "colour"),
-            level="implementation" if level == "implementation" else "functional",
-            depth=mapping_values.get_integer(body, "depth"),
-            layout=mapping_values.get_layout(body),
-            annotations=mapping_values.get_annotations(body),
-            at=entry.key_span,
-            show_at=mapping_values.get_span(body, "show"),
-        )
-    return views_by_id
+    return {
+        name: declare_element("view", View, entry, resolver)
+        for name, entry, body in mapping_values.iterate_elements(root, "views")
+        if body.get("show") is not None
+    }
 
 
 def declare_repository(root: MappingNode) -> SourceRepository | None:
@@ -132,7 +95,7 @@ def declare_review(root: MappingNode) -> ReviewSettings:
     """Declare how changes are judged, without accepted changes that lack a reason, which merging has reported."""
     body = mapping_values.get_mapping(root, "review")
     return ReviewSettings(
-        main=mapping_values.get_text(body, "main"),
+        **read_values("review", ReviewSettings, body),
         breaking=_read_policy(body),
         guards_margins=mapping_values.get_mapping(body, "breaking").get("promise") is not None,
         accepted=tuple(
@@ -142,8 +105,6 @@ def declare_review(root: MappingNode) -> ReviewSettings:
             for item in entry.value.items
             if isinstance(item, MappingNode) and (reason := mapping_values.get_text(item, "reason"))
         ),
-        backends=mapping_values.get_texts(body, "backends"),
-        passes=mapping_values.get_texts(body, "passes"),
     )
 
 

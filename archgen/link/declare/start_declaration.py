@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.inner_names import find_inner_component
-from archgen.model.start_up import PHASES, LifecycleState, ReadyConditions, StartTarget, StartUp
+from archgen.link.value_readers import read_values
+from archgen.model.start_up import ReadyConditions, StartTarget, StartUp
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
 
 if TYPE_CHECKING:
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from archgen.link.reference_resolution import ReferenceResolver
     from archgen.syntax.yaml_tree import YamlNode
 
-_STATES = get_args(LifecycleState)
 _NOT_INHERITED = frozenset({"ready", "once"})
 """What a composed component says of itself, and not of each node inside."""
 
@@ -27,21 +27,12 @@ def declare_start(body: MappingNode, resolver: ReferenceResolver, node_id: str) 
     if not isinstance(start, MappingNode) or not start.entries:
         return None
     sanity_checks.report_empty_list(start, "after", "node or component", node_id, resolver.diagnostics)
-    phase = mapping_values.get_text(start, "phase")
-    state = mapping_values.get_text(start, "state")
     manager = mapping_values.get_scalar(start, "by")
     targets = (_resolve_target(each, resolver, node_id) for each in mapping_values.get_scalars(start, "after"))
     return StartUp(
-        phase=phase if phase in PHASES else None,
+        **read_values("start", StartUp, start),
         after=tuple(dict.fromkeys(filter(None, targets))),
         ready=_read_conditions(mapping_values.get_mapping(start, "ready"), resolver, node_id),
-        respawn=mapping_values.get_flag(start, "respawn"),
-        respawn_delay=mapping_values.get_quantity(start, "respawn_delay", "duration"),
-        environment=mapping_values.get_text_mapping(start, "environment"),
-        directory=mapping_values.get_text(start, "directory"),
-        user=mapping_values.get_text(start, "user"),
-        once=mapping_values.get_flag(start, "once"),
-        state=state if state in _STATES else None,  # type: ignore[arg-type]
         by=_resolve_target(manager, resolver, node_id) if manager else None,
         by_written=manager is not None,
         places=_list_places(start),
@@ -56,12 +47,7 @@ def read_command(body: MappingNode, resolver: ReferenceResolver, node_id: str) -
 
 def _read_conditions(ready: MappingNode, resolver: ReferenceResolver, node_id: str) -> ReadyConditions:
     return ReadyConditions(
-        port=mapping_values.get_integer(ready, "port"),
-        file=mapping_values.get_text(ready, "file"),
-        topic=mapping_values.get_text(ready, "topic"),
-        service=mapping_values.get_text(ready, "service"),
-        log=mapping_values.get_text(ready, "log"),
-        wait=mapping_values.get_quantity(ready, "wait", "duration"),
+        **read_values("start_ready", ReadyConditions, ready),
         within=sanity_checks.read_positive(ready, "within", "duration", node_id, resolver.diagnostics),
         places=_list_places(ready),
     )

@@ -11,6 +11,7 @@ from archgen.diagnostics.source_span import Span
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.declare import execution_declaration
 from archgen.link.port_resolution import PortResolver
+from archgen.link.value_readers import read_values
 from archgen.model.declared_timing import OutputTiming, Timing, Trigger
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
 
@@ -24,30 +25,19 @@ def declare_timing(owner_entry: MappingEntry, ports: PortResolver, diagnostics: 
     if entry is None or type(entry.value) is not MappingNode:
         return None
     body = entry.value
-    behaviour, dropped = mapping_values.get_text(body, "behaviour"), mapping_values.get_text(body, "dropped")
     calls = list(_read_calls(body, ports))
     uses = execution_declaration.read_resource_times(body, ports, diagnostics)
     timing = Timing(
-        behaviour=behaviour if behaviour in {"periodic", "event", "on_demand", "once"} else None,  # type: ignore[arg-type]
-        period=mapping_values.get_quantity(body, "period", "duration"),
-        rate=mapping_values.get_quantity(body, "rate", "frequency"),
-        jitter=mapping_values.get_quantity(body, "jitter", "duration"),
+        **read_values("timing", Timing, body),
         wcet=execution_declaration.read_wcet(body),
         measured_times=execution_declaration.read_measured_times(body, ports.owner_id, diagnostics),
-        bcet=mapping_values.get_quantity(body, "bcet", "duration"),
         trigger=_read_trigger(body, ports, diagnostics),
-        every=mapping_values.get_integer(body, "every"),
-        throttle=mapping_values.get_quantity(body, "throttle", "duration"),
-        dropped=dropped if dropped in {"kept", "forgotten"} else None,  # type: ignore[arg-type]
         inputs=dict(execution_declaration.read_input_timing(body, ports, diagnostics)),
         outputs=dict(_read_output_timing(body, ports, diagnostics)),
         calls={port: count for port, count, _ in calls},
         uses=uses,
-        priority=mapping_values.get_integer(body, "priority"),
         deadline=sanity_checks.read_positive(body, "deadline", "duration", ports.owner_id, diagnostics),
-        core=mapping_values.get_integer(body, "core"),
         cores=execution_declaration.read_cores(body, ports.owner_id, diagnostics),
-        response=mapping_values.get_quantity(body, "response", "duration"),
         # Positions by key; each call and use has its own, under a key that no YAML key can be (it holds a blank).
         places={
             **{e.key: e.value.span for e in body},

@@ -19,6 +19,7 @@ from archgen.link.data_types.type_replacements import name_replacements
 from archgen.link.data_types.used_types import OversizedType, add_used_types
 from archgen.link.element_outline import ElementOutline
 from archgen.link.promise_reading import read_deprecation
+from archgen.link.value_readers import read_values
 from archgen.model.message_types import PART_KEYS, ConceptualType, full_message_name
 from archgen.model.ros_distro import is_ros_1
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
@@ -148,32 +149,16 @@ def _sort_types(types: dict[str, ConceptualType]) -> dict[str, ConceptualType]:
 
 
 def _declare_type(entry: MappingEntry, body: MappingNode, reading: TypeReading, library: str | None) -> ConceptualType:
-    status = mapping_values.get_text(body, "status")
     content = read_type_content(body, reading)
+    values = {"message": full_message_name(reading.name), **read_values("type", ConceptualType, body)}
     return ConceptualType(
+        **values,
         name=reading.name,
-        message=mapping_values.get_message(body) or full_message_name(reading.name),
-        comment=mapping_values.get_text(body, "comment"),
-        size=mapping_values.get_quantity(body, "size", "size"),
-        status=status if status in {"existing", "planned"} else None,  # type: ignore[arg-type]
-        request=_read_type_name(body, "request"),
-        response=_read_type_name(body, "response"),
-        feedback=_read_type_name(body, "feedback"),
         **content,
-        frame=mapping_values.get_text(body, "frame"),
-        version=mapping_values.get_text(body, "version"),
         deprecated=read_deprecation(body, reading.name, reading.diagnostics),
         library=library,
-        annotations=mapping_values.get_annotations(body),
         at=entry.key_span,
-        message_at=mapping_values.get_span(body, "message"),
-        frame_at=mapping_values.get_span(body, "frame"),
     )
-
-
-def _read_type_name(body: MappingNode, key: str) -> str | None:
-    text = mapping_values.get_text(body, key)
-    return mapping_values.normalise_type_name(text) if text else None
 
 
 def _diagnose_oversized_type(

@@ -8,6 +8,7 @@ from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.frozen import replace
 from archgen.link import mapping_values
 from archgen.link.reference_resolution import ReferenceResolver
+from archgen.link.value_readers import read_element
 from archgen.model.architecture import UseCase
 from archgen.model.use_case_steps import Actor, Step, StepEnd
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode
@@ -16,22 +17,12 @@ _END_KINDS = ("component", "output")
 
 
 def declare_use_cases(root: MappingNode, resolver: ReferenceResolver) -> dict[str, UseCase]:
-    """Declare the use cases. One without a title has its id as title: `UC-4` cannot be turned into words."""
+    """Declare the use cases."""
     use_cases: dict[str, UseCase] = {}
     for name, entry, body in mapping_values.iterate_elements(root, "use_cases"):
-        actors = {
-            actor_id: Actor(actor_id, mapping_values.get_title(actor_body, actor_id), actor_entry.key_span)
-            for actor_id, actor_entry, actor_body in mapping_values.iterate_elements(body, "actors")
-        }
-        use_cases[name] = UseCase(
-            name,
-            mapping_values.get_text(body, "title") or name,
-            mapping_values.get_text(body, "description"),
-            actors,
-            tuple(_declare_steps(body, actors, name, resolver)),
-            annotations=mapping_values.get_annotations(body),
-            at=entry.key_span,
-        )
+        values = read_element("use_case", UseCase, entry, body)
+        steps = tuple(_declare_steps(body, values.get("actors", {}), name, resolver))
+        use_cases[name] = UseCase(**values, steps=steps)
     return use_cases
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from archgen.link import mapping_values
+from archgen.link.value_readers import read_element
 from archgen.model.variant import BASE_NAME, Variant, WrittenChange
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, YamlNode
 
@@ -13,14 +14,8 @@ def declare_variants(root: MappingNode) -> dict[str, Variant]:
     """Declare the variants, except one that takes the name of the project itself, which is reported."""
     return {
         name: Variant(
-            id=name,
-            title=mapping_values.get_title(body, name),
-            description=mapping_values.get_text(body, "description"),
-            of=mapping_values.get_texts(body, "of"),
-            without=mapping_values.get_text(body, "without"),
-            drop=mapping_values.get_texts(body, "drop"),
+            **read_element("variant", Variant, entry, body),
             changes=tuple(_list_changes(mapping_values.get_mapping(body, "changes"), "")),
-            at=entry.key_span,
         )
         for name, entry, body in mapping_values.iterate_elements(root, "variants")
         if name != BASE_NAME
