@@ -18,6 +18,7 @@ from archgen.emit.workspace.run_record import read_other_records, read_run_recor
 from archgen.emit.workspace.workspace_plan import UserChoices, WorkspacePlan, plan_workspace
 from archgen.pipeline import CheckedProject
 from archgen.products.backend_choice import choose_backends, raise_problems
+from archgen.products.generation_contexts import make_generation_context
 from archgen.products.leaving_links import refuse_leaving_links
 from archgen.products.output_options import OutputOptions
 from archgen.products.trusted_backends import refuse_untrusted_pass
@@ -147,16 +148,10 @@ def _render_files(
     from archgen.emit.text.kept_answers import open_answer_store
     from archgen.products.report_cache import cache_folder
 
-    architecture, selection = checked_project.architecture, options.selection
-    context = GenerationContext(
-        architecture,
-        selection.components if selection else None,
-        selection.nodes if selection else None,
-        host,
-        backend.options,
-        backend.id,
-        options.level or "implementation",
-        options.selector_text if selection else "",
+    context = replace(
+        make_generation_context(checked_project, options, backend),
+        host=host,
+        selector=options.selector_text if options.selection else "",
     )
     unmet_needs = tuple(find_unmet_needs(context, backend.needs))
     if unmet_needs:

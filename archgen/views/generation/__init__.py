@@ -78,6 +78,12 @@ def _make_aadl(context: GenerationContext) -> GeneratedView:
     return aadl_view.make_view(context)
 
 
+def _make_uml(context: GenerationContext) -> GeneratedView:
+    from archgen.views.uml import uml_view
+
+    return uml_view.make_view(context)
+
+
 GENERATION_VIEWS: Mapping[str, Callable[[GenerationContext], GeneratedView]] = {
     "interfaces": _make_interfaces,
     "components": _make_components,
@@ -85,6 +91,7 @@ GENERATION_VIEWS: Mapping[str, Callable[[GenerationContext], GeneratedView]] = {
     "programs": _make_programs,
     "ros1_programs": _make_ros1_programs,
     "structure": _make_structure,
+    "uml": _make_uml,
     "ros1_launch": _make_ros1_launch,
     "ros2_launch": _make_ros2_launch,
     "simulation": _make_simulation,

@@ -7,6 +7,7 @@ from typing import Any
 
 from archgen.model.architecture import Architecture
 from archgen.model.path_resolver import title_from_id
+from archgen.views.generation.generation_context import GeneratedView, GenerationContext
 from archgen.views.uml.uml_components import UmlComponents
 from archgen.views.uml.uml_deployment import write_deployment
 from archgen.views.uml.uml_tree import TYPE_PREFIX, IdRegistry, UmlTree, make_tree, read_mapping
@@ -14,17 +15,13 @@ from archgen.views.uml.uml_types import UmlTypes
 from archgen.views.uml.uml_wiring import UmlWiring
 
 
-def make_uml_view(
-    architecture: Architecture,
-    packed: Mapping[str, Any],
-    selected: Collection[str] | None,
-    *,
-    types_only: bool = False,
-) -> UmlTree:
-    """Return the model. `packed` is the packed project, `selected` the components that are asked for; None for all.
+def make_view(context: GenerationContext) -> GeneratedView:
+    """Return the model; where only types are asked for, the component types with the types that they name."""
+    return GeneratedView(_make_model(context, context.pack_project()))
 
-    With `types_only` there are the component types with the types that they name, and nothing else.
-    """
+
+def _make_model(context: GenerationContext, packed: Mapping[str, Any]) -> UmlTree:
+    architecture, selected, types_only = context.architecture, context.components, context.types_only
     registry = IdRegistry()
     wanted = None if selected is None else _add_outer(selected)
     bodies = _list_type_bodies(packed)
