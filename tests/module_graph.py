@@ -73,12 +73,14 @@ def find_imports(module: str) -> frozenset[str]:
 
 @cache
 def _list_next(module: str) -> frozenset[str]:
-    """Return the modules that a module leads to: by imports, by fixtures, by a process, by the name of a verb."""
+    """Return the modules that a module leads to: by imports, by fixtures, by a process, by the name of a verb, by a plug-in."""
     from archgen.cli import VERBS, verb_module
 
     found = set(find_imports(module))
     if module == "archgen.cli":
         found |= {verb_module(verb) for verb in VERBS}
+    if module == "archgen.installed_plugins":
+        found |= {name for name in list_modules() if name.startswith("archgen.plugins.")}
     if module == "tests.running":
         found.add("archgen.__main__")
     if is_test(module):

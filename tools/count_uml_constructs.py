@@ -13,7 +13,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from archgen.importers.foreign.foreign_import import ForeignFileError
+from archgen.importers.foreign_import import ForeignFileError
 from archgen.importers.xmi.import_ledger import NOT_TAKEN, NOTED, TAKEN, ImportLedger
 from archgen.importers.xmi.uml_catalogue import TOOL_TAGS
 from archgen.importers.xmi.uml_index import UmlIndex, get_kind, is_written_here

@@ -25,8 +25,8 @@ from archgen.importers.aadl.robot_groups import GroupBuilder
 from archgen.importers.aadl.structures import ClassifierStructure, StructureFinder
 from archgen.importers.aadl.system_walk import MAX_INSTANCES, NodeWriter, TooManyInstancesError, find_instances
 from archgen.importers.aadl.untaken_notes import tell_untaken
-from archgen.importers.foreign.bounded_files import read_bounded
-from archgen.importers.foreign.foreign_import import ForeignFileError, ForeignImport
+from archgen.importers.bounded_files import read_bounded
+from archgen.importers.foreign_import import ForeignFileError, ForeignImport
 
 
 def read_aadl(files: Sequence[Path]) -> ForeignImport:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from archgen.diagnostics.source_span import Span
-from archgen.importers.foreign.foreign_import import ImportNote
+from archgen.importers.foreign_import import ImportNote
 
 
 class NoteList:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import find_closest
-from archgen.importers.foreign.foreign_import import ForeignFileError
+from archgen.importers.foreign_import import ForeignFileError
 
 _MAX_SHOWN = 12
 

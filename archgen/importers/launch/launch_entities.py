@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from archgen.diagnostics.source_span import Span
-from archgen.importers.foreign.foreign_import import ForeignFileError
-from archgen.importers.foreign.xml_tree import XmlElement, parse_xml
+from archgen.importers.foreign_import import ForeignFileError
+from archgen.importers.xml_tree import XmlElement, parse_xml
 from archgen.syntax.yaml_parser import parse_yaml
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, YamlNode, node_to_data
 

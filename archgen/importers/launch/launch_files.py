@@ -8,8 +8,8 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from archgen.importers.foreign.bounded_files import read_bounded
-from archgen.importers.foreign.foreign_import import ForeignFileError
+from archgen.importers.bounded_files import read_bounded
+from archgen.importers.foreign_import import ForeignFileError
 
 LAUNCH_ENDINGS = (".launch", ".launch.xml", ".launch.yaml", ".launch.yml", ".launch.py")
 MAX_LAUNCH_BYTES = 4_000_000

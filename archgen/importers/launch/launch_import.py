@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from archgen.diagnostics.source_span import Span
-from archgen.importers.foreign.foreign_import import ForeignFileError, ForeignImport
+from archgen.importers.foreign_import import ForeignFileError, ForeignImport
 from archgen.importers.launch.launch_files import LaunchFiles
 from archgen.importers.launch.launch_loading import load_actions, load_included
 from archgen.importers.launch.launch_run import LaunchRun

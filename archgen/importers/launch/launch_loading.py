@@ -5,8 +5,8 @@ from __future__ import annotations
 import posixpath
 from pathlib import Path
 
-from archgen.importers.foreign.bounded_files import read_bounded
-from archgen.importers.foreign.foreign_import import ForeignFileError
+from archgen.importers.bounded_files import read_bounded
+from archgen.importers.foreign_import import ForeignFileError
 from archgen.importers.launch.launch_actions import LaunchAction
 from archgen.importers.launch.launch_entities import read_xml_entities, read_yaml_entities
 from archgen.importers.launch.launch_files import MAX_LAUNCH_BYTES

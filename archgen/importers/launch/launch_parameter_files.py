@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from archgen.diagnostics.source_span import Span
-from archgen.importers.foreign.bounded_files import read_bounded
-from archgen.importers.foreign.foreign_import import ForeignFileError
+from archgen.importers.bounded_files import read_bounded
+from archgen.importers.foreign_import import ForeignFileError
 from archgen.importers.launch.launch_parameter_values import read_value_text
 from archgen.link.parameter_texts import ParameterText, matches_node_name, read_parameter_text
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, YamlNode, node_to_data

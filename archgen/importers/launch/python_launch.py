@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.source_span import Span
-from archgen.importers.foreign.bounded_files import read_bounded
-from archgen.importers.foreign.foreign_import import ForeignFileError
+from archgen.importers.bounded_files import read_bounded
+from archgen.importers.foreign_import import ForeignFileError
 from archgen.importers.launch.launch_actions import LaunchAction
 from archgen.importers.launch.launch_files import MAX_LAUNCH_BYTES
 from archgen.importers.launch.launch_values import LaunchValue, UnknownValue

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from archgen.diagnostics.source_span import Span
-from archgen.importers.foreign.foreign_import import ImportNote
+from archgen.importers.foreign_import import ImportNote
 from archgen.importers.launch.launch_actions import ActionKind, ConditionalValue, LaunchAction
 from archgen.importers.launch.launch_arguments import DeclaredArgument, LaunchArguments
 from archgen.importers.launch.launch_context import LaunchContext

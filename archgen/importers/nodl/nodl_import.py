@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from archgen.diagnostics.source_span import Span
-from archgen.importers.foreign.bounded_files import read_bounded
-from archgen.importers.foreign.foreign_import import ForeignFileError, ForeignImport
-from archgen.importers.foreign.xml_tree import parse_xml
+from archgen.importers.bounded_files import read_bounded
+from archgen.importers.foreign_import import ForeignFileError, ForeignImport
 from archgen.importers.nodl.nodl_documents import read_nodl_document
 from archgen.importers.nodl.nodl_types import NodeType
 from archgen.importers.nodl.nodl_xml import read_interface
 from archgen.importers.ros_package.import_account import ImportAccount
+from archgen.importers.xml_tree import parse_xml
 from archgen.model.element_ids import make_id, make_unique_id
 from archgen.syntax.yaml_parser import parse_yaml
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.nodl.nodl_types import NodeType, NodlPort
 from archgen.importers.ros_package.import_account import ImportAccount
+from archgen.importers.xml_tree import XmlElement
 from archgen.model.element_ids import make_id
 
 _ROLES = {

@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import IO
 
 from archgen.diagnostics.source_span import Span
-from archgen.importers.foreign.bounded_files import ARCHIVE_DAMAGE, ZIP_BEGINNING
+from archgen.importers.bounded_files import ARCHIVE_DAMAGE, ZIP_BEGINNING
+from archgen.importers.foreign_import import ForeignFileError
 from archgen.importers.reqif.reqif_document import ReqifDocument
-from archgen.importers.reqif.reqif_parsing import ReqifError, parse_reqif
+from archgen.importers.reqif.reqif_parsing import parse_reqif
 
 MAX_BYTES = 500_000_000
 """So much is read of one file, or of all in a zip file together."""
@@ -18,7 +19,7 @@ _CHUNK = 1 << 18
 
 
 def read_reqif_file(path: Path) -> ReqifDocument:
-    """Read a .reqif or .reqifz file. Raise ReqifError for what is none, and OSError."""
+    """Read a .reqif or .reqifz file. Raise ForeignFileError for what is none, and OSError."""
     document = ReqifDocument()
     with path.open("rb") as stream:
         is_zip = stream.read(4) == ZIP_BEGINNING
@@ -38,13 +39,13 @@ def _read_archive(name: str, stream: IO[bytes], document: ReqifDocument) -> None
             members = [each for each in archive.infolist() if each.filename.lower().endswith(".reqif")]
             if not members:
                 words = "there is no .reqif file in it"
-                raise ReqifError(words, Span.of_file(name), "export it again as ReqIF")
+                raise ForeignFileError(words, Span.of_file(name), "export it again as ReqIF")
             for member in members:
                 with archive.open(member) as part:
                     parse_reqif(f"{name} [{member.filename}]", limit.read_chunks(part), document)
     except ARCHIVE_DAMAGE as error:
         words = f"the zip file is damaged ({error})"
-        raise ReqifError(words, Span.of_file(name), "export it again") from None
+        raise ForeignFileError(words, Span.of_file(name), "export it again") from None
 
 
 class _ByteLimit:
@@ -58,5 +59,5 @@ class _ByteLimit:
             self._bytes_left -= len(chunk)
             if self._bytes_left < 0:
                 words = f"it is larger than {MAX_BYTES // 1_000_000} MB"
-                raise ReqifError(words, Span.of_file(self._name), "export the specifications one by one")
+                raise ForeignFileError(words, Span.of_file(self._name), "export the specifications one by one")
             yield chunk

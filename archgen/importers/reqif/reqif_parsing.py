@@ -10,6 +10,7 @@ from xml.parsers import expat
 
 from archgen.diagnostics.source_span import Span
 from archgen.importers import xml_errors
+from archgen.importers.foreign_import import ForeignFileError
 from archgen.importers.reqif.reqif_document import HierarchyEntry, ReqifDocument, ReqifObject, ReqifRelation
 from archgen.importers.reqif.xhtml_text import XhtmlText
 
@@ -23,16 +24,8 @@ _NAMED_ELEMENTS = frozenset(
 _MALFORMED_HELP = "a ReqIF file is XML in UTF-8; export it again"
 
 
-class ReqifError(Exception):
-    """A file cannot be read. Carries where and why."""
-
-    def __init__(self, message: str, span: Span, help_line: str) -> None:
-        super().__init__(message)
-        self.message, self.span, self.help_line = message, span, help_line
-
-
 def parse_reqif(file: str, chunks: Iterable[bytes], document: ReqifDocument) -> None:
-    """Read a file into a document. Raise ReqifError."""
+    """Read a file into a document. Raise ForeignFileError."""
     _ReqifParser(file, document).parse(chunks)
 
 
@@ -71,10 +64,10 @@ class _ReqifParser:
         except expat.ExpatError as error:
             problem = xml_errors.explain_syntax(error, is_root_seen=self._is_root_seen, malformed_help=_MALFORMED_HELP)
             span = self._span(None if problem.is_at_end else error)
-            raise ReqifError(problem.message, span, problem.help_line) from None
+            raise ForeignFileError(problem.message, span, problem.help_line) from None
         except (LookupError, ValueError) as error:
             problem = xml_errors.explain_encoding(error)
-            raise ReqifError(problem.message, self._span(), problem.help_line) from None
+            raise ForeignFileError(problem.message, self._span(), problem.help_line) from None
 
     def _span(self, error: expat.ExpatError | None = None) -> Span:
         line = error.lineno if error else self._parser.CurrentLineNumber
@@ -83,7 +76,7 @@ class _ReqifParser:
 
     def _refuse_doctype(self, *_: object) -> None:
         words = "it declares a document type or entities, which archgen does not follow"
-        raise ReqifError(words, self._span(), "ReqIF needs neither: take out the `<!DOCTYPE ...>`")
+        raise ForeignFileError(words, self._span(), "ReqIF needs neither: take out the `<!DOCTYPE ...>`")
 
     def _local(self, name: str) -> str:
         local = self._local_names.get(name)
@@ -111,7 +104,7 @@ class _ReqifParser:
             self._is_root_seen = True
             if local != "REQ-IF":
                 words = f"its outermost element is `{local[:60]}`, not `REQ-IF`: this is no ReqIF"
-                raise ReqifError(words, self._span(), "export the requirements as ReqIF (.reqif or .reqifz)")
+                raise ForeignFileError(words, self._span(), "export the requirements as ReqIF (.reqif or .reqifz)")
         elif local == "SPEC-OBJECT":
             line = self._parser.CurrentLineNumber
             name = attributes.get("LONG-NAME", "")

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
-from dataclasses import dataclass, field
 from typing import Any, Literal
 
+from archgen.importers.imported_requirements import ImportedRequirements, ObjectAccount
 from archgen.importers.reqif.attribute_meanings import (
     HEADING_SORTS,
     PART_RELATIONS,
@@ -35,31 +34,6 @@ _PLAIN_SORTS = frozenset({"", "requirement", "req", "anforderung"})
 _SENTENCE_END = re.compile(r"(?<=[.!?])\s")
 _MARKS = re.compile(r"\*\*|`")
 _WORD_SIGNS = re.compile(r'[\s,:"]+')
-
-
-@dataclass(frozen=True, slots=True)
-class ObjectAccount:
-    """What became of an object of the file: taken as `id`, left out on purpose, or not taken, and why."""
-
-    fate: Literal["taken", "left out", "not taken"]
-    name: str
-    place: str
-    id: str = ""
-    reason: str = ""
-
-
-@dataclass(slots=True)
-class ImportedRequirements:
-    """Requirements and use cases as data of the language by id, and the accounts of all objects, attributes, relations."""
-
-    requirements: dict[str, dict[str, Any]] = field(default_factory=dict)
-    use_cases: dict[str, dict[str, Any]] = field(default_factory=dict)
-    accounts: list[ObjectAccount] = field(default_factory=list)
-    unread_attributes: Counter[str] = field(default_factory=Counter)
-    """How many objects have each attribute that is not taken."""
-    unread_relations: Counter[str] = field(default_factory=Counter)
-    closing_relations: tuple[tuple[str, str], ...] = ()
-    """What is not taken, as (part, parent), since it would make a requirement a part of itself."""
 
 
 def take_requirements(document: ReqifDocument, known: KnownRequirements | None = None) -> ImportedRequirements:

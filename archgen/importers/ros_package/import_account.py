@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 
 from archgen.diagnostics.source_span import Span
-from archgen.importers.foreign.foreign_import import ImportNote
+from archgen.importers.foreign_import import ImportNote
 
 
 class ImportAccount:

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass
-from archgen.importers.foreign.bounded_files import read_bounded
-from archgen.importers.foreign.foreign_import import ForeignFileError
-from archgen.importers.foreign.xml_tree import XmlElement, parse_xml
+from archgen.importers.bounded_files import read_bounded
+from archgen.importers.foreign_import import ForeignFileError
+from archgen.importers.xml_tree import XmlElement, parse_xml
 
 MANIFEST = "package.xml"
 _MAX_MANIFEST = 1_000_000

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from archgen.diagnostics.source_span import Span
-from archgen.importers.foreign.bounded_files import read_bounded
-from archgen.importers.foreign.foreign_import import ForeignFileError, ForeignImport
+from archgen.importers.bounded_files import read_bounded
+from archgen.importers.foreign_import import ForeignFileError, ForeignImport
 from archgen.importers.ros_package.declared_parameters import is_declaration_file, read_declared_parameters
 from archgen.importers.ros_package.import_account import ImportAccount
 from archgen.importers.ros_package.message_files import make_type_name, read_message_definition

@@ -8,8 +8,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from archgen.diagnostics.source_span import Span
-from archgen.importers.foreign.bounded_files import read_bounded
-from archgen.importers.foreign.foreign_import import ForeignFileError
+from archgen.importers.bounded_files import read_bounded
+from archgen.importers.foreign_import import ForeignFileError
 from archgen.importers.launch.python_parsing import PythonRefusedError, parse_python
 from archgen.importers.ros_package.import_account import ImportAccount
 from archgen.importers.ros_package.package_files import PackageFile, PackageManifest

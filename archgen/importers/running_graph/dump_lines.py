@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from archgen.diagnostics.source_span import Span
-from archgen.importers.foreign.bounded_files import read_bounded
-from archgen.importers.foreign.foreign_import import ForeignFileError
+from archgen.importers.bounded_files import read_bounded
+from archgen.importers.foreign_import import ForeignFileError
 
 MAX_DUMP_BYTES = 64_000_000
 _MAX_LINE = 20_000

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from archgen.diagnostics.source_span import Span
-from archgen.importers.foreign.foreign_import import ForeignFileError, ForeignImport
+from archgen.importers.foreign_import import ForeignFileError, ForeignImport
 from archgen.importers.running_graph.dump_lines import DumpLine, read_dump_lines
 from archgen.importers.running_graph.graph_model import RunningGraph
 from archgen.importers.running_graph.graph_slices import write_graph

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from archgen.diagnostics.source_span import Span
-from archgen.importers.foreign.foreign_import import ImportNote
+from archgen.importers.foreign_import import ImportNote
 
 USES = ("publishes", "subscribes", "serves", "calls")
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass, field
 
-from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi import uml_values
 from archgen.importers.xmi.import_ledger import ImportLedger, name_element
 from archgen.importers.xmi.made_names import choose_id, name_parameter
 from archgen.importers.xmi.uml_catalogue import read_description
 from archgen.importers.xmi.uml_index import UmlIndex, get_kind, get_name, is_true, list_child_elements
+from archgen.importers.xml_tree import XmlElement
 
 _PERIOD_NAME = "sample"
 _VISIBILITIES = frozenset({"public", "protected", "private"})

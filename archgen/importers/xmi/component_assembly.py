@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 
-from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.class_features import ClassFeatures, read_features
 from archgen.importers.xmi.component_facts import ClassFacts, ClassSorting
 from archgen.importers.xmi.import_ledger import ImportLedger, name_element
@@ -12,6 +11,7 @@ from archgen.importers.xmi.made_names import choose_id
 from archgen.importers.xmi.port_facts import InterfaceUses, PortFacts
 from archgen.importers.xmi.uml_catalogue import UmlCatalogue
 from archgen.importers.xmi.uml_index import UmlIndex, get_kind, get_name, is_true, list_child_elements
+from archgen.importers.xml_tree import XmlElement
 from archgen.model.element_ids import make_id
 
 _HARDWARE = frozenset({"Node", "ExecutionEnvironment"})

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from dataclasses import dataclass, field
 
-from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.general_classes import MAX_GENERALS, find_top, list_beyond
 from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, name_element
 from archgen.importers.xmi.port_facts import InterfaceUses, PortFacts
 from archgen.importers.xmi.template_classes import TemplateClasses, TypeArguments
 from archgen.importers.xmi.uml_catalogue import UmlCatalogue
 from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, is_true, list_child_elements
+from archgen.importers.xml_tree import XmlElement
 
 _TYPE_PREFIX = f"{OWN_PREFIX}component_type."
 _LIBRARY_ID = f"{OWN_PREFIX}package.classes"

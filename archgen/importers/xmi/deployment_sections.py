@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections import defaultdict
 
-from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.component_assembly import ComponentAssembly
 from archgen.importers.xmi.component_facts import ClassFacts
 from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, make_hints, name_element
 from archgen.importers.xmi.made_names import choose_id, say_title
 from archgen.importers.xmi.uml_catalogue import UmlCatalogue, read_description
 from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, list_child_elements
+from archgen.importers.xml_tree import XmlElement
 from archgen.model.element_ids import make_unique_id
 
 _MAX_HINTS = 10_000

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from archgen.importers.foreign.xml_tree import XmlElement
+from archgen.importers.xml_tree import XmlElement
 
 MAX_GENERALS = 50
 """So many classes may stand one above another: the language reads 60 types, and a component is realized by one more."""

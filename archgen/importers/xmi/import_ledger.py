@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable
 
-from archgen.importers.foreign.foreign_import import ImportNote
-from archgen.importers.foreign.xml_tree import XmlElement
+from archgen.importers.foreign_import import ImportNote
 from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name
+from archgen.importers.xml_tree import XmlElement
 
 OWN_PREFIX = "archgen."
 """What the ids of elements begin with that `archgen export xmi` wrote."""

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 
-from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.import_ledger import NOT_TAKEN, OWN_PREFIX, ImportLedger, name_element
 from archgen.importers.xmi.uml_catalogue import TOOL_TAGS
 from archgen.importers.xmi.uml_index import get_id, get_kind, get_name, is_written_here
 from archgen.importers.xmi.xmi_files import XmiDocument
+from archgen.importers.xml_tree import XmlElement
 
 _WHOLE_KINDS = frozenset({"Connector", "Operation", "Association", "CommunicationPath", "EnumerationLiteral"})
 """What is taken with all that stands in it: ends, parameters."""

@@ -6,9 +6,9 @@ import re
 from collections.abc import Collection, Mapping
 from types import MappingProxyType
 
-from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.import_ledger import OWN_PREFIX
 from archgen.importers.xmi.uml_index import get_id, get_kind, get_name
+from archgen.importers.xml_tree import XmlElement
 from archgen.model.element_ids import is_id, make_id, make_unique_id
 from archgen.model.path_resolver import title_from_id
 

@@ -6,10 +6,10 @@ from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi import uml_values
 from archgen.importers.xmi.uml_catalogue import UmlCatalogue
 from archgen.importers.xmi.uml_index import Reference, UmlIndex, get_kind, get_name, is_true, list_child_elements
+from archgen.importers.xml_tree import XmlElement
 
 InterfaceKey = XmlElement | str
 """An interface: its element, or its name where it is written only where it is used."""

@@ -6,13 +6,13 @@ from collections import defaultdict, deque
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.component_assembly import ComponentAssembly
 from archgen.importers.xmi.component_facts import ClassFacts, ClassSorting
 from archgen.importers.xmi.import_ledger import ImportLedger, name_element
 from archgen.importers.xmi.port_facts import InterfaceKey, PortFacts, get_interface_name
 from archgen.importers.xmi.uml_catalogue import UmlCatalogue
 from archgen.importers.xmi.uml_index import UmlIndex, get_name, list_child_elements
+from archgen.importers.xml_tree import XmlElement
 
 _MAX_CONNECTIONS = 100_000
 """So many connections one interface makes: each who uses it reads each who realizes it."""

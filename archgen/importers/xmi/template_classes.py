@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 
-from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, name_element
 from archgen.importers.xmi.uml_catalogue import UmlCatalogue
 from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_name, list_child_elements
 from archgen.importers.xmi.uml_values import find_field_type, name_referenced
+from archgen.importers.xml_tree import XmlElement
 
 SIGNATURE_KINDS = ("TemplateSignature", "RedefinableTemplateSignature")
 _PARAMETER_KINDS = ("ClassifierTemplateParameter", "TemplateParameter", "Parameter")

@@ -6,11 +6,11 @@ from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.comment_texts import make_plain
 from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, name_element
 from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name
 from archgen.importers.xmi.xmi_files import XmiDocument
+from archgen.importers.xml_tree import XmlElement
 
 _PACKAGES = frozenset({"Model", "Package"})
 _CLASSES = frozenset({"Class", "Component"})

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import ChainMap, defaultdict
 from collections.abc import Iterable, Mapping
 
-from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.class_features import ClassFeatures
 from archgen.importers.xmi.component_assembly import ComponentAssembly
 from archgen.importers.xmi.component_facts import ClassFacts
@@ -16,6 +15,7 @@ from archgen.importers.xmi.port_wiring import PortWiring, list_inner_references,
 from archgen.importers.xmi.uml_catalogue import read_description
 from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, is_true
 from archgen.importers.xmi.uml_values import find_field_type
+from archgen.importers.xml_tree import XmlElement
 from archgen.model.element_ids import make_unique_id
 from archgen.model.path_resolver import title_from_id
 

@@ -6,12 +6,12 @@ import re
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Mapping
 
-from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi import uml_values
 from archgen.importers.xmi.import_ledger import OWN_PREFIX, ImportLedger, make_hints, name_element
 from archgen.importers.xmi.template_classes import SIGNATURE_KINDS, read_generic_names
 from archgen.importers.xmi.uml_catalogue import read_description
 from archgen.importers.xmi.uml_index import Reference, UmlIndex, get_id, get_kind, get_name, list_child_elements
+from archgen.importers.xml_tree import XmlElement
 from archgen.link.data_types.message_names import spell_message_name
 from archgen.model.element_ids import make_id
 from archgen.model.generic_names import read_generic_name

@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from archgen.diagnostics.source_span import Span
-from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.xmi_files import XmiDocument
+from archgen.importers.xml_tree import XmlElement
 
 _KINDS_BY_TAG = {
     "ownedPort": "Port",

@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from decimal import Decimal, InvalidOperation
 
-from archgen.importers.foreign.xml_tree import XmlElement
 from archgen.importers.xmi.import_ledger import OWN_PREFIX
 from archgen.importers.xmi.made_names import name_conceptual_type
 from archgen.importers.xmi.uml_index import Reference, UmlIndex, get_id, get_kind
+from archgen.importers.xml_tree import XmlElement
 
 _PARAMETER_TYPES = {
     **dict.fromkeys(("boolean", "bool", "eboolean"), "boolean"),

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from archgen.diagnostics.source_span import Span
-from archgen.importers.foreign.bounded_files import ZIP_BEGINNING, read_archive_members, read_bounded
-from archgen.importers.foreign.foreign_import import ForeignFileError
-from archgen.importers.foreign.xml_tree import XmlElement, parse_xml
+from archgen.importers.bounded_files import ZIP_BEGINNING, read_archive_members, read_bounded
+from archgen.importers.foreign_import import ForeignFileError
+from archgen.importers.xml_tree import XmlElement, parse_xml
 
 _MODEL_TAGS = frozenset({"Model", "Package", "Profile"})
 _MEMBER_ENDINGS = (".xmi", ".uml", "uml_model.model", "uml_model.shared_model")

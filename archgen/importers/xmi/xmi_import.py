@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from archgen.importers.foreign.foreign_import import ForeignImport
-from archgen.importers.foreign.xml_tree import XmlElement
+from archgen.importers.foreign_import import ForeignImport
 from archgen.importers.xmi.component_assembly import ComponentAssembly
 from archgen.importers.xmi.component_facts import ClassSorting
 from archgen.importers.xmi.deployment_sections import DeploymentSections
@@ -19,6 +18,7 @@ from archgen.importers.xmi.uml_component_sections import ComponentSections, assi
 from archgen.importers.xmi.uml_data_types import UmlDataTypes
 from archgen.importers.xmi.uml_index import UmlIndex, get_id, get_kind, get_name
 from archgen.importers.xmi.xmi_files import XmiDocument, read_documents
+from archgen.importers.xml_tree import XmlElement
 
 _FILES = {
     "component_types.yaml": ("component_types",),

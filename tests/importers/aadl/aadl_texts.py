@@ -7,7 +7,7 @@ from typing import Any
 
 from archgen.importers.aadl.aadl_import import read_aadl
 from archgen.importers.aadl.package_parsing import ParsedText, parse_text
-from archgen.importers.foreign.foreign_import import ForeignImport
+from archgen.importers.foreign_import import ForeignImport
 
 MODELS = Path(__file__).with_name("models")
 

@@ -12,8 +12,8 @@ from archgen.importers.aadl import aadl_import, hardware_tree, system_walk
 from archgen.importers.aadl.aadl_import import read_aadl
 from archgen.importers.aadl.aadl_tokens import TooManyTokensError, scan_tokens
 from archgen.importers.aadl.hardware_tree import HardwareTree
-from archgen.importers.foreign.bounded_files import read_bounded
-from archgen.importers.foreign.foreign_import import ForeignFileError
+from archgen.importers.bounded_files import read_bounded
+from archgen.importers.foreign_import import ForeignFileError
 from tests.importers.aadl.aadl_texts import MODELS, import_package, import_text, list_faults, merge_slices, tell_notes
 
 PATIENCE = 60.0

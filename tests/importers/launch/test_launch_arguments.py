@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.importers.foreign.foreign_import import ForeignFileError
+from archgen.importers.foreign_import import ForeignFileError
 from archgen.importers.launch.launch_import import read_launch
 from tests.importers.launch.test_launch_import import PYTHON_HEAD, nodes_of
 

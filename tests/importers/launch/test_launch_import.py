@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from archgen.importers.foreign.foreign_import import ForeignFileError, ForeignImport
+from archgen.importers.foreign_import import ForeignFileError, ForeignImport
 from archgen.importers.launch.launch_import import read_launch
 
 PYTHON_HEAD = """\

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 import yaml
 
-from archgen.importers.foreign.foreign_import import ForeignFileError, ForeignImport
+from archgen.importers.foreign_import import ForeignFileError, ForeignImport
 from archgen.importers.nodl.nodl_import import read_nodl
 from archgen.pipeline import check_project
 from archgen.products.output_options import OutputOptions

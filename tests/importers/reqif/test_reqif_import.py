@@ -9,10 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from archgen.importers.reqif import ImportedRequirements, read_reqif_file, take_requirements
+from archgen.importers.foreign_import import ForeignFileError
+from archgen.importers.imported_requirements import ImportedRequirements
 from archgen.importers.reqif import reqif_files as files_module
 from archgen.importers.reqif.attribute_meanings import fold_attribute_name
-from archgen.importers.reqif.reqif_parsing import ReqifError
+from archgen.importers.reqif.reqif_files import read_reqif_file
+from archgen.importers.reqif.reqif_import import read_requirements
 from archgen.importers.reqif.requirement_ids import is_requirement_id, make_distinct_id, make_requirement_id
 from archgen.importers.reqif.xhtml_text import XhtmlText
 from tests.quiet_seconds import measure_quiet_seconds
@@ -21,7 +23,7 @@ DOORS = Path(__file__).parent / "doors.reqif"
 
 
 def take(path: Path) -> ImportedRequirements:
-    return take_requirements(read_reqif_file(path))
+    return read_requirements(path, ())
 
 
 def test_a_file_of_doors_becomes_requirements_in_the_order_of_its_specifications() -> None:
@@ -107,7 +109,7 @@ BOMB = b'<!DOCTYPE a [<!ENTITY x "ha"><!ENTITY y "&x;&x;&x;">]>\n<REQ-IF>&y;</RE
 )
 def test_what_is_no_reqif_is_told_with_its_place(content: bytes, place: str, words: str, tmp_path: Path) -> None:
     (tmp_path / "bad.reqif").write_bytes(content)
-    with pytest.raises(ReqifError) as caught:
+    with pytest.raises(ForeignFileError) as caught:
         read_reqif_file(tmp_path / "bad.reqif")
     assert caught.value.message.startswith(words)
     assert f"{caught.value.span.line}:{caught.value.span.column}" == place
@@ -118,7 +120,7 @@ def test_what_is_no_reqif_is_told_with_its_place(content: bytes, place: str, wor
 def test_what_unpacks_to_too_much_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(files_module, "MAX_BYTES", 2_000_000)
     (tmp_path / "big.reqifz").write_bytes(zipped("big.reqif", b"<REQ-IF>" + b" " * 5_000_000 + b"</REQ-IF>"))
-    with pytest.raises(ReqifError, match="it is larger than 2 MB"):
+    with pytest.raises(ForeignFileError, match="it is larger than 2 MB"):
         read_reqif_file(tmp_path / "big.reqifz")
 
 

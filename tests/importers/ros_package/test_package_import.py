@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from archgen.importers.foreign.foreign_import import ForeignFileError, ForeignImport
+from archgen.importers.foreign_import import ForeignFileError, ForeignImport
 from archgen.importers.ros_package import package_files
 from archgen.importers.ros_package.package_import import read_packages
 from archgen.pipeline import check_project

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.importers.foreign.foreign_import import ForeignFileError, ForeignImport
+from archgen.importers.foreign_import import ForeignFileError, ForeignImport
 from archgen.importers.running_graph.graph_import import read_ros_1_graph, read_ros_2_graph
 from archgen.pipeline import check_project
 from archgen.syntax.yaml_writer import write_yaml

@@ -7,12 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from archgen.importers.foreign.xml_tree import XmlElement
-from archgen.importers.xmi import read_xmi
 from archgen.importers.xmi.import_ledger import NOT_TAKEN, ImportLedger
 from archgen.importers.xmi.uml_index import UmlIndex, get_kind, get_name
 from archgen.importers.xmi.xmi_files import read_documents
-from archgen.importers.xmi.xmi_import import convert_documents
+from archgen.importers.xmi.xmi_import import convert_documents, read_xmi
+from archgen.importers.xml_tree import XmlElement
 from tests.importers.xmi.uml_models import merge_sections, read_model, tell_notes, write_model
 
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from archgen.importers.foreign.foreign_import import ForeignFileError
-from archgen.importers.xmi import read_xmi
+from archgen.importers.foreign_import import ForeignFileError
+from archgen.importers.xmi.xmi_import import read_xmi
 from tests.importers.xmi.uml_models import merge_sections, read_model, tell_notes, write_model
 
 

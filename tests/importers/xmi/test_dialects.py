@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from archgen.importers.xmi import read_xmi
+from archgen.importers.xmi.xmi_import import read_xmi
 from tests.importers.xmi.uml_models import merge_sections, read_model, tell_notes, write_model
 
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from archgen.importers.foreign.foreign_import import ForeignImport
-from archgen.importers.xmi import read_xmi
+from archgen.importers.foreign_import import ForeignImport
+from archgen.importers.xmi.xmi_import import read_xmi
 from tests.importers.xmi.uml_models import merge_sections, tell_notes
 
 MODEL = """\

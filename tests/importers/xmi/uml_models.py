@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from archgen.importers.foreign.foreign_import import ForeignImport
-from archgen.importers.xmi import read_xmi
+from archgen.importers.foreign_import import ForeignImport
+from archgen.importers.xmi.xmi_import import read_xmi
 
 _HEAD = (
     '<xmi:XMI xmi:version="2.1" xmlns:xmi="http://schema.omg.org/spec/XMI/2.1" '

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from archgen.diagnostics.source_span import Span
-from archgen.frozen import dataclass
-from archgen.importers.foreign.bounded_files import read_bounded
-from archgen.importers.foreign.foreign_import import ForeignFileError
+from archgen.plugin import dataclass
+from archgen.plugin.importing import ForeignFileError, Span, read_bounded
 
 _MAX_BYTES = 4_000_000
 _KEPT = frozenset("\\=# ")

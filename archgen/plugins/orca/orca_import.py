@@ -8,12 +8,17 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from archgen.diagnostics.source_span import Span
-from archgen.importers.foreign.foreign_import import ForeignFileError, ForeignImport, ImportNote
-from archgen.importers.orca.property_files import OrcaProperty, read_properties
-from archgen.model.code_names import make_camel_name
-from archgen.model.element_ids import make_id, make_unique_id
-from archgen.syntax.plain_scalars import resolve_scalar
+from archgen.plugin.importing import (
+    ForeignFileError,
+    ForeignImport,
+    ImportNote,
+    Span,
+    make_camel_name,
+    make_id,
+    make_unique_id,
+    resolve_scalar,
+)
+from archgen.plugins.orca.property_files import OrcaProperty, read_properties
 
 HINT = "orca"
 _TAG = "DefaultComponentTag"

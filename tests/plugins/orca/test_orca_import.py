@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from archgen.importers.foreign.foreign_import import ForeignFileError, ForeignImport
-from archgen.importers.orca.orca_import import read_orca
+from archgen.importers.foreign_import import ForeignFileError, ForeignImport
 from archgen.pipeline import check_project
+from archgen.plugins.orca.orca_import import read_orca
 from archgen.products.output_options import OutputOptions
 from archgen.products.workspace_product import WorkspaceRequest, write_workspace
 from archgen.syntax.yaml_writer import write_yaml

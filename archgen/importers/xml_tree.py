@@ -11,7 +11,7 @@ from xml.parsers import expat
 
 from archgen.diagnostics.source_span import Span
 from archgen.importers import xml_errors
-from archgen.importers.foreign.foreign_import import ForeignFileError
+from archgen.importers.foreign_import import ForeignFileError
 
 MAX_DEPTH = 200
 """Elements nest no deeper than this: models have about 30, and code that walks down a tree has an end."""

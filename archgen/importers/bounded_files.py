@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import IO
 
 from archgen.diagnostics.source_span import Span
-from archgen.importers.foreign.foreign_import import ForeignFileError
+from archgen.importers.foreign_import import ForeignFileError
 
 MAX_MODEL_BYTES = 64_000_000
 """So much is read of one file, or of all members of an archive together."""

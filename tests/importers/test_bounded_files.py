@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from archgen.importers.foreign import bounded_files
-from archgen.importers.foreign.bounded_files import read_archive_members, read_bounded
-from archgen.importers.foreign.foreign_import import ForeignFileError
+from archgen.importers import bounded_files
+from archgen.importers.bounded_files import read_archive_members, read_bounded
+from archgen.importers.foreign_import import ForeignFileError
 
 
 def test_a_file_that_is_too_large_is_refused(tmp_path: Path) -> None:

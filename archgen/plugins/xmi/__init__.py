@@ -1,0 +1,15 @@
+"""UML: models in XMI of several tools."""
+
+PLUGIN = {
+    "api": 1,
+    "page": "docs/uml.md",
+    "importers": {
+        "xmi": {
+            "rank": 3,
+            "summary": "UML models in XMI 2 (.xmi, .uml, .mdzip): components, classes, nodes",
+            "endings": (".xmi", ".uml", ".mdzip", ".zargo"),
+            "reader": "archgen.importers.xmi.xmi_import:read_xmi",
+            "keeps_ids": True,
+        },
+    },
+}
