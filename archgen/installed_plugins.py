@@ -56,11 +56,17 @@ class PluginEntry:
 @cache
 def list_shipped_plugins() -> Mapping[str, Facts]:
     """Return the facts of the plug-ins that ship, by name: what is taken out of `archgen/plugins` is not there."""
-    try:
-        names = sorted(entry.name for entry in os.scandir(_SHIPPED_FOLDER) if _is_plugin(entry))
-    except FileNotFoundError:
-        return {}
+    names = map(os.path.basename, list_shipped_folders())
     return {name: importlib.import_module(f"{SHIPPED_PACKAGE}.{name}").PLUGIN for name in names}
+
+
+@cache
+def list_shipped_folders() -> tuple[str, ...]:
+    """Return the folders of the plug-ins that ship, by name, without importing them."""
+    try:
+        return tuple(sorted(entry.path for entry in os.scandir(_SHIPPED_FOLDER) if _is_plugin(entry)))
+    except FileNotFoundError:
+        return ()
 
 
 def _is_plugin(entry: os.DirEntry[str]) -> bool:
@@ -68,7 +74,7 @@ def _is_plugin(entry: os.DirEntry[str]) -> bool:
     return entry.is_dir() and os.path.isfile(os.path.join(entry.path, "__init__.py"))  # noqa: PTH113, PTH118 - as above
 
 
-def list_shipped_facts(kind: str) -> Iterator[tuple[str, str, Facts]]:
+def list_shipped_facts(kind: str) -> Iterator[tuple[str, str, Any]]:
     """Yield what the plug-ins that ship bring of a kind, `importers` for instance: plug-in, name, facts."""
     for plugin, facts in list_shipped_plugins().items():
         for name, own_facts in facts.get(kind, {}).items():
@@ -133,8 +139,15 @@ def _name_entry(entry: PluginEntry) -> str:
     return f"the plug-in `{entry.name}` ({entry.group}) of {entry.origin}"
 
 
-def _refuse_foreign_origin(entry: PluginEntry, module_name: str) -> None:
-    """Refuse a module that would come from elsewhere than where installers write: a file of the project, for instance."""
+def find_package_folder(entry: PluginEntry) -> str:
+    """Return the folder of the package that an entry point leads to, without importing it. Raise PluginRefusedError."""
+    module_name = entry.target.partition(":")[0]
+    with _leave_out_current_folder():
+        return os.path.dirname(_refuse_foreign_origin(entry, module_name))  # noqa: PTH120 - as above
+
+
+def _refuse_foreign_origin(entry: PluginEntry, module_name: str) -> str:
+    """Return the file of a top-level module. Refuse one that would come from elsewhere than where installers write: a file of the project, for instance."""
     from importlib import util
 
     top = module_name.partition(".")[0]
@@ -150,6 +163,7 @@ def _refuse_foreign_origin(entry: PluginEntry, module_name: str) -> None:
     if not any(origin.startswith(os.path.join(os.path.realpath(folder), "")) for folder in folders):  # noqa: PTH118
         msg = f"{_name_entry(entry)} is not loaded: `{top}` would be {origin}, which lies in no folder of installed packages"
         raise PluginRefusedError(msg)
+    return origin
 
 
 @contextmanager

@@ -44,6 +44,8 @@ def list_modules() -> dict[str, Path]:
     """Return the file of each module of archgen and of the tests."""
     folders = (ROOT / "archgen", *(folder for folder in (ROOT / "tests").iterdir() if folder.name != "judges"))
     files = [file for folder in folders for file in ([folder] if folder.suffix == ".py" else folder.rglob("*.py"))]
+    # What backends of plug-ins copy into workspaces is none of archgen's modules.
+    files = [file for file in files if "backends" not in file.relative_to(ROOT).parts]
     return {".".join(file.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"): file for file in files}
 
 

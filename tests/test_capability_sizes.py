@@ -14,7 +14,7 @@ TOOL = runpy.run_path(str(ROOT / "tools" / "capability_sizes.py"))
 def test_every_file_has_a_capability_and_every_capability_files() -> None:
     sizes = TOOL["measure_sizes"]()
     assert all(size.files for size in sizes.values())
-    files = list((ROOT / "archgen").rglob("*.py"))
+    files = [file for file in (ROOT / "archgen").rglob("*.py") if "backends" not in file.parts]
     assert sum(size.files for size in sizes.values()) == len(files) - len(TOOL["GENERATED"])
 
 

@@ -22,7 +22,7 @@ from archgen.products.generation_contexts import make_generation_context
 from archgen.products.leaving_links import refuse_leaving_links
 from archgen.products.output_options import OutputOptions
 from archgen.products.trusted_backends import refuse_untrusted_pass
-from archgen.views.generation import GENERATION_VIEWS, make_generation_views
+from archgen.views.generation import find_view_maker, make_generation_views
 from archgen.views.generation.architecture_needs import find_unmet_needs
 from archgen.views.generation.generation_context import GenerationContext
 
@@ -166,7 +166,7 @@ def _make_views(
     checked_project: CheckedProject, options: OutputOptions, backend: Backend, context: GenerationContext
 ) -> tuple[Mapping[str, object], tuple[Diagnostic, ...]]:
     """Return the views of a backend. What documents are made from is loaded only for one that asks for it."""
-    if GENERATION_VIEWS.keys() >= set(backend.views):
+    if all(map(find_view_maker, backend.views)):
         return make_generation_views(context, backend.views)
     from archgen.products.backend_products import make_backend_views
     from archgen.products.product_inputs import ProductInputs

@@ -11,9 +11,9 @@ from archgen.bringup.program_names import ProgramNames, choose_own_name, group_e
 from archgen.bringup.start_plan import make_start_plan
 from archgen.model.architecture import Architecture
 from archgen.pipeline import check_project
+from archgen.plugins.ros_code.launch_view import make_view as make_launch_view
+from archgen.plugins.ros_code.node_programs import make_view as make_programs
 from archgen.views.generation.generation_context import GenerationContext
-from archgen.views.generation.launch_view import make_view as make_launch_view
-from archgen.views.generation.node_programs import make_view as make_programs
 
 PROJECT = """\
 archgen: 1

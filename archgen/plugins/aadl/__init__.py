@@ -1,4 +1,4 @@
-"""AADL: models in text, packages and their systems."""
+"""AADL: models in text, packages and their systems, read and written."""
 
 PLUGIN = {
     "api": 1,
@@ -11,4 +11,5 @@ PLUGIN = {
             "reader": "archgen.importers.aadl.aadl_import:read_aadl",
         },
     },
+    "views": {"aadl": "archgen.plugins.aadl.views.aadl_view:make_view"},
 }

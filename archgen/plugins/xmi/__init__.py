@@ -1,4 +1,4 @@
-"""UML: models in XMI of several tools."""
+"""UML: models in XMI of several tools, and one in Eclipse UML2's form to write."""
 
 PLUGIN = {
     "api": 1,
@@ -12,4 +12,5 @@ PLUGIN = {
             "keeps_ids": True,
         },
     },
+    "views": {"uml": "archgen.plugins.xmi.views.uml_view:make_view"},
 }

@@ -10,8 +10,8 @@ import pytest
 from archgen.importers.launch.launch_import import read_launch
 from archgen.pipeline import CheckedProject, check_project
 from archgen.syntax.yaml_writer import write_yaml
-from tests.generators.launch.launch_reading import make_launch_workspace
-from tests.generators.launch.test_launch_files import write_simple
+from tests.plugins.ros_code.launch.launch_reading import make_launch_workspace
+from tests.plugins.ros_code.launch.test_launch_files import write_simple
 from tests.running import RAMCIP, ROOT
 
 EXAMPLES = {

@@ -1,0 +1,65 @@
+"""The architecture: its elements, what their types and ports say of themselves, quantities, and ids."""
+
+from archgen.model.architecture import Architecture, Chain, Partner
+from archgen.model.component import Component, ComponentType, Connection, Group, Input, Output
+from archgen.model.declared_timing import Timing
+from archgen.model.deployment import Container, Host, Link
+from archgen.model.element_annotations import ElementAnnotations
+from archgen.model.element_ids import make_id, spell_in_ascii
+from archgen.model.generic_names import read_generic_name
+from archgen.model.graph_search import find_rings
+from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField
+from archgen.model.message_types import PART_KEYS, ConceptualType, DataField, flow_of, full_message_name
+from archgen.model.node import Endpoint, Node, Qos
+from archgen.model.parameter import Operation
+from archgen.model.parameter_values import canonical_name, find_declarations
+from archgen.model.path_resolver import title_from_id
+from archgen.model.port_media import DIGITAL, flow_of_port, is_physical, uses_ros, word_of_medium
+from archgen.model.quantity import Quantity, parse_quantity
+from archgen.model.ros_distro import is_ros_1
+from archgen.model.start_up import PHASES
+
+__all__ = [
+    "DIGITAL",
+    "PART_KEYS",
+    "PHASES",
+    "Architecture",
+    "Chain",
+    "Component",
+    "ComponentType",
+    "ConceptualType",
+    "Connection",
+    "Container",
+    "DataField",
+    "ElementAnnotations",
+    "Endpoint",
+    "Group",
+    "Host",
+    "Input",
+    "Interface",
+    "InterfaceConstant",
+    "InterfaceField",
+    "Link",
+    "Node",
+    "Operation",
+    "Output",
+    "Partner",
+    "Qos",
+    "Quantity",
+    "Timing",
+    "canonical_name",
+    "find_declarations",
+    "find_rings",
+    "flow_of",
+    "flow_of_port",
+    "full_message_name",
+    "is_physical",
+    "is_ros_1",
+    "make_id",
+    "parse_quantity",
+    "read_generic_name",
+    "spell_in_ascii",
+    "title_from_id",
+    "uses_ros",
+    "word_of_medium",
+]
