@@ -6,11 +6,11 @@ from pathlib import Path
 
 import yaml
 
-from archgen.importers.aadl.aadl_import import read_aadl
 from archgen.pipeline import check_project
+from archgen.plugins.aadl.aadl_import import read_aadl
 from archgen.views.generation.aadl_component_types import find_type_of_node
 from tests.generators.test_aadl_devices import write_project
-from tests.importers.aadl.aadl_texts import merge_slices
+from tests.plugins.aadl.aadl_texts import merge_slices
 
 PROJECT = """\
 archgen: 1

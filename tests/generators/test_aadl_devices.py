@@ -8,14 +8,14 @@ from typing import Any
 import pytest
 import yaml
 
-from archgen.importers.aadl.aadl_import import read_aadl
 from archgen.pipeline import check_project
+from archgen.plugins.aadl.aadl_import import read_aadl
 from archgen.views.generation.aadl_devices import is_device
 from archgen.views.generation.aadl_view import make_view
 from archgen.views.generation.generation_context import GenerationContext
 from tests.generators.aadl_judge import judge_packages
 from tests.generators.test_aadl import find_line, write_files
-from tests.importers.aadl.aadl_texts import merge_slices
+from tests.plugins.aadl.aadl_texts import merge_slices
 
 PROJECT = """\
 archgen: 1
