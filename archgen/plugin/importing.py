@@ -5,6 +5,7 @@ from archgen.diagnostics.suggestions import find_closest
 from archgen.importers.bounded_files import ARCHIVE_DAMAGE, ZIP_BEGINNING, read_archive_members, read_bounded
 from archgen.importers.foreign_import import ForeignFileError, ForeignImport, ImportNote
 from archgen.importers.imported_requirements import ImportedRequirements, ObjectAccount
+from archgen.importers.imported_tables import MAX_OFFICE_BYTES, ImportedTables
 from archgen.importers.recorded_files import ReadRecordings, RecordingRefusedError
 from archgen.importers.xml_errors import XmlProblem, explain_encoding, explain_syntax
 from archgen.importers.xml_tree import XmlElement, parse_xml
@@ -22,12 +23,14 @@ __all__ = [
     "ARCHIVE_DAMAGE",
     "MAX_BYTES",
     "MAX_ID_LENGTH",
+    "MAX_OFFICE_BYTES",
     "NO_SPAN",
     "ZIP_BEGINNING",
     "ForeignFileError",
     "ForeignImport",
     "ImportNote",
     "ImportedRequirements",
+    "ImportedTables",
     "MappingNode",
     "ObjectAccount",
     "ReadRecordings",

@@ -2,6 +2,7 @@
 
 from archgen.analyses.name_validity import find_name_fault, find_node_name_fault
 from archgen.link.data_types.message_names import spell_message_name
+from archgen.link.interface_sources import load_interfaces
 from archgen.link.parameter_flattening import flatten_parameters
 from archgen.link.parameter_texts import ParameterSection, ParameterText, matches_node_name, read_parameter_text
 from archgen.link.shipped_interfaces import load_shipped_interfaces
@@ -26,6 +27,7 @@ __all__ = [
     "full_message_name",
     "is_common_callback",
     "is_ros_1",
+    "load_interfaces",
     "load_shipped_interfaces",
     "matches_node_name",
     "parse_interface_definition",
