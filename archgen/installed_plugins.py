@@ -81,6 +81,18 @@ def list_shipped_facts(kind: str) -> Iterator[tuple[str, str, Any]]:
             yield plugin, name, own_facts
 
 
+def load_reader(purpose: str) -> Any:  # noqa: ANN401 - a function of the purpose's own kind
+    """Return the function that reads what a verb takes beside formats: `recordings`, `tables`, `headings`.
+
+    Raise PluginRefusedError where the plug-in that has it is taken out.
+    """
+    for facts in list_shipped_plugins().values():
+        if purpose in facts.get("readers", {}):
+            return load_shipped_object(facts["readers"][purpose])
+    msg = f"there is no plug-in that reads {purpose}: it is taken out of {SHIPPED_PACKAGE}"
+    raise PluginRefusedError(msg)
+
+
 def list_entries(group: str) -> tuple[PluginEntry, ...]:
     """Return the entry points of a group, by name and package; none where plug-ins of others are switched off."""
     return tuple(entry for entry in list_all_entries() if entry.group == group)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,10 +16,10 @@ from archgen.diagnostics.text_columns import find_width, wrap_line
 if TYPE_CHECKING:
     from archgen.diagnostics.diagnostic import Diagnostic
     from archgen.edit.measured_slice import MeasuredSlice
-    from archgen.importers.recordings.recorded_names import RecordedNames
-    from archgen.importers.recordings.recording_import import ReadRecordings
+    from archgen.importers.recorded_files import ReadRecordings
     from archgen.model.architecture import Architecture
     from archgen.pipeline import CheckedProject
+    from archgen.timing.analysis import Analysis, ChainResult
     from archgen.timing.chains.measured_comparison import MeasuredComparison, Observation
 
 DEFAULT_SLICE = "measured.yaml"
@@ -37,7 +37,6 @@ def answer_recordings(
 
     `architecture` is the project's with the figures of `--set`. Ends with status 1 where something could not be used.
     """
-    from archgen.importers.recordings.recorded_names import RecordedNames
     from archgen.timing.chains.chain_bounds import bound_all_chains
     from archgen.timing.chains.measured_comparison import compare_measured
     from archgen.timing.run_analysis import analyse_architecture
@@ -46,7 +45,7 @@ def answer_recordings(
         _refuse_target(checked_project, slice_path)
     analysis = analyse_architecture(architecture)
     chains = bound_all_chains(analysis, architecture)
-    recordings = _read_recordings(paths, RecordedNames(architecture, analysis.system, chains))
+    recordings = _read_recordings(paths, architecture, analysis, chains)
     # So that excerpts below can show the lines of these files too.
     for file, text in recordings.texts:
         checked_project.sources.add_text(file, text)
@@ -68,14 +67,13 @@ def answer_recordings(
 
 def read_recorded_files(checked_project: CheckedProject, paths: Sequence[Path]) -> tuple[Observation, ...]:
     """Return what recordings say; what is wrong with them is printed. Ends with status 1 where something cannot be used."""
-    from archgen.importers.recordings.recorded_names import RecordedNames
     from archgen.timing.chains.chain_bounds import bound_all_chains
     from archgen.timing.chains.measured_comparison import compare_measured
     from archgen.timing.run_analysis import analyse_architecture
 
     analysis = analyse_architecture(checked_project.architecture)
     chains = bound_all_chains(analysis, checked_project.architecture)
-    recordings = _read_recordings(paths, RecordedNames(checked_project.architecture, analysis.system, chains))
+    recordings = _read_recordings(paths, checked_project.architecture, analysis, chains)
     for file, text in recordings.texts:
         checked_project.sources.add_text(file, text)
     _, unknown = compare_measured(analysis, recordings.observations, chains)
@@ -87,15 +85,19 @@ def read_recorded_files(checked_project: CheckedProject, paths: Sequence[Path]) 
     return recordings.observations
 
 
-def _read_recordings(paths: Sequence[Path], names: RecordedNames) -> ReadRecordings:
-    from archgen.importers.recordings.recording_formats import RecordingRefusedError
-    from archgen.importers.recordings.recording_import import read_recordings
+def _read_recordings(
+    paths: Sequence[Path], architecture: Architecture, analysis: Analysis, chains: Mapping[str, ChainResult]
+) -> ReadRecordings:
+    from archgen.importers.recorded_files import RecordingRefusedError
+    from archgen.installed_plugins import load_reader
 
+    read_measured = load_reader("recordings")
     with command_support.explain_write_errors():
         try:
-            return read_recordings(paths, names)
+            recordings: ReadRecordings = read_measured(paths, architecture, analysis, chains)
         except RecordingRefusedError as error:
             raise click.UsageError(make_visible(str(error))) from None
+    return recordings
 
 
 def _settle_problems(problems: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:

@@ -3,6 +3,7 @@
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Rule, Severity
 from archgen.diagnostics.rule_options import RuleOption
+from archgen.diagnostics.safe_text import make_visible
 from archgen.diagnostics.source_span import NO_SPAN, Span, first_written_span
 from archgen.diagnostics.suggestions import did_you_mean
 
@@ -17,4 +18,5 @@ __all__ = [
     "did_you_mean",
     "first_written_span",
     "join_words",
+    "make_visible",
 ]

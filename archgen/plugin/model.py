@@ -1,26 +1,31 @@
-"""The architecture: its elements, what their types and ports say of themselves, quantities, and ids."""
+"""The architecture as rules, importers and generators meet it: its elements, selectors, quantities."""
 
-from archgen.model.architecture import Architecture, Chain, Partner
+from archgen.model.architecture import Architecture, Chain, Partner, UseCase
 from archgen.model.component import Component, ComponentType, Connection, Group, Input, Output
 from archgen.model.declared_timing import Timing
-from archgen.model.deployment import Container, Host, Link
+from archgen.model.deployment import Container, Host, Link, Resource
 from archgen.model.element_annotations import ElementAnnotations
 from archgen.model.element_ids import make_id, spell_in_ascii
 from archgen.model.generic_names import read_generic_name
 from archgen.model.graph_search import find_rings
 from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField
 from archgen.model.message_types import PART_KEYS, ConceptualType, DataField, flow_of, full_message_name
-from archgen.model.node import Endpoint, Node, Qos
-from archgen.model.parameter import Operation
+from archgen.model.node import Endpoint, Node, Qos, Topic, UseKind
+from archgen.model.parameter import MAX_NAME_LENGTH, Operation, Parameter
 from archgen.model.parameter_values import canonical_name, find_declarations
 from archgen.model.path_resolver import title_from_id
-from archgen.model.port_media import DIGITAL, flow_of_port, is_physical, uses_ros, word_of_medium
-from archgen.model.quantity import Quantity, parse_quantity
+from archgen.model.port_media import DIGITAL, MEDIUM_NAMES, flow_of_port, is_physical, uses_ros, word_of_medium
+from archgen.model.quantity import MAX_DIGITS, Quantity, parse_quantity
+from archgen.model.requirement import Requirement
 from archgen.model.ros_distro import is_ros_1
+from archgen.model.selector_evaluation import Selection, evaluate_selector
 from archgen.model.start_up import PHASES
 
 __all__ = [
     "DIGITAL",
+    "MAX_DIGITS",
+    "MAX_NAME_LENGTH",
+    "MEDIUM_NAMES",
     "PART_KEYS",
     "PHASES",
     "Architecture",
@@ -43,11 +48,19 @@ __all__ = [
     "Node",
     "Operation",
     "Output",
+    "Parameter",
     "Partner",
     "Qos",
     "Quantity",
+    "Requirement",
+    "Resource",
+    "Selection",
     "Timing",
+    "Topic",
+    "UseCase",
+    "UseKind",
     "canonical_name",
+    "evaluate_selector",
     "find_declarations",
     "find_rings",
     "flow_of",

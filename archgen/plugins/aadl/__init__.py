@@ -8,7 +8,7 @@ PLUGIN = {
             "rank": 2,
             "summary": "models in AADL v2, as text (.aadl)",
             "endings": (".aadl",),
-            "reader": "archgen.importers.aadl.aadl_import:read_aadl",
+            "reader": "archgen.plugins.aadl.aadl_import:read_aadl",
         },
     },
     "views": {"aadl": "archgen.plugins.aadl.views.aadl_view:make_view"},

@@ -8,7 +8,7 @@ PLUGIN = {
             "rank": 1,
             "summary": "requirements of Doors, Polarion and others (.reqif, .reqifz)",
             "endings": (".reqif", ".reqifz"),
-            "reader": "archgen.importers.reqif.reqif_import:read_requirements",
+            "reader": "archgen.plugins.reqif.reqif_import:read_requirements",
             "has_requirements": True,
         },
     },

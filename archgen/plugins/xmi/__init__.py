@@ -8,7 +8,7 @@ PLUGIN = {
             "rank": 3,
             "summary": "UML models in XMI 2 (.xmi, .uml, .mdzip): components, classes, nodes",
             "endings": (".xmi", ".uml", ".mdzip", ".zargo"),
-            "reader": "archgen.importers.xmi.xmi_import:read_xmi",
+            "reader": "archgen.plugins.xmi.xmi_import:read_xmi",
             "keeps_ids": True,
         },
     },

@@ -8,12 +8,12 @@ from pathlib import Path
 
 import yaml
 
-from archgen.importers.aadl.aadl_import import read_aadl
 from archgen.pipeline import check_project
+from archgen.plugins.aadl.aadl_import import read_aadl
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.run_analysis import analyse_architecture
-from tests.importers.aadl.aadl_texts import merge_slices
 from tests.plugins.aadl.aadl_judge import find_member, judge_packages
+from tests.plugins.aadl.aadl_texts import merge_slices
 from tests.plugins.aadl.test_aadl import list_whole_flows, read_latency, write_files
 
 PROJECT = """\

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import yaml
 
-from archgen.importers.aadl.aadl_import import read_aadl
 from archgen.pipeline import check_project
+from archgen.plugins.aadl.aadl_import import read_aadl
 from archgen.plugins.aadl.views.aadl_component_types import find_type_of_node
-from tests.importers.aadl.aadl_texts import merge_slices
+from tests.plugins.aadl.aadl_texts import merge_slices
 from tests.plugins.aadl.test_aadl_devices import write_project
 
 PROJECT = """\

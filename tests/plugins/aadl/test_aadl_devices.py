@@ -8,13 +8,13 @@ from typing import Any
 import pytest
 import yaml
 
-from archgen.importers.aadl.aadl_import import read_aadl
 from archgen.pipeline import check_project
+from archgen.plugins.aadl.aadl_import import read_aadl
 from archgen.plugins.aadl.views.aadl_devices import is_device
 from archgen.plugins.aadl.views.aadl_view import make_view
 from archgen.views.generation.generation_context import GenerationContext
-from tests.importers.aadl.aadl_texts import merge_slices
 from tests.plugins.aadl.aadl_judge import judge_packages
+from tests.plugins.aadl.aadl_texts import merge_slices
 from tests.plugins.aadl.test_aadl import find_line, write_files
 
 PROJECT = """\

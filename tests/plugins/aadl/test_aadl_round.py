@@ -245,7 +245,7 @@ def drop_classifiers(data: Any) -> Any:  # noqa: ANN401 - what YAML holds
 
 
 def test_the_talker_of_the_paper_goes_back(tmp_path: Path) -> None:
-    models = ROOT / "tests" / "importers" / "aadl" / "models"
+    models = ROOT / "tests" / "plugins" / "aadl" / "models"
     files = [models / f"{name}.aadl" for name in ("chatter", "chat_msgs", "ros", "cnc", "topic_properties")]
     archgen_here("import", "aadl", *files, "-o", tmp_path / "talking", cwd=tmp_path)
     archgen_here("generate", "aadl", "-C", tmp_path / "talking", "-o", tmp_path / "ws", cwd=tmp_path)

@@ -10,10 +10,10 @@ from xml.etree import ElementTree as ET
 import pytest
 
 from archgen.checking.checked_packing import pack_checked_project
-from archgen.importers.xmi.xmi_import import read_xmi
 from archgen.pipeline import CheckedProject, check_project
 from archgen.plugins.xmi.views.uml_tree import IdRegistry
 from archgen.plugins.xmi.views.uml_types import UmlTypes
+from archgen.plugins.xmi.xmi_import import read_xmi
 from archgen.products.output_options import OutputOptions
 from archgen.products.project_outputs import render_exported
 from archgen.products.project_views import select_elements

@@ -1,1 +1,0 @@
-"""Read requirements from ReqIF, as Doors, Polarion and their like exchange them."""
