@@ -17,7 +17,9 @@ from archgen.model.code_names import (
     make_ros_name,
     make_snake_name,
 )
+from archgen.model.element_ids import make_id, spell_in_ascii
 from archgen.model.language_keywords import AADL_KEYWORDS, CPP_KEYWORDS, PYTHON_KEYWORDS
+from archgen.model.path_resolver import title_from_id
 from archgen.views.generation.class_words import find_type_words
 from archgen.views.generation.component_records import SetParameter, list_set_parameters, read_own_hints
 from archgen.views.generation.generation_context import (
@@ -62,6 +64,7 @@ __all__ = [
     "list_node_values",
     "list_set_parameters",
     "make_camel_name",
+    "make_id",
     "make_identifier_in",
     "make_lower_camel_name",
     "make_ros_name",
@@ -73,7 +76,9 @@ __all__ = [
     "record_parameters",
     "record_ports",
     "record_qos",
+    "spell_in_ascii",
     "tell_left_out",
+    "title_from_id",
     "to_plain",
     "write_place",
 ]

@@ -5,19 +5,15 @@ from archgen.model.component import Component, ComponentType, Connection, Group,
 from archgen.model.declared_timing import Timing
 from archgen.model.deployment import Container, Host, Link, Resource
 from archgen.model.element_annotations import ElementAnnotations
-from archgen.model.element_ids import make_id, spell_in_ascii
 from archgen.model.generic_names import read_generic_name
 from archgen.model.graph_search import find_rings
-from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField
-from archgen.model.message_types import PART_KEYS, ConceptualType, DataField, flow_of, full_message_name
+from archgen.model.message_types import PART_KEYS, ConceptualType, DataField, flow_of
 from archgen.model.node import Endpoint, Node, Qos, Topic, UseKind
 from archgen.model.parameter import MAX_NAME_LENGTH, Operation, Parameter
 from archgen.model.parameter_values import canonical_name, find_declarations
-from archgen.model.path_resolver import title_from_id
 from archgen.model.port_media import DIGITAL, MEDIUM_NAMES, flow_of_port, is_physical, uses_ros, word_of_medium
 from archgen.model.quantity import MAX_DIGITS, Quantity, parse_quantity
 from archgen.model.requirement import Requirement
-from archgen.model.ros_distro import is_ros_1
 from archgen.model.selector_evaluation import Selection, evaluate_selector
 from archgen.model.start_up import PHASES
 
@@ -41,9 +37,6 @@ __all__ = [
     "Group",
     "Host",
     "Input",
-    "Interface",
-    "InterfaceConstant",
-    "InterfaceField",
     "Link",
     "Node",
     "Operation",
@@ -65,14 +58,9 @@ __all__ = [
     "find_rings",
     "flow_of",
     "flow_of_port",
-    "full_message_name",
     "is_physical",
-    "is_ros_1",
-    "make_id",
     "parse_quantity",
     "read_generic_name",
-    "spell_in_ascii",
-    "title_from_id",
     "uses_ros",
     "word_of_medium",
 ]

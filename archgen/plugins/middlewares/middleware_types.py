@@ -8,7 +8,8 @@ from typing import Any
 
 from archgen.plugin.findings import NO_SPAN, Diagnostic, Span
 from archgen.plugin.generating import read_own_hints, tell_left_out, write_place
-from archgen.plugin.model import Architecture, Interface, InterfaceField
+from archgen.plugin.model import Architecture
+from archgen.plugin.ros import Interface, InterfaceField
 from archgen.plugins.middlewares.middleware_names import (
     drop_clashes,
     make_class_name,

@@ -15,7 +15,8 @@ from archgen.plugin.generating import (
     tell_left_out,
     write_place,
 )
-from archgen.plugin.model import Architecture, Interface, InterfaceConstant, InterfaceField
+from archgen.plugin.model import Architecture
+from archgen.plugin.ros import Interface, InterfaceConstant, InterfaceField
 from archgen.plugins.middlewares.java_names import JAVA_CLASS_NAMES, choose_java_spellings
 
 _WHOLE_TYPES = frozenset(

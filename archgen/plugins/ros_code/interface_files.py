@@ -6,7 +6,8 @@ import re
 from collections.abc import Iterable, Iterator
 
 from archgen.plugin.generating import write_place
-from archgen.plugin.model import ConceptualType, Interface, InterfaceConstant, InterfaceField
+from archgen.plugin.model import ConceptualType
+from archgen.plugin.ros import Interface, InterfaceConstant, InterfaceField
 
 _ROS_1_TIMES = {"builtin_interfaces/msg/Time": "time", "builtin_interfaces/msg/Duration": "duration"}
 _ROS_2_TIMES = {ros_1_name: message for message, ros_1_name in _ROS_1_TIMES.items()}

@@ -15,7 +15,8 @@ from archgen.plugin.generating import (
     collect_messages,
     tell_left_out,
 )
-from archgen.plugin.model import Architecture, ConceptualType, Interface, find_rings
+from archgen.plugin.model import Architecture, ConceptualType, find_rings
+from archgen.plugin.ros import Interface
 from archgen.plugins.ros_code.interface_files import list_missing_words, list_used_packages, record_definition
 from archgen.plugins.ros_code.package_facts import record_package_facts
 

@@ -13,7 +13,7 @@ from archgen.plugin.generating import (
     tell_left_out,
     write_place,
 )
-from archgen.plugin.model import is_ros_1
+from archgen.plugin.ros import is_ros_1
 from archgen.plugin.starting import StartStep, find_wanted_steps, make_start_plan
 from archgen.plugins.ros_code.launch_entries import record_container_entry, record_node_entry
 from archgen.plugins.ros_code.package_facts import record_package_facts

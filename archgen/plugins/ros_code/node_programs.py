@@ -24,7 +24,8 @@ from archgen.plugin.generating import (
     tell_left_out,
     write_place,
 )
-from archgen.plugin.model import Architecture, Endpoint, Node, is_ros_1
+from archgen.plugin.model import Architecture, Endpoint, Node
+from archgen.plugin.ros import is_ros_1
 from archgen.plugins.ros_code.cpp_programs import complete_cpp_program, find_bad_classes, list_cpp_libraries
 from archgen.plugins.ros_code.package_facts import record_package_facts
 from archgen.plugins.ros_code.program_callbacks import add_callback_groups

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from archgen.plugin.generating import write_place
-from archgen.plugin.model import Architecture, Component, Endpoint, Node, Timing, title_from_id
+from archgen.plugin.generating import title_from_id, write_place
+from archgen.plugin.model import Architecture, Component, Endpoint, Node, Timing
 from archgen.plugins.aadl.views.aadl_behaviours import Behaviour
 from archgen.plugins.aadl.views.aadl_hints import (
     find_thread_name,

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from fractions import Fraction
 from typing import Any
 
-from archgen.plugin.generating import GenerationContext
-from archgen.plugin.model import Architecture, Chain, Endpoint, title_from_id
+from archgen.plugin.generating import GenerationContext, title_from_id
+from archgen.plugin.model import Architecture, Chain, Endpoint
 from archgen.plugin.timing import Analysis
 from archgen.plugins.aadl.views.aadl_calls import RouteEnds, RouteFinder
 from archgen.plugins.aadl.views.aadl_devices import NodeDevice

@@ -7,7 +7,8 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from archgen.plugin.generating import write_place
-from archgen.plugin.model import PART_KEYS, Architecture, ConceptualType, DataField, flow_of, full_message_name
+from archgen.plugin.model import PART_KEYS, Architecture, ConceptualType, DataField, flow_of
+from archgen.plugin.ros import full_message_name
 from archgen.plugins.aadl.views.aadl_hints import list_own_sources, read_aadl_hints
 from archgen.plugins.aadl.views.aadl_words import (
     AadlProperty,

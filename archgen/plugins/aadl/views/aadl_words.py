@@ -9,8 +9,8 @@ from collections.abc import Iterable
 from fractions import Fraction
 from typing import Any
 
-from archgen.plugin.generating import AADL_KEYWORDS
-from archgen.plugin.model import Component, Group, Node, Quantity, spell_in_ascii, title_from_id
+from archgen.plugin.generating import AADL_KEYWORDS, spell_in_ascii, title_from_id
+from archgen.plugin.model import Component, Group, Node, Quantity
 
 MAX_NAME_LENGTH = 80
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*\Z", re.ASCII)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from archgen.plugin.generating import make_camel_name
-from archgen.plugin.model import Architecture, Component, title_from_id
+from archgen.plugin.generating import make_camel_name, title_from_id
+from archgen.plugin.model import Architecture, Component
 from archgen.plugins.xmi.views.uml_features import UmlFeatures
 from archgen.plugins.xmi.views.uml_templates import UmlTemplates
 from archgen.plugins.xmi.views.uml_tree import (

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from archgen.plugin.model import read_generic_name, title_from_id
+from archgen.plugin.generating import title_from_id
+from archgen.plugin.model import read_generic_name
 from archgen.plugins.xmi.views.uml_signatures import make_signature
 from archgen.plugins.xmi.views.uml_tree import IdRegistry, UmlTree, make_id_word, make_tree, read_mapping
 from archgen.plugins.xmi.views.uml_types import UmlTypes

@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from archgen.plugin.model import make_id
+from archgen.plugin.generating import make_id
 
 UmlTree = dict[str, Any]
 """An element: `tag`, `attributes` as pairs, `text`, `children`."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
-from archgen.plugin.generating import GeneratedView, GenerationContext
-from archgen.plugin.model import Architecture, title_from_id
+from archgen.plugin.generating import GeneratedView, GenerationContext, title_from_id
+from archgen.plugin.model import Architecture
 from archgen.plugins.xmi.views.uml_components import UmlComponents
 from archgen.plugins.xmi.views.uml_deployment import write_deployment
 from archgen.plugins.xmi.views.uml_tree import TYPE_PREFIX, IdRegistry, UmlTree, make_tree, read_mapping
