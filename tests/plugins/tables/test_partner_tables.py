@@ -8,10 +8,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from tests.plugins.tables.test_cell_ledger import find_silent_losses
 
 from archgen.plugins.tables import table_import
 from archgen.start import project_plan, start_answers, starter_slices
+from tests.plugins.tables.test_cell_ledger import find_silent_losses
 
 TABLES = Path(__file__).parent / "partner_tables"
 
