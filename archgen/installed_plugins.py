@@ -147,6 +147,24 @@ def load_shipped_object(target: str) -> Any:  # noqa: ANN401 - whatever stands t
     return getattr(importlib.import_module(module_name), name)
 
 
+def list_module_files() -> tuple[str, ...]:
+    """Return the files and folders of the modules that plug-ins of others begin with; nothing is imported."""
+    found: dict[str, None] = {}
+    for entry in list_all_entries():
+        top = entry.target.partition(":")[0].partition(".")[0]
+        paths = (
+            os.path.join(folder, name)  # noqa: PTH118
+            for folder in _list_trusted_folders(entry)
+            for name in (top, f"{top}.py")
+        )
+        found |= dict.fromkeys(path for path in paths if os.path.exists(path))  # noqa: PTH110
+    return tuple(found)
+
+
+def _list_trusted_folders(entry: PluginEntry) -> tuple[str, ...]:
+    return (*list_package_folders(), *_list_path_file_folders(), *_list_editable_folder(entry))
+
+
 def _name_entry(entry: PluginEntry) -> str:
     return f"the plug-in `{entry.name}` ({entry.group}) of {entry.origin}"
 
@@ -171,8 +189,8 @@ def _refuse_foreign_origin(entry: PluginEntry, module_name: str) -> str:
         msg = f"{_name_entry(entry)} cannot be loaded: there is no module `{top}`; install the package again"
         raise PluginRefusedError(msg)
     origin = os.path.realpath(spec.origin)
-    folders = (*list_package_folders(), *_list_path_file_folders(), *_list_editable_folder(entry))
-    if not any(origin.startswith(os.path.join(os.path.realpath(folder), "")) for folder in folders):  # noqa: PTH118
+    folders = (os.path.join(os.path.realpath(folder), "") for folder in _list_trusted_folders(entry))  # noqa: PTH118
+    if not origin.startswith(tuple(folders)):
         msg = f"{_name_entry(entry)} is not loaded: `{top}` would be {origin}, which lies in no folder of installed packages"
         raise PluginRefusedError(msg)
     return origin

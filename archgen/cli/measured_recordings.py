@@ -102,10 +102,9 @@ def _read_recordings(
 
 def _settle_problems(problems: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
     from archgen.diagnostics.diagnostic import settle_diagnostics
-    from archgen.findings.rule_table import index_rules
-    from archgen.pipeline import ALL_RULES
+    from archgen.pipeline import index_all_rules
 
-    return settle_diagnostics(problems, index_rules(ALL_RULES), {})
+    return settle_diagnostics(problems, index_all_rules(), {})
 
 
 def _print_answer(

@@ -107,10 +107,9 @@ def _make_slice(checked_project: CheckedProject, imported: ImportedRequirements,
 
 def _settle_errors(errors: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
     from archgen.diagnostics.diagnostic import settle_diagnostics
-    from archgen.findings.rule_table import index_rules
-    from archgen.pipeline import ALL_RULES
+    from archgen.pipeline import index_all_rules
 
-    return settle_diagnostics(errors, index_rules(ALL_RULES), {})
+    return settle_diagnostics(errors, index_all_rules(), {})
 
 
 def _find_target(checked_project: CheckedProject, into: Path | None) -> Path:
