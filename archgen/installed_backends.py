@@ -45,7 +45,8 @@ def list_installed_backends() -> Mapping[str, InstalledBackend]:
         for backend_id in sorted(shipped)
     }
     for entry in list_entries(GENERATORS):
-        for folder in sorted(_list_folders(Path(find_package_folder(entry), BACKENDS_FOLDER))):
+        package_folder = find_package_folder(entry)
+        for folder in sorted(_list_folders(Path(package_folder, BACKENDS_FOLDER))) if package_folder else ():
             if folder.name in backends:
                 _refuse_taken_id(entry, folder.name, backends[folder.name])
             backends[folder.name] = InstalledBackend(

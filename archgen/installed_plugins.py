@@ -169,11 +169,14 @@ def _name_entry(entry: PluginEntry) -> str:
     return f"the plug-in `{entry.name}` ({entry.group}) of {entry.origin}"
 
 
-def find_package_folder(entry: PluginEntry) -> str:
-    """Return the folder of the package that an entry point leads to, without importing it. Raise PluginRefusedError."""
-    module_name = entry.target.partition(":")[0]
+def find_package_folder(entry: PluginEntry) -> str | None:
+    """Return the folder of the package that an entry point leads to, without importing it; None where it is a single file.
+
+    Raise PluginRefusedError where it lies elsewhere than what is installed.
+    """
     with _leave_out_current_folder():
-        return os.path.dirname(_refuse_foreign_origin(entry, module_name))  # noqa: PTH120 - as above
+        folder, file = os.path.split(_refuse_foreign_origin(entry, entry.target.partition(":")[0]))
+    return folder if file.startswith("__init__.") else None
 
 
 def _refuse_foreign_origin(entry: PluginEntry, module_name: str) -> str:

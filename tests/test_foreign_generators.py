@@ -16,6 +16,7 @@ import pytest
 
 from archgen import installed_plugins
 from archgen.installed_backends import list_installed_backends
+from archgen.resources import SWITCH_VARIABLE
 from archgen.views.generation import find_view_maker
 from tests.running import ROOT, archgen_here, contents
 
@@ -97,12 +98,9 @@ def test_its_backends_are_listed_behind_those_that_ship(site: Path, robot: Path)
     install(site)
     assert list(list_installed_backends())[-1] == "roster"
     said = archgen_here("list", "--of", "backends", cwd=robot).stdout.decode()
-    assert re.search(r"^roster +Roster of nodes", said, re.MULTILINE)
+    assert re.search(r"^roster +Roster of nodes +workspace +text +roster +archgen-roster 1\.0$", said, re.MULTILINE)
     assert (
-        "roster"
-        not in archgen_here(
-            "list", "--of", "backends", cwd=robot, env={installed_plugins.SWITCH_VARIABLE: "1"}
-        ).stdout.decode()
+        "roster" not in archgen_here("list", "--of", "backends", cwd=robot, env={SWITCH_VARIABLE: "1"}).stdout.decode()
     )
 
 

@@ -68,7 +68,9 @@ class Backend:
     needs: tuple[str, ...] = ()
     """What must hold of the architecture after the passes; only for a workspace."""
     from_project: bool = False
-    """Whether the project brings it, rather than archgen."""
+    """Whether the project brings it, rather than archgen or another package."""
+    origin: str = ""
+    """Who brings it where neither the project nor archgen does: package and version."""
 
 
 CALLED_EMITTERS = frozenset({"text", "reqif"})
@@ -94,7 +96,7 @@ def find_backends(
         if names is not None and backend_id not in names:
             continue
         try:
-            backend = _read_manifest(installed.folder, installed.name)
+            backend = replace(_read_manifest(installed.folder, installed.name), origin=installed.origin)
             if installed.origin:
                 _refuse_other_emitter(backend, "a backend of another package")
             backends[backend_id] = backend
