@@ -44,6 +44,8 @@ def _run_verb() -> None:
         if getattr(sys, name) is None:  # the caller closed it: discard what is written
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115, PTH123 - until the process ends
     from archgen.cli import main as verbs
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.installed_plugins import PluginRefusedError
 
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")  # where it is not UTF-8: a question mark instead of no output at all
@@ -56,6 +58,9 @@ def _run_verb() -> None:
             sys.stdout.flush()  # here, so that a closed pipe or a full disk is still handled by the caller
     except click.ClickException as error:
         error.show()
+        sys.exit(2)
+    except PluginRefusedError as error:
+        sys.stderr.write(f"Error: {make_visible(str(error))}\n")
         sys.exit(2)
     except click.Abort:
         raise KeyboardInterrupt from None
@@ -71,4 +76,7 @@ def _leave_quietly() -> None:
 
 
 if __name__ == "__main__":
+    # `python -m archgen` puts the current folder first: a file of the project would be imported in place of a library.
+    if not sys.flags.safe_path:
+        del sys.path[0]
     main()

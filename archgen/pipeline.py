@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from archgen import project
-from archgen.checking.all_rules import ALL_RULES
+from archgen.checking.all_rules import SHIPPED_RULES, index_all_rules
 from archgen.checking.checked_project import CheckedProject
 from archgen.checking.merged_project import merge_project
 from archgen.checking.pass_judging import read_origins, transform_project
@@ -30,7 +30,7 @@ from archgen.project import LoadedProject, ParsedSlices, TrackedProject
 from archgen.timing.run_analysis import AnalysisMemory
 
 __all__ = [
-    "ALL_RULES",
+    "SHIPPED_RULES",
     "CheckedProject",
     "UnknownVariantError",
     "VersionCache",
@@ -39,6 +39,7 @@ __all__ = [
     "check_project",
     "check_text",
     "check_tracked_project",
+    "index_all_rules",
     "judge_project",
     "keep_variant_findings",
     "list_variant_names",

@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+SWITCH_VARIABLE = "ARCHGEN_NO_PLUGINS"
+"""Set to anything: no plug-ins of others. `--no-plugins` sets it, so that worker processes see it, too."""
 REPOSITORY = "archgen/archgen"
 """Where archgen will be published on GitHub: the one place for this name, from which every other is made or tested."""
 HOME_URL = f"https://github.com/{REPOSITORY}"
@@ -13,8 +15,10 @@ _WORKER_VARIABLES = (
     *("PYTHONPATH", "PYTHONHOME"),
     # Where it found shared libraries: on Linux, on macOS, and on Windows.
     *("LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "DYLD_FALLBACK_LIBRARY_PATH", "SYSTEMROOT"),
+    # Where plug-ins of others are switched off, they are so in workers.
+    SWITCH_VARIABLE,
 )
-"""What an interpreter needs to start and to find its libraries as this one did; nobody keeps a secret in them."""
+"""What an interpreter needs to start, to find its libraries and to judge as this one did; nobody keeps a secret in them."""
 _PACKAGE_FOLDER = Path(__file__).resolve().parent
 
 

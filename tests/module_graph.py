@@ -44,6 +44,8 @@ def list_modules() -> dict[str, Path]:
     """Return the file of each module of archgen and of the tests."""
     folders = (ROOT / "archgen", *(folder for folder in (ROOT / "tests").iterdir() if folder.name != "judges"))
     files = [file for folder in folders for file in ([folder] if folder.suffix == ".py" else folder.rglob("*.py"))]
+    # What backends of plug-ins copy into workspaces is none of archgen's modules.
+    files = [file for file in files if "backends" not in file.relative_to(ROOT).parts]
     return {".".join(file.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"): file for file in files}
 
 
@@ -73,12 +75,14 @@ def find_imports(module: str) -> frozenset[str]:
 
 @cache
 def _list_next(module: str) -> frozenset[str]:
-    """Return the modules that a module leads to: by imports, by fixtures, by a process, by the name of a verb."""
+    """Return the modules that a module leads to: by imports, by fixtures, by a process, by the name of a verb, by a plug-in."""
     from archgen.cli import VERBS, verb_module
 
     found = set(find_imports(module))
     if module == "archgen.cli":
         found |= {verb_module(verb) for verb in VERBS}
+    if module == "archgen.installed_plugins":
+        found |= {name for name in list_modules() if name.startswith("archgen.plugins.")}
     if module == "tests.running":
         found.add("archgen.__main__")
     if is_test(module):

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.importers.xmi.uml_models import write_model
+from tests.plugins.xmi.uml_models import write_model
 from tests.running import ROOT
 
 TOOL = runpy.run_path(str(ROOT / "tools" / "count_uml_constructs.py"))

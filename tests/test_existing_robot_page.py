@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from archgen.importers.foreign.import_formats import IMPORT_FORMATS
-from archgen.importers.launch.launch_import import read_launch
+from archgen.importers.import_formats import list_import_formats
 from archgen.pipeline import check_text
+from archgen.plugins.ros.launch.launch_import import read_launch
 from archgen.syntax.yaml_writer import write_yaml
 from tests.running import ROOT
 
@@ -42,7 +42,7 @@ def test_what_comes_out_is_a_sound_project() -> None:
 
 def test_the_formats_are_there() -> None:
     assert set(re.findall(r"archgen import (\w+) ", PAGE)) == {"launch", "package", "ros2", "orca"}
-    assert set(IMPORT_FORMATS) >= {"launch", "package", "ros1", "ros2", "orca"}
+    assert set(list_import_formats()) >= {"launch", "package", "ros1", "ros2", "orca"}
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=["ros2", "ros1"])

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-FILES = sorted([*(ROOT / "archgen/emit").rglob("*.py"), *(ROOT / "archgen/views").rglob("*.py")])
+FILES = sorted(file for room in ("emit", "views", "plugins") for file in (ROOT / "archgen" / room).rglob("*.py"))
 WHOLE_NUMBERS = frozenset({("archgen/emit/docx/table_rows.py", "sum(widths)")})
 """Sums of integers (twips) that do not look like it."""
 COUNTS = (ast.Compare, ast.BoolOp, ast.Constant, ast.UnaryOp)

@@ -17,9 +17,8 @@ def test_the_table_is_fresh() -> None:
 
 def test_every_generator_has_a_row_with_its_templates() -> None:
     rows = dict(re.findall(r"^\| `(\w+)` \| (\d+) \| [0-9.]+ \| [1-9]\d* \| [0-9.]+ \|", PAGE, re.MULTILINE))
-    generators = [
-        file.parent for file in (ROOT / "backends").glob("*/backend.yaml") if "makes: workspace" in file.read_text()
-    ]
+    manifests = [*ROOT.glob("backends/*/backend.yaml"), *ROOT.glob("archgen/plugins/*/backends/*/backend.yaml")]
+    generators = [file.parent for file in manifests if "makes: workspace" in file.read_text()]
     assert rows == {
         each.name: str(sum(file.is_file() for file in (each / "templates").rglob("*"))) for each in generators
     }

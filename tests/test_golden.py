@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 from tests import readable
-from tests.generators.middleware_projects import HEADLAMP
-from tests.generators.test_ros2_cpp import ROBOT
+from tests.plugins.middlewares.middleware_projects import HEADLAMP
+from tests.plugins.ros_code.test_ros2_cpp import ROBOT
 from tests.running import RAMCIP, REVISION, ROOT, archgen_here, contents
 
 GOLDEN = ROOT / "tests" / "golden"

@@ -12,7 +12,7 @@ import pytest
 
 from archgen.diagnostics.diagnostic import Severity
 from archgen.pipeline import check_project
-from tests.generators.test_ros2_python import AMENT_FLAKE8
+from tests.plugins.ros_code.test_ros2_python import AMENT_FLAKE8
 from tests.ros_environment import NEWEST_PYTHON, ROS_FOLDER, make_ros_python, ros_environment
 from tests.running import ROOT, archgen_here
 

@@ -53,11 +53,11 @@ HARMLESS = frozenset(
     {
         ("archgen/views/graphs/changes/component_changes.py", "shown_components"),
         # From a set to a set.
-        ("archgen/importers/xmi/component_facts.py", "members"),
-        ("archgen/importers/xmi/component_facts.py", "family"),
+        ("archgen/plugins/xmi/component_facts.py", "members"),
+        ("archgen/plugins/xmi/component_facts.py", "family"),
         # Keys of a table that is only asked.
         *(
-            ("archgen/importers/xmi/uml_catalogue.py", name)
+            ("archgen/plugins/xmi/uml_catalogue.py", name)
             for name in ("_CLASSES", "_DATA", "_HARDWARE", "_REALIZATIONS", "_PATHS", "_DEPENDENCIES")
         ),
     }

@@ -27,6 +27,6 @@ def test_the_commands_of_the_page_work(tmp_path: Path) -> None:
 
 
 def test_every_dialect_that_is_named_is_tested() -> None:
-    tests = (ROOT / "tests" / "importers" / "xmi" / "test_dialects.py").read_text(encoding="utf-8")
+    tests = (ROOT / "tests" / "plugins" / "xmi" / "test_dialects.py").read_text(encoding="utf-8")
     for name in ("papyrus_has", "papyrus_for_robotics", "enterprise_architect", "visual_paradigm", "magicdraw"):
         assert f"def test_{name}" in tests

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Mapping
+from functools import reduce
 from pathlib import Path
 from typing import NamedTuple
 
@@ -27,8 +28,8 @@ CAPABILITIES: Mapping[str, tuple[str, ...]] = {
     "timing, with its tables and printing": ("timing", "views/timing", "emit/terminal/timing_", "views/timing_"),
     "simulation of timing": ("simulation",),
     "comparison, review, merging, history": ("compare", "merge", "history", "views/changes", "views/agreement"),
-    "importers": ("importers",),
-    "views and workspaces of generators": ("views/generation", "views/uml", "emit/workspace"),
+    "importers, what plug-ins may use": ("importers", "plugin", "plugins/__init__.py", "installed_plugins.py"),
+    "views and workspaces of generators": ("views/generation", "emit/workspace", "installed_backends.py"),
     "passes and rules of one's own": ("passes",),
     "pictures": ("views/graphs", "views/sequences", "emit/graphviz", "emit/fonts"),
     "site, explorer, search, preview": ("emit/site", "views/explorer", "views/search", "serve"),
@@ -38,32 +39,42 @@ CAPABILITIES: Mapping[str, tuple[str, ...]] = {
     "start, editing, git, forges": ("start", "edit", "git", "forge"),
     "verbs and products": ("cli", "products", "api.py", "cache", "resources.py", "__init__.py", "__main__.py"),
 }
-"""What each part is for, by the beginnings of its files' paths; the longest beginning counts."""
+"""What each part of the core is for, by the beginnings of its files' paths; the longest beginning counts."""
+PLUGINS = "plugins"
+"""The folder of the plug-ins that ship: each of its folders is one, and counted by itself."""
 GENERATED = frozenset({"language/language_tables.py"})
 """Files that nobody writes."""
 
 
 class Size(NamedTuple):
-    """The files of a capability, and their lines."""
+    """The files of a part, and their lines."""
 
     files: int
     lines: int
 
+    def join(self, other: Size) -> Size:
+        """Return the size of both."""
+        return Size(self.files + other.files, self.lines + other.lines)
+
 
 def measure_sizes() -> dict[str, Size]:
-    """Return the size of each capability. Raise ValueError for a file that is of none."""
+    """Return the size of each capability of the core, and of each plug-in. Raise ValueError for a file that is of none."""
     sizes = dict.fromkeys(CAPABILITIES, Size(0, 0))
     for path in sorted((ROOT / "archgen").rglob("*.py")):
         name = path.relative_to(ROOT / "archgen").as_posix()
-        if name not in GENERATED:
+        # What backends of plug-ins copy into workspaces is none of archgen's code.
+        if name not in GENERATED and "/backends/" not in name:
             capability = find_capability(name)
-            size = sizes[capability]
-            sizes[capability] = Size(size.files + 1, size.lines + len(path.read_bytes().splitlines()))
+            size = Size(1, len(path.read_bytes().splitlines()))
+            sizes[capability] = sizes.get(capability, Size(0, 0)).join(size)
     return sizes
 
 
 def find_capability(name: str) -> str:
-    """Return what a file of the package is for. Raise ValueError where no capability has it."""
+    """Return what a file of the package is for, or its plug-in. Raise ValueError where no capability has it."""
+    top, _, rest = name.partition("/")
+    if top == PLUGINS and "/" in rest:
+        return f"plug-in `{rest.partition('/')[0]}`"
     beginnings = [
         (len(beginning), capability)
         for capability, places in CAPABILITIES.items()
@@ -78,10 +89,14 @@ def find_capability(name: str) -> str:
 
 
 def write_table(sizes: Mapping[str, Size]) -> str:
-    """Return the table, the largest first."""
-    rows = sorted(sizes.items(), key=lambda item: -item[1].lines)
-    total = Size(sum(each.files for each in sizes.values()), sum(each.lines for each in sizes.values()))
-    lines = [f"| {name} | {size.files:,} | {size.lines:,} |" for name, size in [*rows, ("**all**", total)]]
+    """Return the table: the core with its parts, the plug-ins, and all; in each the largest first."""
+    rows = []
+    for title, is_core in (("**the core**", True), ("**the plug-ins**", False)):
+        parts = [(name, size) for name, size in sizes.items() if (name in CAPABILITIES) == is_core]
+        total = reduce(Size.join, (size for _, size in parts), Size(0, 0))
+        rows += [(title, total), *sorted(parts, key=lambda item: -item[1].lines)]
+    rows.append(("**all**", reduce(Size.join, sizes.values(), Size(0, 0))))
+    lines = [f"| {name} | {size.files:,} | {size.lines:,} |" for name, size in rows]
     return "\n".join(["| what it is for | files | lines |", "|---|---|---|", *lines])
 
 

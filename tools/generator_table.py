@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import ast
 import re
+from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 
 from archgen.emit.backend_manifests import Backend, find_backends
-from archgen.views.generation import GENERATION_VIEWS
+from archgen.installed_plugins import list_shipped_facts
+from archgen.views.generation import CORE_VIEWS, find_view_maker
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "generation.md"
 HEADING = "## How large the generators are"
 _VIEWS = ROOT / "archgen" / "views" / "generation"
+_OFFERED = "archgen.plugin."
 _TABLE = re.compile(rf"(?<=^{re.escape(HEADING)}\n\n)(?:\|.*\n)*", re.MULTILINE)
 
 
@@ -27,7 +31,7 @@ def renew_table(page: str) -> str:
 
 def _describe(generator: Backend) -> str:
     templates = sorted(path for path in (generator.folder / "templates").rglob("*") if path.is_file())
-    modules = sorted(set[Path]().union(*(_find_modules(view) for view in generator.views if view in GENERATION_VIEWS)))
+    modules = sorted(set[Path]().union(*(_find_modules(view) for view in generator.views if find_view_maker(view))))
     counts = " | ".join(f"{len(files)} | {_count_mean(files)}" for files in (templates, modules))
     return f"| `{generator.id}` | {counts} | {', '.join(generator.passes)} |\n"
 
@@ -39,12 +43,16 @@ def _count_mean(files: list[Path]) -> str:
 
 
 def _find_modules(view: str) -> set[Path]:
-    """Return the modules of views for generators that a view is made with: the one that makes it, and what that imports."""
-    maker = GENERATION_VIEWS[view].__name__
-    tree = ast.parse((_VIEWS / "__init__.py").read_text(encoding="utf-8"))
-    function = next(each for each in tree.body if isinstance(each, ast.FunctionDef) and each.name == maker)
+    """Return the modules that a view for generators is made with: the one that makes it, and what that imports of its kind."""
+    targets = {name: target for _, name, target in list_shipped_facts("views")}
+    if view in targets:
+        waiting = [_find_file(targets[view].partition(":")[0])]
+    else:
+        tree = ast.parse((_VIEWS / "__init__.py").read_text(encoding="utf-8"))
+        maker = CORE_VIEWS[view].__name__
+        function = next(each for each in tree.body if isinstance(each, ast.FunctionDef) and each.name == maker)
+        waiting = list(_list_imported(function))
     found: set[Path] = set()
-    waiting = list(_list_imported(function))
     while waiting:
         file = waiting.pop()
         if file not in found:
@@ -54,13 +62,26 @@ def _find_modules(view: str) -> set[Path]:
 
 
 def _list_imported(tree: ast.AST) -> set[Path]:
-    names = {
-        f"{node.module}.{alias.name}"
-        for node in ast.walk(tree)
-        if isinstance(node, ast.ImportFrom)
-        for alias in node.names
-    }
-    parts = {
-        name.removeprefix("archgen.views.generation.").split(".")[0] for name in names if ".views.generation." in name
-    }
-    return {_VIEWS / f"{part}.py" for part in parts if (_VIEWS / f"{part}.py").is_file()}
+    """Return the modules of plug-ins and of the core's own views for generators that are imported, through `archgen.plugin`, too."""
+    found: set[Path] = set()
+    for node in ast.walk(tree):
+        if not isinstance(node, ast.ImportFrom) or node.module is None:
+            continue
+        for alias in node.names:
+            is_offered = node.module.startswith(_OFFERED)
+            module = _read_offered_names(node.module).get(alias.name, "") if is_offered else node.module
+            if module.startswith(("archgen.plugins.", "archgen.views.generation")):
+                found |= {file for name in (f"{module}.{alias.name}", module) if (file := _find_file(name)).is_file()}
+    return found
+
+
+@cache
+def _read_offered_names(module: str) -> Mapping[str, str]:
+    """Return where each name comes from that a module of `archgen.plugin` offers."""
+    tree = ast.parse(_find_file(module).read_text(encoding="utf-8"))
+    imports = [node for node in tree.body if isinstance(node, ast.ImportFrom)]
+    return {alias.name: node.module or "" for node in imports for alias in node.names}
+
+
+def _find_file(module: str) -> Path:
+    return ROOT / f"{module.replace('.', '/')}.py"

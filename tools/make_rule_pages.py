@@ -11,15 +11,16 @@ from generator_table import PAGE, renew_table
 from archgen.findings import rule_pages
 from archgen.findings.comparison_rules import COMPARISON_RULES
 from archgen.findings.generation_rules import GENERATION_RULES
+from archgen.findings.plugged_rules import FAILED_RULE
 from archgen.findings.rule_table import index_rules
-from archgen.pipeline import ALL_RULES
+from archgen.pipeline import SHIPPED_RULES
 
 FOLDER = Path(__file__).resolve().parent.parent / "docs" / "rules"
 
 
 def pages() -> Mapping[str, str]:
     """Give the text of every page by its file name."""
-    rules = index_rules((*ALL_RULES, *COMPARISON_RULES, *GENERATION_RULES))
+    rules = index_rules((*SHIPPED_RULES, FAILED_RULE, *COMPARISON_RULES, *GENERATION_RULES))
     return {
         "README.md": rule_pages.format_rule_index(rules),
         **{f"{name}.md": rule_pages.rule_page_to_markdown(rule) for name, rule in rules.items()},

@@ -145,15 +145,15 @@ def check_architecture(
     `analysis` is the timing analysis, `rule_options` are the options that the project sets, by rule.
     """
     for entry in _RULE_FUNCTIONS:
-        yield from _bound_findings(entry[0](architecture, **_option_arguments(entry, rule_options)))
+        yield from bound_findings(entry[0](architecture, **_option_arguments(entry, rule_options)))
     if analysis is not None:
         for timing_entry in _TIMING_RULE_FUNCTIONS:
-            yield from _bound_findings(
+            yield from bound_findings(
                 timing_entry[0](architecture, analysis, **_option_arguments(timing_entry, rule_options))
             )
 
 
-def _bound_findings(findings: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+def bound_findings(findings: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     """Yield the findings of one rule; at the bound one that says so, which silencing all others does not silence."""
     for number, finding in enumerate(findings):
         if number == MAX_LOOKED_FOR:

@@ -12,6 +12,7 @@ from functools import cache
 from pathlib import Path
 
 from archgen import resources
+from archgen.installed_plugins import list_all_entries, list_module_files
 
 WRITER_LIBRARIES = (
     "jinja2",
@@ -37,12 +38,18 @@ def stamp_writers() -> str:
 
 @cache
 def stamp_program() -> str:
-    """Stamp all of archgen: its code and data, what ships beside it, and all libraries."""
+    """Stamp all of archgen: its code and data, what ships beside it, all libraries, and the plug-ins of others."""
     shipped_data = (
         resources.resource_path(name)
         for name in ("backends", "schemas", "passes", "ros_library", "ros_type_mapper.yaml")
     )
-    return f"{digest_files((_EMIT_FOLDER.parent, *shipped_data))} {_describe_libraries()}"
+    return f"{digest_files((_EMIT_FOLDER.parent, *shipped_data))} {_describe_libraries()}{_describe_plugins()}"
+
+
+def _describe_plugins() -> str:
+    """Describe the plug-ins of others: who brings them, and their code, which changes without a new version while it is edited."""
+    origins = dict.fromkeys(entry.origin for entry in list_all_entries())
+    return f" {list(origins)} {digest_files(map(Path, list_module_files()))}" if origins else ""
 
 
 def digest_files(tops: Iterable[Path]) -> str:

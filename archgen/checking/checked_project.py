@@ -7,7 +7,7 @@ from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from archgen.checking.all_rules import READING_RULES, RULES_BY_NAME
+from archgen.checking.all_rules import READING_RULES, index_all_rules
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.rule_options import OptionValues
 from archgen.diagnostics.source_span import SourceTexts
@@ -88,7 +88,7 @@ class CheckedProject:
     @property
     def structural_errors(self) -> tuple[Diagnostic, ...]:
         """The errors of reading and linking: what they are about is missing in the architecture."""
-        return tuple(d for d in self.findings if d.severity is Severity.ERROR and RULES_BY_NAME[d.rule].fixed)
+        return tuple(d for d in self.findings if d.severity is Severity.ERROR and index_all_rules()[d.rule].fixed)
 
     @property
     def reading_errors(self) -> tuple[Diagnostic, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from archgen import analyses
-from archgen.checking.all_rules import RULES_BY_NAME, list_structural_errors
+from archgen.checking.all_rules import index_all_rules, list_structural_errors
 from archgen.checking.checked_project import CheckedProject
 from archgen.checking.linked_project import LinkedProject, PartMemory, link_merged_project
 from archgen.checking.merged_project import MergedProject
@@ -17,6 +17,7 @@ from archgen.findings import (
     ignore_comments,
     instance_findings,
     option_settings,
+    plugged_rules,
     rule_table,
 )
 from archgen.link import title_guesses
@@ -40,7 +41,7 @@ def judge_merged_project(
         loaded_project.lost_keys,
         is_partial=loaded_project.partial,
     )
-    rule_options, option_findings = option_settings.settle_rule_options(loaded_project.rule_options, RULES_BY_NAME)
+    rule_options, option_findings = option_settings.settle_rule_options(loaded_project.rule_options, index_all_rules())
     all_diagnostics = (
         *title_guesses.add_title_guesses(
             (*loaded_project.diagnostics, *linked_project.link_findings), architecture, loaded_project.sources
@@ -50,12 +51,15 @@ def judge_merged_project(
         *content_findings,
         *read_parameters.diagnostics,
         *error_aftermath.drop_aftermath(
-            analyses.check_architecture(architecture, analysis, rule_options),
+            (
+                *analyses.check_architecture(architecture, analysis, rule_options),
+                *plugged_rules.judge_plugged(architecture, rule_options),
+            ),
             merged_project.reading_errors,
             waiting_rules,
         ),
         *option_findings,
-        *rule_table.check_rule_settings(loaded_project.rule_spans.items(), RULES_BY_NAME),
+        *rule_table.check_rule_settings(loaded_project.rule_spans.items(), index_all_rules()),
     )
     reported_findings, silenced_findings = _settle_findings(
         all_diagnostics, merged_project, linked_project, is_complete=not waiting_rules
@@ -98,12 +102,12 @@ def _settle_findings(
         ignore_comments.apply_ignores(
             raw_diagnostics,
             ignores,
-            RULES_BY_NAME,
+            index_all_rules(),
             first_lines,
             shared_files=frozenset(loaded_project.library_files),
             is_complete=is_complete,
         ),
-        RULES_BY_NAME,
+        index_all_rules(),
         loaded_project.rule_settings,
     )
     silenced_findings = (
@@ -121,7 +125,7 @@ def _find_silenced(
     shown_findings = frozenset(settled_findings)
     all_findings = settle_diagnostics(
         raw_diagnostics,
-        RULES_BY_NAME,
+        index_all_rules(),
         {rule: severity for rule, severity in settings.items() if severity != Severity.OFF},
     )
     return tuple(finding for finding in all_findings if finding not in shown_findings)

@@ -86,6 +86,13 @@ def _print_version(ctx: click.Context, _parameter: click.Parameter, is_requested
         ctx.exit()
 
 
+def _leave_out_plugins(ctx: click.Context, _parameter: click.Parameter, is_requested: bool) -> None:  # noqa: FBT001 - click's signature
+    if is_requested and not ctx.resilient_parsing:
+        from archgen.installed_plugins import switch_off_others
+
+        switch_off_others()
+
+
 @click.group(cls=VerbGroup, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
 @click.option(
     "--version",
@@ -94,6 +101,14 @@ def _print_version(ctx: click.Context, _parameter: click.Parameter, is_requested
     is_eager=True,
     callback=_print_version,
     help="Show the versions in use.",
+)
+@click.option(
+    "--no-plugins",
+    is_flag=True,
+    expose_value=False,
+    is_eager=True,
+    callback=_leave_out_plugins,
+    help="Use no plug-ins but those that ship.",
 )
 def main() -> None:
     """Design a robot's software architecture together, in git.

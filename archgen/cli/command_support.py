@@ -276,7 +276,6 @@ def require_host(architecture: Architecture, host: str) -> None:
 def settle_problems(problems: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
     """Return what is wrong with files that are no part of the project, with the severities of the rules."""
     from archgen.diagnostics.diagnostic import settle_diagnostics
-    from archgen.findings.rule_table import index_rules
-    from archgen.pipeline import ALL_RULES
+    from archgen.pipeline import index_all_rules
 
-    return settle_diagnostics(problems, index_rules(ALL_RULES), {})
+    return settle_diagnostics(problems, index_all_rules(), {})

@@ -34,7 +34,7 @@ def command(rule: str | None, distro: str | None) -> None:
     from archgen.findings.generation_rules import GENERATION_RULES
     from archgen.findings.rule_table import index_rules
 
-    rules = index_rules((*pipeline.ALL_RULES, *COMPARISON_RULES, *GENERATION_RULES))
+    rules = index_rules((*pipeline.index_all_rules().values(), *COMPARISON_RULES, *GENERATION_RULES))
     width = find_width(sys.stdout)
     if rule is None:
         rows = ((name, str(each.severity), rule_pages.summarise_rule(each)) for name, each in rules.items())

@@ -22,7 +22,7 @@ def render_findings(
     from archgen.emit.data import findings_json, github_commands, junit_results, sarif_document
     from archgen.findings.comparison_rules import COMPARISON_RULES
     from archgen.findings.rule_table import index_rules
-    from archgen.products.check_findings import RULES_BY_NAME
+    from archgen.pipeline import index_all_rules
     from archgen.project import PROJECT_FILE
 
     folder = folder_in_repository(checked_project.root)
@@ -45,7 +45,7 @@ def render_findings(
     sarif_scan = sarif_document.SarifScan(
         checked_project.architecture.project.id, file, folder, __version__, is_compared=reported_findings.was_compared
     )
-    rules = {**RULES_BY_NAME, **index_rules(COMPARISON_RULES)}
+    rules = {**index_all_rules(), **index_rules(COMPARISON_RULES)}
     return sarif_document.format_sarif(reported_findings.findings, rules, sarif_scan)
 
 

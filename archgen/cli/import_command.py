@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,23 +13,30 @@ import click
 
 from archgen.cli import command_support, shared_options
 from archgen.diagnostics.safe_text import make_visible
-from archgen.importers.foreign.import_formats import IMPORT_FORMATS, REQIF, ImportFormat, guess_format
+from archgen.importers.import_formats import ImportFormat, guess_format, list_import_formats
 
 if TYPE_CHECKING:
     from archgen.edit.imported_slices import ImportPlan
-    from archgen.importers.foreign.foreign_import import ForeignImport, ImportNote
+    from archgen.importers.foreign_import import ForeignImport, ImportNote
 
 _NAME_WIDTH = 9
 _LAUNCH_ARGUMENT = re.compile(r"([A-Za-z_][^\s:=]*):=(.*)", re.DOTALL)
 
 
-def _list_formats() -> str:
-    """Return the formats with what they are, as lines for `--help`."""
-    lines = [f"  {known.name:{_NAME_WIDTH}} {known.summary}" for known in IMPORT_FORMATS.values()]
-    return "\b\n" + "\n".join(lines)
+class _ImportCommand(click.Command):
+    """A verb whose help ends with the formats: plug-ins tell them, and are asked when somebody reads it."""
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the formats with what they are, and who brings those that do not ship."""
+        lines = [
+            f"  {known.name:{_NAME_WIDTH}} {known.summary}{f' [{known.origin}]' if known.origin else ''}"
+            for known in list_import_formats().values()
+        ]
+        self.epilog = "\b\n" + "\n".join(lines)
+        super().format_epilog(ctx, formatter)
 
 
-@click.command("import", epilog=_list_formats())
+@click.command("import", cls=_ImportCommand)
 @click.argument("words", metavar="[FORMAT] FILE... [NAME:=VALUE...]", nargs=-1, required=True)
 @click.option(
     "-o",
@@ -67,14 +74,14 @@ def command(  # noqa: PLR0913 - one for each option
     if arguments and not import_format.takes_arguments:
         msg = f"{import_format.name} takes no arguments such as {next(iter(arguments))}:=..., as launch files do"
         raise click.UsageError(make_visible(msg))
-    if import_format.name == REQIF:
+    if import_format.has_requirements:
         from archgen.cli.requirement_import import import_requirements
 
         _refuse_options(import_format, {"--output": output, "--merge": merge, "--format": form != "text"})
         if len(files) != 1:
             msg = "one file of requirements is taken at a time"
             raise click.UsageError(msg)
-        import_requirements(files[0], into, project, dry_run=dry_run)
+        import_requirements(import_format, files[0], into, project, dry_run=dry_run)
         return
     _refuse_options(import_format, {"--into": into})
     target = _find_target(output, project)
@@ -93,25 +100,26 @@ def _take_arguments(words: Sequence[str]) -> tuple[list[str], dict[str, str]]:
 
 def _split_words(words: Sequence[str]) -> tuple[ImportFormat, list[Path]]:
     """Return the format, named or guessed, and the files."""
-    named = IMPORT_FORMATS.get(words[0])
+    known_formats = list_import_formats()
+    named = known_formats.get(words[0])
     if named and len(words) > 1:
         return named, _find_files(words[1:])
     if len(words) > 1 and not _is_there(words[0]):
-        _refuse_format(words[0])
+        _refuse_format(words[0], known_formats)
     files = _find_files(words)
-    formats = {known.name: known for file in files if (known := guess_format(file))}
+    formats = {known.name: known for file in files if (known := guess_format(file, known_formats))}
     if len(formats) == 1:
         return next(iter(formats.values())), files
     reason = "they are of several formats" if formats else f"its name does not tell the format of {files[0]}"
-    msg = f"{reason}: name it first, one of {', '.join(IMPORT_FORMATS)}"
+    msg = f"{reason}: name it first, one of {', '.join(known_formats)}"
     raise click.UsageError(make_visible(msg))
 
 
-def _refuse_format(word: str) -> None:
+def _refuse_format(word: str, known_formats: Iterable[str]) -> None:
     from archgen.diagnostics.suggestions import did_you_mean
 
-    guess = did_you_mean(word, IMPORT_FORMATS)
-    msg = f"there is no file and no format `{word}`; {guess or 'formats are ' + ', '.join(IMPORT_FORMATS)}"
+    guess = did_you_mean(word, known_formats)
+    msg = f"there is no file and no format `{word}`; {guess or 'formats are ' + ', '.join(known_formats)}"
     raise click.UsageError(make_visible(msg))
 
 
@@ -193,16 +201,17 @@ def _import_slices(  # noqa: PLR0913 - what, where and how
 def _read_model(
     import_format: ImportFormat, files: list[Path], arguments: dict[str, str], known_ids: dict[str, str]
 ) -> ForeignImport:
-    from archgen.importers.foreign.foreign_import import ForeignFileError
+    from archgen.importers.foreign_import import ForeignFileError
 
     try:
         given = {"arguments": arguments} if import_format.takes_arguments else {}
         given |= {"known_ids": known_ids} if import_format.keeps_ids else {}
-        return import_format.load_reader()(files, **given)
+        imported: ForeignImport = import_format.load_reader()(files, **given)
     except ForeignFileError as error:
         _print_problem(str(error.span), error.message, error.help_line)
         click.echo("Nothing was written.", err=True)
         raise click.exceptions.Exit(1) from None
+    return imported
 
 
 def _print_problem(place: str, message: str, help_line: str) -> None:

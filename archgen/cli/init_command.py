@@ -17,7 +17,7 @@ from archgen.model.known_interfaces import KNOWN_DISTROS
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from archgen.importers import ImportResult
+    from archgen.importers.imported_tables import ImportedTables
     from archgen.pipeline import CheckedProject
     from archgen.start.project_plan import ProjectPlan
     from archgen.start.start_answers import StartAnswers
@@ -177,36 +177,35 @@ def _parse_headings(headings: tuple[str, ...]) -> Mapping[str, str]:
 
     if not headings:
         return {}
-    from archgen.importers import parse_heading_map
+    from archgen.installed_plugins import load_reader
 
     try:
-        return parse_heading_map(headings)
+        heading_map: Mapping[str, str] = load_reader("headings")(headings)
     except ValueError as error:
         raise click.UsageError(make_visible(str(error))) from None
+    return heading_map
 
 
-def _import_tables(tables: tuple[Path, ...], distro: str, heading_map: Mapping[str, str]) -> ImportResult:
+def _import_tables(tables: tuple[Path, ...], distro: str, heading_map: Mapping[str, str]) -> ImportedTables:
     """Read the tables. Print what was not imported; where nothing could be, end with status 1."""
-    from archgen import importers
-    from archgen.importers import MAX_BYTES
+    from archgen.importers.imported_tables import MAX_OFFICE_BYTES
+    from archgen.installed_plugins import load_reader
 
-    imported = importers.import_tables(
-        [(str(path), command_support.read_input(path, MAX_BYTES)) for path in tables], distro, heading_map
+    imported: ImportedTables = load_reader("tables")(
+        [(str(path), command_support.read_input(path, MAX_OFFICE_BYTES)) for path in tables], distro, heading_map
     )
     if imported.diagnostics:
         command_support.print_excerpts(imported.diagnostics, imported.sources, sys.stderr)
     if not imported.data:
         click.echo("Nothing was written.", err=True)
         sys.exit(1)
-    from archgen.cli.import_summary import render_import_summary
-
-    for line in render_import_summary(imported):
+    for line in imported.summary:
         click.echo(line)
     click.echo()
     return imported
 
 
-def _write_project(target: Path, answers: StartAnswers, imported: ImportResult | None) -> None:
+def _write_project(target: Path, answers: StartAnswers, imported: ImportedTables | None) -> None:
     from archgen.emit import new_files
     from archgen.start import starter_slices
     from archgen.start.project_plan import has_other_yaml, judge_files, plan_files

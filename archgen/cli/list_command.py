@@ -118,7 +118,7 @@ def _list_backends(checked_project: CheckedProject) -> tuple[Sequence[str], Sequ
             backend.makes,
             backend.emitter,
             ", ".join(backend.views),
-            "own" if backend.from_project else "shipped",
+            "own" if backend.from_project else backend.origin or "shipped",
         )
         for backend in backends.values()
     ]

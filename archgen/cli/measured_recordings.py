@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,10 +15,10 @@ from archgen.diagnostics.text_columns import find_width, wrap_line
 
 if TYPE_CHECKING:
     from archgen.edit.measured_slice import MeasuredSlice
-    from archgen.importers.recordings.recorded_names import RecordedNames
-    from archgen.importers.recordings.recording_import import ReadRecordings
+    from archgen.importers.recorded_files import ReadRecordings
     from archgen.model.architecture import Architecture
     from archgen.pipeline import CheckedProject
+    from archgen.timing.analysis import Analysis, ChainResult
     from archgen.timing.chains.measured_comparison import MeasuredComparison, Observation
 
 DEFAULT_SLICE = "measured.yaml"
@@ -62,14 +62,13 @@ def _compare_recordings(
     checked_project: CheckedProject, architecture: Architecture, paths: Sequence[Path]
 ) -> tuple[ReadRecordings, tuple[MeasuredComparison, ...], bool]:
     """Read recordings and hold them against the design; print what is wrong with them, and return whether that is an error."""
-    from archgen.importers.recordings.recorded_names import RecordedNames
     from archgen.timing.chains.chain_bounds import bound_all_chains
     from archgen.timing.chains.measured_comparison import compare_measured
     from archgen.timing.run_analysis import analyse_architecture
 
     analysis = analyse_architecture(architecture)
     chains = bound_all_chains(analysis, architecture)
-    recordings = _read_recordings(paths, RecordedNames(architecture, analysis.system, chains))
+    recordings = _read_recordings(paths, architecture, analysis, chains)
     # So that excerpts below can show the lines of these files too.
     for file, text in recordings.texts:
         checked_project.sources.add_text(file, text)
@@ -80,15 +79,19 @@ def _compare_recordings(
     return recordings, comparisons, bool(command_support.exit_status(problems))
 
 
-def _read_recordings(paths: Sequence[Path], names: RecordedNames) -> ReadRecordings:
-    from archgen.importers.recordings.recording_formats import RecordingRefusedError
-    from archgen.importers.recordings.recording_import import read_recordings
+def _read_recordings(
+    paths: Sequence[Path], architecture: Architecture, analysis: Analysis, chains: Mapping[str, ChainResult]
+) -> ReadRecordings:
+    from archgen.importers.recorded_files import RecordingRefusedError
+    from archgen.installed_plugins import load_reader
 
+    read_measured = load_reader("recordings")
     with command_support.explain_write_errors():
         try:
-            return read_recordings(paths, names)
+            recordings: ReadRecordings = read_measured(paths, architecture, analysis, chains)
         except RecordingRefusedError as error:
             raise click.UsageError(make_visible(str(error))) from None
+    return recordings
 
 
 def _print_answer(

@@ -1,4 +1,4 @@
-"""`archgen import` of ReqIF: take requirements over, and bring them up to date."""
+"""`archgen import` of requirements: take requirements over, and bring them up to date."""
 
 from __future__ import annotations
 
@@ -13,27 +13,24 @@ from archgen.cli import command_support
 from archgen.diagnostics.safe_text import make_visible
 
 if TYPE_CHECKING:
-    from archgen.diagnostics.diagnostic import Diagnostic
     from archgen.edit.requirement_slice import RequirementSlice
-    from archgen.importers.reqif import ImportedRequirements
-    from archgen.importers.reqif.reqif_document import ReqifDocument
+    from archgen.importers.import_formats import ImportFormat
+    from archgen.importers.imported_requirements import ImportedRequirements
     from archgen.pipeline import CheckedProject
 
 DEFAULT_SLICE = "requirements.yaml"
 
 
-def import_requirements(file: Path, into: Path | None, project: Path | None, *, dry_run: bool) -> None:
+def import_requirements(
+    import_format: ImportFormat, file: Path, into: Path | None, project: Path | None, *, dry_run: bool
+) -> None:
     """Take the requirements of a file into the project, and print what became of each object.
 
     Nothing is written where the result would bring errors.
     """
-    from archgen.importers.reqif import find_known_requirements, take_requirements
-
     checked_project = command_support.check_or_exit(project)
     _refuse_single_file(checked_project)
-    document = _read_file(file)
-    known = find_known_requirements(checked_project.architecture.requirements.values())
-    imported = take_requirements(document, known)
+    imported = _read_file(import_format, file, checked_project)
     for line in _summarise_objects(file, imported):
         click.echo(make_visible(line))
     if not imported.requirements:
@@ -54,26 +51,22 @@ def _refuse_single_file(checked_project: CheckedProject) -> None:
         raise click.UsageError(msg)
 
 
-def _read_file(file: Path) -> ReqifDocument:
-    from archgen.diagnostics.diagnostic import Diagnostic, Severity
-    from archgen.importers.reqif import read_reqif_file
-    from archgen.importers.reqif.reqif_parsing import ReqifError
+def _read_file(import_format: ImportFormat, file: Path, checked_project: CheckedProject) -> ImportedRequirements:
+    from archgen.importers.foreign_import import ForeignFileError
 
     try:
-        return read_reqif_file(file)
-    except ReqifError as error:
-        finding = Diagnostic("syntax-error", error.message, error.span, Severity.ERROR, help=error.help_line)
-        _print_error(finding)
+        imported: ImportedRequirements = import_format.load_reader()(
+            file, checked_project.architecture.requirements.values()
+        )
+    except ForeignFileError as error:
+        click.echo(make_visible(f"error: {error.span}: {error.message}"), err=True)
+        click.echo(make_visible(f"  = help: {error.help_line}"), err=True)
+        click.echo("Nothing was written.", err=True)
+        raise click.exceptions.Exit(1) from None
     except OSError as error:
         msg = f"{file} cannot be read: {error.strerror}"
         raise click.ClickException(make_visible(msg)) from None
-    raise click.exceptions.Exit(1)
-
-
-def _print_error(finding: Diagnostic) -> None:
-    click.echo(make_visible(f"error: {finding.span}: {finding.message}"), err=True)
-    click.echo(make_visible(f"  = help: {finding.help}"), err=True)
-    click.echo("Nothing was written.", err=True)
+    return imported
 
 
 def _summarise_objects(file: Path, imported: ImportedRequirements) -> Iterator[str]:

@@ -23,6 +23,7 @@ from archgen.emit.manifest_parsing import (
     refuse_manifest,
 )
 from archgen.frozen import dataclass, replace
+from archgen.installed_backends import BACKENDS_FOLDER, list_installed_backends
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +68,9 @@ class Backend:
     needs: tuple[str, ...] = ()
     """What must hold of the architecture after the passes; only for a workspace."""
     from_project: bool = False
-    """Whether the project brings it, rather than archgen."""
+    """Whether the project brings it, rather than archgen or another package."""
+    origin: str = ""
+    """Who brings it where neither the project nor archgen does: package and version."""
 
 
 CALLED_EMITTERS = frozenset({"text", "reqif"})
@@ -75,23 +78,32 @@ CALLED_EMITTERS = frozenset({"text", "reqif"})
 
 
 def read_shipped_backend(name: str) -> Backend:
-    """Read a backend that ships with archgen, by the name of its folder."""
-    return _read_manifest(resources.resource_path("backends", name), f"backends/{name}")
+    """Read a backend that ships with archgen itself, by the name of its folder."""
+    return _read_manifest(resources.resource_path(BACKENDS_FOLDER, name), f"{BACKENDS_FOLDER}/{name}")
 
 
 def find_backends(
     project: Path, names: Collection[str] | None = None
 ) -> tuple[dict[str, Backend], tuple[Diagnostic, ...]]:
-    """Find all backends by id, or those of some names: those that ship, then the project's own. Return them with the
-    diagnostics of invalid ones.
+    """Find all backends by id, or those of some names: those that ship, those of other packages, then the project's own.
+    Return them with the diagnostics of invalid ones.
 
-    A backend of the project may not take the id of one that ships.
+    A backend of the project may not take the id of one that is installed.
     """
-    backends = {
-        folder.name: read_shipped_backend(folder.name)
-        for folder in _list_backend_folders(resources.resource_path("backends"), names)
-    }
+    backends: dict[str, Backend] = {}
     diagnostics: list[Diagnostic] = []
+    for backend_id, installed in list_installed_backends().items():
+        if names is not None and backend_id not in names:
+            continue
+        try:
+            backend = replace(_read_manifest(installed.folder, installed.name), origin=installed.origin)
+            if installed.origin:
+                _refuse_other_emitter(backend, "a backend of another package")
+            backends[backend_id] = backend
+        except ManifestError as error:
+            if not installed.origin:
+                raise
+            diagnostics += error.diagnostics
     for folder in _list_backend_folders(project / "backends", names):
         try:
             _refuse_links(project / "backends", folder)
@@ -131,13 +143,17 @@ def _refuse_links(parent: Path, folder: Path) -> None:
 def _read_own_backend(folder: Path, known_backends: Mapping[str, Backend]) -> Backend:
     name = f"backends/{folder.name}"
     backend = _read_manifest(folder, name)
-    if backend.emitter != "text":
-        refuse_manifest(name, f"a project's own backend has the emitter `text`, not `{backend.emitter}`")
+    _refuse_other_emitter(backend, "a project's own backend")
     if backend.id in known_backends:
         refuse_manifest(
             name, f"there is a backend `{backend.id}` already", "give it another `id`, and its folder the same name"
         )
     return replace(backend, from_project=True)
+
+
+def _refuse_other_emitter(backend: Backend, kind: str) -> None:
+    if backend.emitter != "text":
+        refuse_manifest(backend.name, f"{kind} has the emitter `text`, not `{backend.emitter}`")
 
 
 def _read_manifest(folder: Path, name: str) -> Backend:

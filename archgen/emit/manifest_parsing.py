@@ -11,6 +11,7 @@ from typing import Any, NoReturn
 from archgen import resources
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.diagnostics.source_span import Span
+from archgen.views.generation import list_view_names
 
 BACKEND_ERROR_RULE = Rule(
     "backend-error",
@@ -43,13 +44,18 @@ def read_valid_manifest(folder: Path, name: str) -> tuple[Any, ManifestNode]:
     Return its data (every scalar a string) and the tree that knows positions. Raise ManifestError.
     """
     data, root = _parse_manifest(_read_manifest_text(folder / BACKEND_MANIFEST, name), name)
+    view_names = _list_allowed_views(data)
     schema_errors = sorted(
-        _load_validator().iter_errors(data), key=lambda error: [str(part) for part in error.instance_path]
+        _load_validator(view_names).iter_errors(data), key=lambda error: [str(part) for part in error.instance_path]
     )
     if schema_errors:
         raise ManifestError(
             *(
-                Diagnostic(BACKEND_ERROR_RULE.name, _describe_schema_error(error), _find_error_span(root, error, name))
+                Diagnostic(
+                    BACKEND_ERROR_RULE.name,
+                    _describe_schema_error(error, view_names),
+                    _find_error_span(root, error, name),
+                )
                 for error in schema_errors
             )
         )
@@ -128,15 +134,32 @@ def _check_yaml_events(events: Any, name: str) -> None:  # noqa: ANN401 - the li
             )
 
 
+def _list_allowed_views(data: Any) -> tuple[str, ...]:  # noqa: ANN401 - what the file holds
+    """Return the views that a manifest may name: those of the schema whose plug-ins are there, then those of others."""
+    view = data.get("view") if isinstance(data, dict) else None
+    named = view if isinstance(view, list) else [view]
+    known_names = list_view_names([each for each in named if isinstance(each, str)])
+    shown_names: list[str] = _read_schema()["$defs"]["view"]["enum"]
+    return (
+        *(each for each in shown_names if each in known_names),
+        *(each for each in known_names if each not in shown_names),
+    )
+
+
 @cache
-def _load_validator() -> Any:  # noqa: ANN401 - the library's own class
+def _read_schema() -> Any:  # noqa: ANN401 - what the file holds
+    return json.loads(resources.resource_path("schemas", "backend.schema.json").read_text("utf-8"))
+
+
+@cache
+def _load_validator(view_names: tuple[str, ...]) -> Any:  # noqa: ANN401 - the library's own class
     import jsonschema_rs
 
-    schema = json.loads(resources.resource_path("schemas", "backend.schema.json").read_text("utf-8"))
-    return jsonschema_rs.validator_for(schema)
+    schema = _read_schema()
+    return jsonschema_rs.validator_for({**schema, "$defs": {**schema["$defs"], "view": {"enum": list(view_names)}}})
 
 
-def _describe_schema_error(error: Any) -> str:  # noqa: ANN401 - the library's own class
+def _describe_schema_error(error: Any, view_names: Sequence[str]) -> str:  # noqa: ANN401 - the library's own class
     """Describe an error of the JSON Schema library in words for the user."""
     dotted_path = ".".join(str(part) for part in error.instance_path)
     subject = f"`{dotted_path}`" if dotted_path else "the manifest"
@@ -150,7 +173,7 @@ def _describe_schema_error(error: Any) -> str:  # noqa: ANN401 - the library's o
         case "Enum":
             predicate = f"must be one of {', '.join(f'`{option}`' for option in kind.options)}"
         case "AnyOf" if error.instance_path[:1] == ["view"]:
-            predicate = f"must be one of {_list_view_names()}, or a list of these"
+            predicate = f"must be one of {', '.join(f'`{name}`' for name in view_names)}, or a list of these"
         case "PropertyNames":
             predicate = _describe_wrong_key(kind.error.instance, is_filter=error.instance_path == ["escapes"])
         case "Type" if error.instance_path[-1:] and error.instance_path[-1] in _FLAG_KEYS:
@@ -162,11 +185,6 @@ def _describe_schema_error(error: Any) -> str:  # noqa: ANN401 - the library's o
         case _:
             predicate = f"is not as the schema of backends asks ({error_name})"
     return f"{subject} {predicate}"
-
-
-def _list_view_names() -> str:
-    schema = json.loads(resources.resource_path("schemas", "backend.schema.json").read_text("utf-8"))
-    return ", ".join(f"`{name}`" for name in schema["$defs"]["view"]["enum"])
 
 
 def _name_of_error(error: Any) -> str:  # noqa: ANN401 - the library's own class

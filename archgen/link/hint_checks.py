@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-from archgen import resources
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Rule, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass, replace
+from archgen.installed_backends import InstalledBackend, list_installed_backends
 from archgen.link import mapping_values
 from archgen.link.hint_schemas import HintFault, list_hint_faults
 from archgen.model.annotated_elements import list_annotated_elements
@@ -51,23 +51,25 @@ class _BackendHints:
     id: str
     schemas: MappingNode
     at: Span | None
-    """None for a backend that ships with archgen."""
+    """None for a backend that is installed."""
 
 
 def find_wrong_hints(architecture: Architecture, files: ProjectFiles) -> Iterator[Diagnostic]:
     """Report hints that a backend, of the project or shipped, does not read as they are written."""
     _, folders, _ = next(iter(files.walk_folders("backends")), ("", [], []))
     own_backends = frozenset(folders)
-    backends = own_backends | _list_shipped_backends()
+    hinted_parts = tuple(_list_hinted(architecture))
+    # Looked for where there are hints at all: most projects have none.
+    installed_backends = list_installed_backends() if hinted_parts else {}
     read_backends: dict[str, _BackendHints | None] = {}
     judged_places: set[tuple[Span, str]] = set()
-    for each in _list_hinted(architecture):
+    for each in hinted_parts:
         for program, value in each.hints.items():
-            if program not in backends:
-                continue
             if program not in read_backends:
-                is_own = program in own_backends
-                read_backends[program] = _read_backend(files, program) if is_own else _read_shipped_backend(program)
+                if program in own_backends:
+                    read_backends[program] = _read_backend(files, program)
+                else:
+                    read_backends[program] = _read_installed_backend(program, installed_backends.get(program))
             backend = read_backends[program]
             if backend is not None:
                 for fault in _judge_hints(backend, each.kind, value):
@@ -104,14 +106,11 @@ def _read_backend(files: ProjectFiles, program: str) -> _BackendHints | None:
     return _parse_manifest(program, path, manifest.text)
 
 
-def _list_shipped_backends() -> frozenset[str]:
-    folder = resources.resource_path("backends")
-    return frozenset(each.name for each in folder.iterdir()) if folder.is_dir() else frozenset()
-
-
-def _read_shipped_backend(program: str) -> _BackendHints | None:
-    path = resources.resource_path("backends", program, "backend.yaml")
-    backend = _parse_manifest(program, str(path), path.read_text("utf-8")) if path.is_file() else None
+def _read_installed_backend(program: str, installed: InstalledBackend | None) -> _BackendHints | None:
+    if installed is None:
+        return None
+    path = installed.folder / "backend.yaml"
+    backend = _parse_manifest(program, str(path), path.read_text("utf-8", "replace"))
     return replace(backend, at=None) if backend else None
 
 

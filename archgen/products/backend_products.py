@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from archgen.checking.checked_packing import pack_checked_project
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.emit import file_tree
 from archgen.emit.backend_manifests import Backend
 from archgen.products.backend_choice import raise_problems
+from archgen.products.generation_contexts import make_generation_context
 from archgen.products.product_inputs import FinishProduct, MadeProduct, Product, ProductInputs
 from archgen.views.generation import make_generation_views
 from archgen.views.generation.generation_context import GenerationContext
@@ -44,33 +44,13 @@ def _render_backend(inputs: ProductInputs, backend: Backend) -> file_tree.FileTr
     """Return the files of a text backend. Raise OutputError where its templates fail."""
     from archgen.emit import text
 
-    selection = inputs.options.selection
-    context = GenerationContext(
-        inputs.checked_project.architecture,
-        selection.components if selection else None,
-        selection.nodes if selection else None,
-        options=backend.options,
-        backend=backend.id,
-        level=inputs.options.level or "implementation",
-    )
+    context = make_generation_context(inputs.checked_project, inputs.options, backend)
     views, findings = make_backend_views(inputs, backend, context)
     for finding in findings:
         inputs.options.warn(f"{finding.span}: {finding.message}")
     files, problems = text.render_backend(backend, views)
     raise_problems(problems)
     return files or file_tree.make_file_tree(())
-
-
-def _make_uml(inputs: ProductInputs) -> Mapping[str, object]:
-    from archgen.views.uml import make_uml_view
-
-    checked_project, selection = inputs.checked_project, inputs.options.selection
-    return make_uml_view(
-        checked_project.architecture,
-        pack_checked_project(checked_project).data,
-        selection.components if selection else None,
-        types_only=inputs.options.types_only,
-    )
 
 
 def make_backend_views(
@@ -84,7 +64,6 @@ def make_backend_views(
         "graphs": lambda: tuple(graph for graph in inputs.views.drawings.values() if isinstance(graph, Graph)),
         "sequences": lambda: tuple(each for each in inputs.views.drawings.values() if isinstance(each, SequenceChart)),
         "record": lambda: resolved_record.make_record(inputs.views.lookup),
-        "uml": lambda: _make_uml(inputs),
         "tables": lambda: statistics_tables.make_statistics_tables(inputs.views.lookup.architecture),
     }
     views = {name: shapes[name]() for name in backend.views if name in shapes}

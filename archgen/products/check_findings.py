@@ -13,15 +13,12 @@ from pathlib import Path
 from archgen import git, pipeline, project
 from archgen.diagnostics.diagnostic import Diagnostic, Severity, settle_diagnostics
 from archgen.diagnostics.finding_identity import BaselineEntry, IdRenamer, identify_finding, match_findings
-from archgen.findings.rule_table import index_rules
-from archgen.pipeline import ALL_RULES, CheckedProject, VersionCache
+from archgen.pipeline import CheckedProject, VersionCache, index_all_rules
 from archgen.products import baseline_entries
 from archgen.project import baseline_reading as reading
 
 BASELINE_FILE = "archgen-baseline.yaml"
 """The baseline of a project, unless another file is named."""
-RULES_BY_NAME = index_rules(ALL_RULES)
-"""Every rule by its name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +54,11 @@ def find_reading_error(findings: Iterable[Diagnostic]) -> Diagnostic | None:
     Behind such an error more may be hidden, so nobody can say which findings are cured.
     """
     return next(
-        (finding for finding in findings if RULES_BY_NAME[finding.rule].fixed and finding.severity is Severity.ERROR),
+        (
+            finding
+            for finding in findings
+            if index_all_rules()[finding.rule].fixed and finding.severity is Severity.ERROR
+        ),
         None,
     )
 
@@ -71,14 +72,14 @@ def report_findings(
     """
     known_entries, problems = _read_baseline(checked_project, baseline_file) if baseline_file else ((), ())
     new_findings, baselined_findings, cured_entries = baseline_entries.divide_by_baseline(
-        checked_project.findings, known_entries, RULES_BY_NAME
+        checked_project.findings, known_entries, index_all_rules()
     )
     caused_findings, healed_findings = (
         compare_findings(checked_project, earlier_project) if earlier_project else (checked_project.findings, ())
     )
     caused_set = set(caused_findings)
     # The baseline is read after the project, so its problems have not been through `settle` yet.
-    baseline_problems = settle_diagnostics(problems, RULES_BY_NAME, checked_project.loaded_project.rule_settings)
+    baseline_problems = settle_diagnostics(problems, index_all_rules(), checked_project.loaded_project.rule_settings)
     is_complete = find_reading_error(checked_project.findings) is None and not checked_project.waiting_rules
     return ReportedFindings(
         # New to both: neither listed in the baseline nor there before the change.
@@ -167,13 +168,13 @@ def update_baseline(checked_project: CheckedProject, baseline_file: Path) -> Bas
             msg = f"{baseline_file} stays as it is: {reason}"
             raise file_tree.OutputError(msg, "give another file with `--baseline`")
     new_findings, known_findings, cured_entries = baseline_entries.divide_by_baseline(
-        checked_project.findings, known_entries, RULES_BY_NAME
+        checked_project.findings, known_entries, index_all_rules()
     )
     file_tree.write_file(
-        baseline_file, baseline_entries.format_baseline(checked_project.findings, RULES_BY_NAME).encode()
+        baseline_file, baseline_entries.format_baseline(checked_project.findings, index_all_rules()).encode()
     )
     # Errors of reading and linking are never listed in a baseline, so they are not counted as added.
-    added_count = sum(not RULES_BY_NAME[finding.rule].fixed for finding in new_findings)
+    added_count = sum(not index_all_rules()[finding.rule].fixed for finding in new_findings)
     return BaselineUpdate(
         baseline_file, len(known_findings) + added_count, added_count, sum(entry.occurrences for entry in cured_entries)
     )
@@ -184,7 +185,7 @@ def _read_baseline(
 ) -> tuple[tuple[BaselineEntry, ...], tuple[Diagnostic, ...]]:
     """Read a baseline, and make its text available for excerpts in messages."""
     shown_path = _path_in_project(checked_project, baseline_file)
-    text, known_entries, problems = reading.read_baseline(baseline_file, shown_path, RULES_BY_NAME)
+    text, known_entries, problems = reading.read_baseline(baseline_file, shown_path, index_all_rules())
     checked_project.sources.add_text(shown_path, text)
     return known_entries, problems
 

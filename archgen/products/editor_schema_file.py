@@ -11,7 +11,7 @@ from archgen.edit.element_edit import SCHEMA_LINE_PATTERN
 from archgen.emit import file_tree
 from archgen.emit.data import editor_schema
 from archgen.findings.rule_pages import summarise_rule
-from archgen.pipeline import ALL_RULES, CheckedProject
+from archgen.pipeline import CheckedProject, index_all_rules
 from archgen.products import editor_schema_marks
 from archgen.products.product_writing import write_product_file
 from archgen.views.offered_names import OfferedNames
@@ -29,7 +29,7 @@ def render_schema(checked_project: CheckedProject) -> bytes:
 
 def render_names(names: OfferedNames, text_digest: str) -> bytes:
     """Return the schema that offers these names, made from files with this digest."""
-    summaries = {rule.name: summarise_rule(rule) for rule in ALL_RULES if not rule.fixed}
+    summaries = {rule.name: summarise_rule(rule) for rule in index_all_rules().values() if not rule.fixed}
     language_schema = editor_schema_marks.language_schema_path().read_bytes()
     schema = editor_schema.make_editor_schema(language_schema, names, summaries)
     mark = editor_schema_marks.format_mark(text_digest, editor_schema_marks.digest_names(names))

@@ -18,7 +18,7 @@ from archgen.model.project_history import History
 from archgen.model.selector_evaluation import Selection
 from archgen.model.selector_parser import SelectorProblem
 from archgen.model.source_repository import SourceRepository
-from archgen.pipeline import ALL_RULES, CheckedProject
+from archgen.pipeline import CheckedProject, index_all_rules
 from archgen.products import report_cache
 from archgen.products.output_options import OutputOptions
 from archgen.project import ProjectNotFoundError
@@ -178,7 +178,7 @@ def _format_rule_pages(checked_project: CheckedProject) -> Mapping[str, str]:
     found_rules = {finding.rule for finding in checked_project.findings}
     return {
         rule.name: rule_pages.rule_page_to_markdown(rule).partition("\n")[2]
-        for rule in sorted(ALL_RULES, key=lambda rule: rule.name)
+        for rule in index_all_rules().values()
         if rule.name in found_rules
     }
 

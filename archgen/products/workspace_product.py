@@ -18,10 +18,11 @@ from archgen.emit.workspace.run_record import read_other_records, read_run_recor
 from archgen.emit.workspace.workspace_plan import UserChoices, WorkspacePlan, plan_workspace
 from archgen.pipeline import CheckedProject
 from archgen.products.backend_choice import choose_backends, raise_problems
+from archgen.products.generation_contexts import make_generation_context
 from archgen.products.leaving_links import refuse_leaving_links
 from archgen.products.output_options import OutputOptions
 from archgen.products.trusted_backends import refuse_untrusted_pass
-from archgen.views.generation import GENERATION_VIEWS, make_generation_views
+from archgen.views.generation import find_view_maker, make_generation_views
 from archgen.views.generation.architecture_needs import find_unmet_needs
 from archgen.views.generation.generation_context import GenerationContext
 
@@ -147,16 +148,10 @@ def _render_files(
     from archgen.emit.text.kept_answers import open_answer_store
     from archgen.products.report_cache import cache_folder
 
-    architecture, selection = checked_project.architecture, options.selection
-    context = GenerationContext(
-        architecture,
-        selection.components if selection else None,
-        selection.nodes if selection else None,
-        host,
-        backend.options,
-        backend.id,
-        options.level or "implementation",
-        options.selector_text if selection else "",
+    context = replace(
+        make_generation_context(checked_project, options, backend),
+        host=host,
+        selector=options.selector_text if options.selection else "",
     )
     unmet_needs = tuple(find_unmet_needs(context, backend.needs))
     if unmet_needs:
@@ -171,7 +166,7 @@ def _make_views(
     checked_project: CheckedProject, options: OutputOptions, backend: Backend, context: GenerationContext
 ) -> tuple[Mapping[str, object], tuple[Diagnostic, ...]]:
     """Return the views of a backend. What documents are made from is loaded only for one that asks for it."""
-    if GENERATION_VIEWS.keys() >= set(backend.views):
+    if all(map(find_view_maker, backend.views)):
         return make_generation_views(context, backend.views)
     from archgen.products.backend_products import make_backend_views
     from archgen.products.product_inputs import ProductInputs

@@ -10,10 +10,10 @@ import pytest
 from archgen.diagnostics.rule_options import RuleOption, format_percentage
 from archgen.findings.rule_pages import format_rule_page, read_rule_page, rule_page_to_markdown
 from archgen.findings.rule_table import index_rules
-from archgen.pipeline import ALL_RULES, check_text
+from archgen.pipeline import SHIPPED_RULES, check_text
 from archgen.schema.language_schema import load_schema
 
-RULES = index_rules(ALL_RULES)
+RULES = index_rules(SHIPPED_RULES)
 OPTIONS = [(rule.name, option) for rule in RULES.values() for option in rule.options]
 
 

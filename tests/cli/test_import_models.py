@@ -9,11 +9,10 @@ from typing import Any
 
 import pytest
 
+from archgen import installed_plugins
 from archgen.diagnostics.source_span import Span
 from archgen.edit import imported_slices
-from archgen.importers.foreign import import_formats
-from archgen.importers.foreign.foreign_import import ForeignFileError, ForeignImport, ImportNote
-from archgen.importers.foreign.import_formats import ImportFormat
+from archgen.importers.foreign_import import ForeignFileError, ForeignImport, ImportNote
 from tests.cli.conftest import Run
 
 
@@ -41,8 +40,10 @@ def read_toy(files: Sequence[Path]) -> ForeignImport:
 
 @pytest.fixture(autouse=True)
 def toy_format(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    toy = ImportFormat("toy", "a toy", (".toy",), f"{__name__}:read_toy")
-    monkeypatch.setitem(import_formats.IMPORT_FORMATS, "toy", toy)
+    facts = {"rank": 99, "summary": "a toy", "endings": (".toy",), "reader": f"{__name__}:read_toy"}
+    wishes = {"rank": 98, "summary": "wishes", "endings": (".wish",), "reader": "none:none", "has_requirements": True}
+    plugins = {"toys": {"api": 1, "importers": {"toy": facts, "wishes": wishes}}}
+    monkeypatch.setattr(installed_plugins, "list_shipped_plugins", lambda: plugins)
     monkeypatch.chdir(tmp_path)
 
 
@@ -147,7 +148,7 @@ def test_what_another_file_says_is_not_written_again(run: Run) -> None:
         (("notes.txt",), "its name does not tell the format of notes.txt: name it first, one of "),
         (("robot.toy", "--into", "x.yaml"), "--into does not go with toy"),
         (("robot.toy",), "there is no project here: `-o FOLDER` makes a new one of the model"),
-        (("reqif", "notes.txt", "-o", "x"), "--output does not go with reqif"),
+        (("wishes", "notes.txt", "-o", "x"), "--output does not go with wishes"),
         (("robot.toy", "rate:=3", "-o", "x"), "toy takes no arguments such as rate:=..., as launch files do"),
         (("launch", "rate:=3", "-o", "x"), "there is no file launch"),
         (("rate:=3", "-o", "x"), "name a file, too"),
@@ -161,22 +162,6 @@ def test_wrong_words_are_told(words: tuple[str, ...], message: str, run: Run) ->
     done = run("import", *words)
     assert done.status == 2
     assert message in done.err
-
-
-def test_launch_arguments_are_given_and_remembered(run: Run) -> None:
-    Path("a.launch.xml").write_text('<launch><arg name="n"/><node pkg="p" exec="e" name="$(var n)"/></launch>')
-    assert run("import", "launch", "a.launch.xml", "n:=first", "-o", "robot").status == 0
-    text = Path("robot/a_launch.yaml").read_text()
-    assert text.startswith("# From a.launch.xml n:=first by `archgen import launch`;")
-    assert "\n  first:\n" in text
-    assert run("import", "a.launch.xml", "n:=first", "-o", "robot", "--merge").status == 0
-    done = run("import", "a.launch.xml", "n:=second", "-o", "robot", "--merge")
-    assert done.status == 2
-    assert "a_launch.yaml does not come from this file: nothing was written" in done.err
-    assert run("import", "a.launch.xml", f"n:={'long' * 100}", "-o", "third").status == 0
-    done = run("import", "a.launch.xml", "m:=first", "-o", "other")
-    assert done.status == 1
-    assert "declares an argument `m`\n  = help: did you mean `n`?" in done.err
 
 
 def test_a_file_that_is_none_and_one_with_nothing_in_it(run: Run) -> None:

@@ -19,11 +19,11 @@ import yaml
 from archgen.pipeline import check_project
 from archgen.products.output_options import OutputOptions
 from archgen.products.workspace_product import write_workspace
-from tests.generators.simulation.random_robots import make_robot as make_simulated_robot
-from tests.generators.test_ros2_python import AMENT_FLAKE8
 from tests.hostile import TEXTS
 from tests.passes.patterns.random_robots import make_robot
 from tests.passes.random_projects import RandomProject
+from tests.plugins.middlewares.simulation.random_robots import make_robot as make_simulated_robot
+from tests.plugins.ros_code.test_ros2_python import AMENT_FLAKE8
 from tests.running import QUICK_START
 
 ROS_BACKENDS = {"ros2_python": "jazzy", "ros1_python": "noetic"}

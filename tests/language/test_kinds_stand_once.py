@@ -17,7 +17,7 @@ REASONS = {
     "cli/list_command.py": "kinds of which a selector names some",
     "compare/kinds/__init__.py": "the order in which kinds are recognised under other ids",
     "edit/imported_slices.py": "the mappings by id that models of other tools bring",
-    "importers/xmi/xmi_import.py": "the files that a model becomes",
+    "plugins/xmi/xmi_import.py": "the files that a model becomes",
     "link/declare/element_declaration.py": "the class of each kind",
     "model/document_chapters.py": "chapters, some of which are called like sections",
     "views/changes/site_changes.py": "kinds with a page of their own",

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from archgen.products.check_findings import RULES_BY_NAME
+from archgen.pipeline import index_all_rules
 from archgen.project import baseline_reading
 
 
 def _read(folder: Path, text: str | bytes) -> tuple[list[str], list[str]]:
     file = folder / "b.yaml"
     file.write_bytes(text if isinstance(text, bytes) else text.encode())
-    _, known, found = baseline_reading.read_baseline(file, "x/b.yaml", RULES_BY_NAME)
+    _, known, found = baseline_reading.read_baseline(file, "x/b.yaml", index_all_rules())
     entries = [f"{k.rule} {k.element}: {k.message} x{k.occurrences} at {k.span}" for k in known]
     return entries, [f"{d.span} {d.rule}: {d.message} | {d.help}" for d in found]
 
@@ -94,7 +94,7 @@ def test_a_file_that_cannot_be_used_knows_nothing(text: str | bytes, said: str, 
 
 def test_a_folder_is_no_file(tmp_path: Path) -> None:
     (tmp_path / "b.yaml").mkdir()
-    _, known, found = baseline_reading.read_baseline(tmp_path / "b.yaml", "b.yaml", RULES_BY_NAME)
+    _, known, found = baseline_reading.read_baseline(tmp_path / "b.yaml", "b.yaml", index_all_rules())
     assert (known, [d.message for d in found]) == ((), ["this is a folder, not a file"])
 
 

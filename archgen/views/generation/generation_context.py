@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -58,6 +58,10 @@ class GenerationContext:
     """Whether the view `structure` shows the ROS side."""
     selector: str = ""
     """What `--select` says."""
+    types_only: bool = False
+    """Whether only the component types are asked for: `--select type:` of an export that has them."""
+    pack_project: Callable[[], Mapping[str, Any]] = dict
+    """Returns the project as `archgen pack` writes it; without one, nothing is written."""
 
     @property
     def is_whole(self) -> bool:

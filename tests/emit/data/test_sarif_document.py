@@ -14,8 +14,7 @@ from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.emit.data import sarif_document
 from archgen.findings import rule_pages
-from archgen.pipeline import ALL_RULES
-from archgen.products.check_findings import RULES_BY_NAME
+from archgen.pipeline import SHIPPED_RULES, index_all_rules
 from tests.findings import judges
 from tests.findings.hostile_findings import HOSTILE, hostile_findings
 from tests.hostile import controls
@@ -33,7 +32,7 @@ _FINDING = Diagnostic(
 
 
 def _run(findings: list[Diagnostic], scan: sarif_document.SarifScan = _SCAN) -> dict[str, Any]:
-    run: dict[str, Any] = json.loads(sarif_document.format_sarif(findings, RULES_BY_NAME, scan))["runs"][0]
+    run: dict[str, Any] = json.loads(sarif_document.format_sarif(findings, index_all_rules(), scan))["runs"][0]
     return run
 
 
@@ -80,15 +79,15 @@ def test_rules_carry_their_whole_pages() -> None:
     assert (rule["id"], rule["defaultConfiguration"]) == ("unread-output", {"level": "warning"})
     assert rule["helpUri"].endswith("/docs/rules/unread-output.md")
     assert rule["help"] == {
-        "text": rule_pages.format_rule_page(RULES_BY_NAME["unread-output"]),
-        "markdown": rule_pages.rule_page_to_markdown(RULES_BY_NAME["unread-output"]),
+        "text": rule_pages.format_rule_page(index_all_rules()["unread-output"]),
+        "markdown": rule_pages.rule_page_to_markdown(index_all_rules()["unread-output"]),
     }
 
 
 def format_all_rules() -> str:
     """Return a document with a finding of each rule."""
-    findings = [replace(_FINDING, rule=rule.name, severity=Severity.NOTE) for rule in ALL_RULES]
-    return sarif_document.format_sarif(findings, RULES_BY_NAME, _SCAN)
+    findings = [replace(_FINDING, rule=rule.name, severity=Severity.NOTE) for rule in SHIPPED_RULES]
+    return sarif_document.format_sarif(findings, index_all_rules(), _SCAN)
 
 
 @pytest.mark.slow  # half a minute of the judge
@@ -100,7 +99,7 @@ def test_every_rule_is_described_within_githubs_limits() -> None:
     text = format_all_rules()
     assert judges.sarif_schema(text) == []
     rules = json.loads(text)["runs"][0]["tool"]["driver"]["rules"]
-    assert len(rules) == len(ALL_RULES)
+    assert len(rules) == len(SHIPPED_RULES)
     assert [
         r["id"] for r in rules if len(r["fullDescription"]["text"]) > 1024 or not r["shortDescription"]["text"]
     ] == []
@@ -109,7 +108,7 @@ def test_every_rule_is_described_within_githubs_limits() -> None:
 def test_a_finding_without_a_place_stands_at_the_projects_file() -> None:
     nowhere = replace(_FINDING, span=NO_SPAN, labels=(Label(NO_SPAN, "left out"),))
     outside = replace(_FINDING, span=Span("../../../x.yaml", 1, 1, 1, 2), labels=())
-    text = sarif_document.format_sarif([nowhere, outside], RULES_BY_NAME, _SCAN)
+    text = sarif_document.format_sarif([nowhere, outside], index_all_rules(), _SCAN)
     assert judges.sarif_schema(text) == []
     places = [r["locations"][0]["physicalLocation"] for r in json.loads(text)["runs"][0]["results"]]
     assert [place["artifactLocation"]["uri"] for place in places] == ["robots/one/archgen.yaml"] * 2
@@ -122,7 +121,7 @@ def test_what_was_compared_is_new() -> None:
 
 @pytest.mark.parametrize("kind", HOSTILE)
 def test_hostile_texts(kind: str) -> None:
-    document = sarif_document.format_sarif(hostile_findings(HOSTILE[kind]), RULES_BY_NAME, _SCAN)
+    document = sarif_document.format_sarif(hostile_findings(HOSTILE[kind]), index_all_rules(), _SCAN)
     assert judges.sarif_schema(document) == []
     assert controls(document) == []
     for result in json.loads(document)["runs"][0]["results"]:
@@ -132,7 +131,7 @@ def test_hostile_texts(kind: str) -> None:
 @pytest.mark.slow  # as above
 def test_hostile_texts_before_a_judge(tmp_path: Path) -> None:
     findings = [finding for text in HOSTILE.values() for finding in hostile_findings(text)]
-    assert judges.sarif(sarif_document.format_sarif(findings, RULES_BY_NAME, _SCAN), tmp_path) == []
+    assert judges.sarif(sarif_document.format_sarif(findings, index_all_rules(), _SCAN), tmp_path) == []
 
 
 def test_text_from_a_file_is_no_link() -> None:

@@ -10,7 +10,8 @@ import pytest
 
 from archgen.emit.reqif import render_reqif
 from archgen.emit.reqif.reqif_texts import make_attribute, make_xhtml
-from archgen.importers.reqif import read_reqif_file, take_requirements
+from archgen.plugins.reqif.reqif_files import read_reqif_file
+from archgen.plugins.reqif.requirement_mapping import take_requirements
 from archgen.views.requirement_exchange import ExchangedRequirement, RequirementExchange
 
 NASTY = 'a "b" <script>&amp; \x00\x1b[31m ]]> \ud800 \u202e'

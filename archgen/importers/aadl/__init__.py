@@ -1,1 +1,0 @@
-"""AADL v2.2, textual: tokens, parser, name resolution, and what of a model becomes slices of the language."""

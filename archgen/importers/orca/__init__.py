@@ -1,1 +1,0 @@
-"""Read definition files of components of the Orca Robotics project."""

@@ -1,0 +1,142 @@
+"""Read an XML file as a tree that knows its places: in time and memory in proportion to the file, whatever it holds.
+
+Entities and document types are refused: nothing is expanded, and nothing outside the file is asked for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from types import MappingProxyType
+from xml.parsers import expat
+
+from archgen.diagnostics.source_span import Span
+from archgen.importers import xml_errors
+from archgen.importers.foreign_import import ForeignFileError
+
+MAX_DEPTH = 200
+"""Elements nest no deeper than this: models have about 30, and code that walks down a tree has an end."""
+MAX_ELEMENTS = 500_000
+"""A tree takes about 2 kB of memory for each: so many are a model of a hundred thousand classes, or of 50 MB."""
+_MALFORMED_HELP = "export it again from the tool that wrote it"
+_NO_NAMESPACES: Mapping[str, str] = MappingProxyType({"xml": "http://www.w3.org/XML/1998/namespace"})
+
+
+class XmlElement:
+    """An element as it is written, with its place. `line` and `column` count from 1."""
+
+    __slots__ = ("attributes", "children", "column", "line", "namespace", "prefix", "tag", "text")
+
+    def __init__(
+        self, name: str, attributes: dict[str, str], namespaces: Mapping[str, str], place: tuple[int, int]
+    ) -> None:
+        self.prefix, _, self.tag = name.rpartition(":")
+        self.namespace = namespaces.get(self.prefix, "")
+        self.attributes = attributes
+        """By their names as they are written: `xmi:id`."""
+        self.children: list[XmlElement] = []
+        self.text = ""
+        """All text directly in the element."""
+        self.line, self.column = place
+
+    def find(self, tag: str) -> XmlElement | None:
+        """Return the first child with a tag, or None."""
+        return next((child for child in self.children if child.tag == tag), None)
+
+    def find_all(self, tag: str) -> list[XmlElement]:
+        """Return all children with a tag."""
+        return [child for child in self.children if child.tag == tag]
+
+    def walk(self) -> Iterator[XmlElement]:
+        """Yield this element and all below, in the order of the file."""
+        stack = [self]
+        while stack:
+            element = stack.pop()
+            yield element
+            # The one that was put down last is taken first.
+            stack.extend(reversed(element.children))
+
+    def span(self, file: str) -> Span:
+        """Return the place of the element's beginning in a file of this name."""
+        return Span(file, self.line, self.column, self.line, self.column + 1)
+
+
+def parse_xml(file: str, data: bytes) -> XmlElement:
+    """Return the outermost element of a file; `file` is its name in messages. Raise ForeignFileError."""
+    return _TreeBuilder(file).build(data)
+
+
+class _TreeBuilder:
+    """The elements that are open between two events of the parser."""
+
+    def __init__(self, file: str) -> None:
+        self._file = file
+        self._root: XmlElement | None = None
+        self._count = 0
+        self._open: list[tuple[XmlElement, Mapping[str, str], list[str]]] = []
+        self._parser = expat.ParserCreate()
+        # Else expat calls back for each line of a text by itself.
+        self._parser.buffer_text = True
+        self._parser.StartElementHandler = self._start
+        self._parser.EndElementHandler = self._end
+        self._parser.CharacterDataHandler = self._add_text
+        self._parser.StartDoctypeDeclHandler = self._refuse_doctype
+        self._parser.EntityDeclHandler = self._refuse_doctype
+
+    def build(self, data: bytes) -> XmlElement:
+        try:
+            self._parser.Parse(data, True)  # noqa: FBT003 - expat's signature
+        except expat.ExpatError as error:
+            problem = xml_errors.explain_syntax(
+                error, is_root_seen=self._root is not None, malformed_help=_MALFORMED_HELP
+            )
+            raise self._refuse(problem, None if problem.is_at_end else error) from None
+        except (LookupError, ValueError) as error:
+            raise self._refuse(xml_errors.explain_encoding(error)) from None
+        assert self._root is not None  # noqa: S101 - a file without an element is a syntax error
+        return self._root
+
+    def _refuse(self, problem: xml_errors.XmlProblem, error: expat.ExpatError | None = None) -> ForeignFileError:
+        line = error.lineno if error else self._parser.CurrentLineNumber
+        column = (error.offset if error else self._parser.CurrentColumnNumber) + 1
+        return ForeignFileError(problem.message, Span(self._file, line, column, line, column + 1), problem.help_line)
+
+    def _refuse_doctype(self, *_: object) -> None:
+        words = "it declares a document type or entities, which archgen does not follow"
+        raise self._refuse(xml_errors.XmlProblem(words, "models need neither: take out the `<!DOCTYPE ...>`"))
+
+    def _start(self, name: str, attributes: dict[str, str]) -> None:
+        namespaces = self._open[-1][1] if self._open else _NO_NAMESPACES
+        # Most elements declare none and share the mapping of the one around: half a million copies would fill memory.
+        declared = {
+            attribute.partition(":")[2]: value
+            for attribute, value in attributes.items()
+            if _declares_namespace(attribute)
+        }
+        namespaces = {**namespaces, **declared} if declared else namespaces
+        place = (self._parser.CurrentLineNumber, self._parser.CurrentColumnNumber + 1)
+        element = XmlElement(name, attributes, namespaces, place)
+        if self._open:
+            self._open[-1][0].children.append(element)
+        elif self._root is None:
+            self._root = element
+        if len(self._open) >= MAX_DEPTH:
+            words = f"its elements nest deeper than {MAX_DEPTH}"
+            raise self._refuse(xml_errors.XmlProblem(words, "no model does: export it again"))
+        self._count += 1
+        if self._count > MAX_ELEMENTS:
+            words = f"it has more than {MAX_ELEMENTS:,} elements"
+            raise self._refuse(xml_errors.XmlProblem(words, "export the model in parts"))
+        self._open.append((element, namespaces, []))
+
+    def _add_text(self, text: str) -> None:
+        if self._open:
+            self._open[-1][2].append(text)
+
+    def _end(self, _name: str) -> None:
+        element, _, texts = self._open.pop()
+        # Text comes in pieces between the children; added up piece by piece it would take the square of its length.
+        element.text = "".join(texts)
+
+
+def _declares_namespace(attribute: str) -> bool:
+    return attribute == "xmlns" or attribute.startswith("xmlns:")

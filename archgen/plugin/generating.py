@@ -1,0 +1,84 @@
+"""For generators: what views are made from and give back, names in other languages, and what the views of several programs share."""
+
+from archgen.bringup.program_names import (
+    ProgramNames,
+    group_by_program,
+    index_endpoints,
+    list_generated_nodes,
+    name_endpoints,
+    name_package,
+    name_plugin,
+)
+from archgen.model.code_names import (
+    list_name_words,
+    make_camel_name,
+    make_identifier_in,
+    make_lower_camel_name,
+    make_ros_name,
+    make_snake_name,
+)
+from archgen.model.element_ids import make_id, spell_in_ascii
+from archgen.model.language_keywords import AADL_KEYWORDS, CPP_KEYWORDS, PYTHON_KEYWORDS
+from archgen.model.path_resolver import title_from_id
+from archgen.views.generation.class_words import find_type_words
+from archgen.views.generation.component_records import SetParameter, list_set_parameters, read_own_hints
+from archgen.views.generation.generation_context import (
+    NOT_GENERATED,
+    GeneratedView,
+    GenerationContext,
+    tell_left_out,
+    write_place,
+)
+from archgen.views.generation.name_clashes import find_name_clashes
+from archgen.views.generation.program_parameters import (
+    convert_ros_value,
+    infer_ros_type,
+    list_node_values,
+    record_parameters,
+)
+from archgen.views.generation.program_ports import PORT_SECTIONS, record_ports, record_qos
+from archgen.views.generation.property_needs import find_text_fault
+from archgen.views.records.record_values import to_plain
+from archgen.views.used_messages import collect_messages
+
+__all__ = [
+    "AADL_KEYWORDS",
+    "CPP_KEYWORDS",
+    "NOT_GENERATED",
+    "PORT_SECTIONS",
+    "PYTHON_KEYWORDS",
+    "GeneratedView",
+    "GenerationContext",
+    "ProgramNames",
+    "SetParameter",
+    "collect_messages",
+    "convert_ros_value",
+    "find_name_clashes",
+    "find_text_fault",
+    "find_type_words",
+    "group_by_program",
+    "index_endpoints",
+    "infer_ros_type",
+    "list_generated_nodes",
+    "list_name_words",
+    "list_node_values",
+    "list_set_parameters",
+    "make_camel_name",
+    "make_id",
+    "make_identifier_in",
+    "make_lower_camel_name",
+    "make_ros_name",
+    "make_snake_name",
+    "name_endpoints",
+    "name_package",
+    "name_plugin",
+    "read_own_hints",
+    "record_parameters",
+    "record_ports",
+    "record_qos",
+    "spell_in_ascii",
+    "tell_left_out",
+    "title_from_id",
+    "to_plain",
+    "write_place",
+]

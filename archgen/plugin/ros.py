@@ -1,0 +1,36 @@
+"""What archgen knows of ROS: distributions, messages and interface files, names, files of parameters."""
+
+from archgen.analyses.name_validity import find_name_fault, find_node_name_fault
+from archgen.link.data_types.message_names import spell_message_name
+from archgen.link.interface_sources import load_interfaces
+from archgen.link.parameter_flattening import flatten_parameters
+from archgen.link.parameter_texts import ParameterSection, ParameterText, matches_node_name, read_parameter_text
+from archgen.link.shipped_interfaces import load_shipped_interfaces
+from archgen.model.common_callbacks import is_common_callback
+from archgen.model.known_interfaces import KNOWN_DISTROS, Interface, InterfaceConstant, InterfaceField
+from archgen.model.message_types import full_message_name
+from archgen.model.ros_distro import PAST_DISTROS, is_ros_1
+from archgen.syntax.interface_definitions import INVALID_INTERFACE, parse_interface_definition
+
+__all__ = [
+    "INVALID_INTERFACE",
+    "KNOWN_DISTROS",
+    "PAST_DISTROS",
+    "Interface",
+    "InterfaceConstant",
+    "InterfaceField",
+    "ParameterSection",
+    "ParameterText",
+    "find_name_fault",
+    "find_node_name_fault",
+    "flatten_parameters",
+    "full_message_name",
+    "is_common_callback",
+    "is_ros_1",
+    "load_interfaces",
+    "load_shipped_interfaces",
+    "matches_node_name",
+    "parse_interface_definition",
+    "read_parameter_text",
+    "spell_message_name",
+]

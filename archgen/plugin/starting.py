@@ -1,0 +1,29 @@
+"""For generators of what starts a system: the plan of the start-up, its steps, and the words for them."""
+
+from archgen.bringup.plan_shapes import DEFAULT_SECONDS, RosLaunch, StartPlan, StartStep, format_seconds
+from archgen.bringup.start_plan import make_start_plan
+from archgen.views.generation.wanted_start_steps import find_wanted_steps
+from archgen.views.start_phrases import (
+    KIND_WORDS,
+    describe_dropped,
+    describe_lifecycle,
+    describe_ready,
+    describe_unknown,
+    name_waits,
+)
+
+__all__ = [
+    "DEFAULT_SECONDS",
+    "KIND_WORDS",
+    "RosLaunch",
+    "StartPlan",
+    "StartStep",
+    "describe_dropped",
+    "describe_lifecycle",
+    "describe_ready",
+    "describe_unknown",
+    "find_wanted_steps",
+    "format_seconds",
+    "make_start_plan",
+    "name_waits",
+]

@@ -1,0 +1,270 @@
+"""Go through the tokens of an AADL text: expect, look ahead, tell errors, and find where to go on behind one."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from itertools import islice
+from typing import NoReturn
+
+from archgen.plugin import dataclass
+from archgen.plugin.importing import Span
+from archgen.plugins.aadl.aadl_tokens import END, MAX_TOKENS, OPEN_ANNEX, AadlText, Token, scan_tokens
+
+MAX_DEPTH = 60
+"""How deep values, bindings and types may stand in one another."""
+_MAX_SHOWN = 40
+SECTION_WORDS = frozenset(
+    [
+        "features",
+        "subcomponents",
+        "connections",
+        "calls",
+        "flows",
+        "modes",
+        "properties",
+        "prototypes",
+        "annex",
+        "end",
+        "private",
+        "public",
+    ]
+)
+RESERVED_WORDS = SECTION_WORDS | frozenset(
+    [
+        "aadlboolean",
+        "aadlinteger",
+        "aadlreal",
+        "aadlstring",
+        "abstract",
+        "access",
+        "all",
+        "and",
+        "applies",
+        "binding",
+        "bus",
+        "calls",
+        "classifier",
+        "compute",
+        "connections",
+        "constant",
+        "data",
+        "delta",
+        "device",
+        "enumeration",
+        "event",
+        "extends",
+        "false",
+        "feature",
+        "flow",
+        "group",
+        "implementation",
+        "in",
+        "inherit",
+        "initial",
+        "inverse",
+        "is",
+        "list",
+        "memory",
+        "mode",
+        "not",
+        "of",
+        "or",
+        "out",
+        "package",
+        "parameter",
+        "path",
+        "port",
+        "process",
+        "processor",
+        "property",
+        "provides",
+        "range",
+        "record",
+        "reference",
+        "refined",
+        "renames",
+        "requires",
+        "self",
+        "set",
+        "sink",
+        "source",
+        "subprogram",
+        "system",
+        "thread",
+        "to",
+        "true",
+        "type",
+        "units",
+        "virtual",
+        "with",
+    ]
+)
+"""Words that name nothing. `internal`, `none` and such are told by their place alone: models use them as names."""
+
+
+@dataclass(frozen=True, slots=True)
+class SyntaxFault:
+    """What is wrong with the text at a place, and how to mend it."""
+
+    message: str
+    span: Span
+    help_line: str = ""
+
+
+class AadlSyntaxError(Exception):
+    """The parser met what it did not expect; whoever knows where to go on catches it."""
+
+    def __init__(self, message: str, token: Token, help_line: str = "") -> None:
+        super().__init__(message)
+        self.message, self.token, self.help_line = message, token, help_line
+
+
+class TokenCursor:
+    """A place among the tokens of a text; `faults` are all errors that were met."""
+
+    def __init__(self, source: AadlText, max_tokens: int = MAX_TOKENS) -> None:
+        """Stand before the first token; behind `max_tokens` going on raises TooManyTokensError."""
+        self.source = source
+        self.faults: list[SyntaxFault] = []
+        self._tokens = scan_tokens(source.text, max_tokens)
+        self._ahead: deque[Token] = deque()
+        self._depth = 0
+        self.last_end = 0
+        self.token_count = 0
+        """How many tokens were left behind."""
+        self.token = next(self._tokens)
+
+    def peek(self, distance: int = 1) -> Token:
+        """Return the token that stands so far behind the present one."""
+        missing = distance - len(self._ahead)
+        if missing > 0:
+            self._ahead += islice(self._tokens, missing)
+        return self._ahead[distance - 1]
+
+    def advance(self) -> Token:
+        """Go on by a token, and return the one that was left."""
+        token = self.token
+        self.token_count += 1
+        self.last_end = token.offset + len(token.text)
+        self.token = self._ahead.popleft() if self._ahead else next(self._tokens)
+        return token
+
+    def at(self, *words: str) -> bool:
+        """Whether these words or signs come next, in this order."""
+        if self.token.word != words[0] or self.token.kind == "text":
+            return False
+        return all(self.peek(index).word == word for index, word in enumerate(words[1:], 1))
+
+    def accept(self, *words: str) -> bool:
+        """Go behind these words or signs if they come next."""
+        if not self.at(*words):
+            return False
+        for _ in words:
+            self.advance()
+        return True
+
+    def expect(self, *words: str) -> Token:
+        """Go behind these words or signs. Raise AadlSyntaxError where something else comes."""
+        for word in words:
+            if not self.at(word):
+                self.fail(f"`{word}` is missing here, before {describe_token(self.token)}")
+            last = self.advance()
+        return last
+
+    def expect_name(self, what: str) -> str:
+        """Return the name that comes next. Raise AadlSyntaxError where none does."""
+        if self.token.kind != "name" or self.token.word in RESERVED_WORDS:
+            found = describe_token(self.token)
+            reserved = self.token.kind == "name"
+            words = f"{found} is a word of AADL, and no name of {what}" if reserved else f"{found} is no name of {what}"
+            self.fail(words)
+        return self.advance().text
+
+    def expect_path(self, what: str) -> str:
+        """Return a name with `::` and `.` in it, as `talking::talker.impl`."""
+        parts = [self.expect_name(what)]
+        while self.at("::") or self.at("."):
+            parts += [self.advance().text, self.expect_name(what)]
+        return "".join(parts)
+
+    @contextmanager
+    def deeper(self) -> Iterator[None]:
+        """Go down by one level. Raise AadlSyntaxError where that is too deep."""
+        self._depth += 1
+        try:
+            if self._depth > MAX_DEPTH:
+                self.fail(f"this stands more than {MAX_DEPTH} levels deep")
+            yield
+        finally:
+            self._depth -= 1
+
+    def make_error(self, message: str, help_line: str = "") -> AadlSyntaxError:
+        """Return an error at the present token, for the caller to tell."""
+        return AadlSyntaxError(message, self.token, help_line)
+
+    def fail(self, message: str, help_line: str = "") -> NoReturn:
+        """Raise an error at the present token."""
+        raise self.make_error(message, help_line)
+
+    def tell(self, error: AadlSyntaxError) -> None:
+        """Remember an error."""
+        span = self.source.span(error.token.offset, error.token.end)
+        if not self.faults or self.faults[-1].span != span:
+            self.faults.append(SyntaxFault(error.message, span, error.help_line))
+
+    def span_from(self, start: int) -> Span:
+        """Return the span from an offset to the last token that was left."""
+        return self.source.span(start, self.last_end)
+
+    def skip_statement(self) -> None:
+        """Go behind the next `;` that stands in no brackets, or up to the next section or the end."""
+        depth = 0
+        while self.token.kind != END:
+            word = self.token.word
+            if word in {"(", "{", "[", "-["}:
+                depth += 1
+            elif word in {")", "}", "]", "]->"}:
+                depth = max(0, depth - 1)
+            elif word == ";" and not depth:
+                self.advance()
+                return
+            if self._begins_section(word):
+                return
+            self.advance()
+
+    def _begins_section(self, word: str) -> bool:
+        if self.token.kind != "name" or word not in SECTION_WORDS:
+            return False
+        if word == "end":
+            # `end to end flow` begins an entry.
+            return not self.at("end", "to") and self.peek().kind == "name"
+        # Words of sections stand within entries, too: `requires modes`, `in modes`, `{properties}`.
+        return self.peek().kind in {"name", END} and not (word == "flows" and self.peek().word == "=>")
+
+    def parse_entries(self, parse_entry: Callable[[], None], is_end: Callable[[], bool]) -> None:
+        """Parse entries up to where the section ends; an error in one is told, and the next goes on behind it."""
+        while self.token.kind != END and not is_end():
+            before = self.token
+            try:
+                parse_entry()
+            except AadlSyntaxError as error:
+                self.tell(error)
+                self.skip_statement()
+                if self.token is before:
+                    self.advance()
+
+
+def describe_token(token: Token) -> str:
+    """Return a token as messages name it, cut if it is long."""
+    if token.kind == END:
+        return "the end of the file"
+    if token.kind == OPEN_ANNEX:
+        return "an annex without its end `**}`"
+    if token.kind == "annex":
+        return "an annex"
+    if token.kind == "stray" and token.text == '"':
+        return "a text without an end"
+    text = token.text if len(token.text) <= _MAX_SHOWN else f"{token.text[: _MAX_SHOWN - 3]}..."
+    return f"`{text}`" if text.isprintable() else repr(text)

@@ -1,0 +1,1 @@
+"""The view `aadl`: the architecture as packages of AADL, as AADL writes them."""

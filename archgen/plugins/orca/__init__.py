@@ -1,0 +1,14 @@
+"""Orca Robotics: definition files of components."""
+
+PLUGIN = {
+    "api": 1,
+    "page": "docs/middlewares.md",
+    "importers": {
+        "orca": {
+            "rank": 9,
+            "summary": "components of the Orca Robotics project, from their definition files (.def)",
+            "endings": (),
+            "reader": "archgen.plugins.orca.orca_import:read_orca",
+        },
+    },
+}

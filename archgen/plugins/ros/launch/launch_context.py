@@ -1,0 +1,195 @@
+"""What is set while a launch file is walked through: arguments, namespace, remaps, parameters; and what values become by it."""
+
+from __future__ import annotations
+
+import posixpath
+from collections.abc import Mapping, Sequence
+from copy import copy
+from dataclasses import dataclass, field
+
+from archgen.plugins.ros.launch.launch_actions import LaunchCondition
+from archgen.plugins.ros.launch.launch_expressions import evaluate_expression
+from archgen.plugins.ros.launch.launch_values import (
+    MAX_PARTS,
+    MAX_TEXT,
+    OPEN,
+    LaunchValue,
+    Substitution,
+    UnknownValue,
+    describe_launch_value,
+    is_plain,
+    name_object,
+    write_plain,
+)
+
+_TRUE_WORDS = frozenset({"true", "1", "yes", "on"})
+_FALSE_WORDS = frozenset({"false", "0", "no", "off", ""})
+_MAX_DEPTH = 40
+
+
+@dataclass(slots=True)
+class LaunchScope:
+    """What a group takes back at its end."""
+
+    configurations: dict[str, LaunchValue] = field(default_factory=dict)
+    """Values of arguments: text, or what only running it would tell."""
+    namespace: str | UnknownValue = ""
+    remaps: tuple[tuple[str, str], ...] = ()
+    parameters: tuple[LaunchValue, ...] = ()
+    """Parameters for all nodes, in the order in which they are set: mappings, and files."""
+    environment: tuple[tuple[str, str], ...] = ()
+    conditions: tuple[tuple[str, bool | None], ...] = ()
+    """The conditions around, as words, each with its verdict by the defaults."""
+
+
+class LaunchContext:
+    """The scope at the place that is walked through. `used` are the arguments that were filled in since it was emptied."""
+
+    def __init__(self, *, is_ros_1: bool = False) -> None:
+        self.scope = LaunchScope()
+        self.is_ros_1 = is_ros_1
+        self.used: dict[str, str] = {}
+        self.asked: set[str] = set()
+        """The arguments that ROS 2 was asked for, which needs no declaration of them."""
+        self._scopes: list[LaunchScope] = []
+        self._left = MAX_PARTS
+
+    def push(self) -> None:
+        """Begin a scope."""
+        self._scopes.append(self.scope)
+        self.scope = copy(self.scope)
+        self.scope.configurations = dict(self.scope.configurations)
+
+    def pop(self) -> None:
+        """End a scope."""
+        self.scope = self._scopes.pop()
+
+    def resolve(self, value: LaunchValue, depth: int = 0) -> str | UnknownValue:
+        """Return a value as text, with arguments filled in; `$(...)` stays for what only the robot knows."""
+        # One value may stand in another one many times over.
+        self._left = MAX_PARTS if depth == 0 else self._left - 1
+        if depth > _MAX_DEPTH or self._left < 0:
+            return UnknownValue("values nested very deep")
+        if isinstance(value, UnknownValue):
+            return value
+        if isinstance(value, Substitution):
+            return self._resolve_substitution(value, depth + 1)
+        if isinstance(value, list | tuple):
+            return self._join(value, depth + 1)
+        if isinstance(value, Mapping):
+            return UnknownValue("a mapping where a text is expected")
+        return write_plain(value) if is_plain(value) else name_object(value)
+
+    def _join(self, parts: Sequence[LaunchValue], depth: int, *, is_path: bool = False) -> str | UnknownValue:
+        texts: list[str] = []
+        for part in parts:
+            text = self.resolve(part, depth)
+            if isinstance(text, UnknownValue):
+                return text
+            texts.append(text)
+        # As os.path.join has it: an absolute part begins anew, an empty one adds nothing.
+        joined = posixpath.join("", *texts) if is_path else "".join(texts)
+        return joined if len(joined) <= MAX_TEXT else UnknownValue("a very long text")
+
+    def _resolve_substitution(self, value: Substitution, depth: int) -> str | UnknownValue:  # noqa: PLR0911 - a kind each
+        match value.kind:
+            case "join":
+                return self._join(value.parts, depth)
+            case "path":
+                return self._join(value.parts, depth, is_path=True)
+            case "typed" | "text_of":
+                return self.resolve(value.parts[0], depth)
+            case "var":
+                return self._resolve_argument(value, depth)
+            case "share" | "prefix":
+                package = self.resolve(value.parts[0], depth)
+                word = "find" if self.is_ros_1 else f"find-pkg-{value.kind}"
+                return package if isinstance(package, UnknownValue) else f"$({word} {package})"
+            case "env":
+                return self._resolve_variable(value, depth)
+            case "eval":
+                return self._evaluate(value.parts[0], depth)
+            case "not" | "and" | "or" | "equals" | "differs":
+                verdict = self.judge(value, depth)
+                return UnknownValue(describe_launch_value(value)) if verdict is None else write_plain(verdict)
+            case kind:
+                return self._join(
+                    [f"$({kind}", *(f" {describe_launch_value(part)}" for part in value.parts), ")"], depth
+                )
+
+    def _resolve_argument(self, value: Substitution, depth: int) -> str | UnknownValue:
+        name = self.resolve(value.parts[0], depth)
+        if isinstance(name, UnknownValue):
+            return name
+        word = "arg" if self.is_ros_1 else "var"
+        if not self.is_ros_1:
+            self.asked.add(name)
+        known = self.scope.configurations.get(name, value.parts[1] if len(value.parts) > 1 else None)
+        if known is None:
+            self.used[name] = ""
+            return f"$({word} {name})"
+        text = self.resolve(known, depth)
+        if isinstance(text, str):
+            self.used[name] = text
+        return text
+
+    def _resolve_variable(self, value: Substitution, depth: int) -> str | UnknownValue:
+        name = self.resolve(value.parts[0], depth)
+        if isinstance(name, UnknownValue):
+            return name
+        own = dict(self.scope.environment).get(name)
+        if own is not None:
+            return own
+        if len(value.parts) > 1 and value.parts[1] is not None:
+            return self.resolve(value.parts[1], depth)
+        return f"$(env {name})"
+
+    def _evaluate(self, expression: LaunchValue, depth: int) -> str | UnknownValue:
+        """Return what an expression of Python comes to, if it is one of comparisons, `and`, `or`, `not` and plain values."""
+        text = self.resolve(expression, depth)
+        if isinstance(text, UnknownValue):
+            return text
+        found = evaluate_expression(text, self._look_up)
+        # As Python writes it: `True`, which a comparison with another expression's outcome needs.
+        return str(found) if found is not None else UnknownValue(f"$(eval {describe_launch_value(expression)})")
+
+    def _look_up(self, name: str) -> str | None:
+        """Return the value of an argument that an expression of ROS 1 names; None where it is not known."""
+        known = self.resolve(Substitution("var", (name,)), 1) if self.is_ros_1 else None
+        return known if isinstance(known, str) and OPEN not in known else None
+
+    def judge(self, value: LaunchValue, depth: int = 0) -> bool | None:
+        """Return whether a value counts as true; None where only running it would tell."""
+        if depth > _MAX_DEPTH:
+            return None
+        if isinstance(value, bool):
+            return value
+        if isinstance(value, Substitution) and value.kind in {"not", "and", "or", "equals", "differs"}:
+            return self._judge_operation(value, depth + 1)
+        text = self.resolve(value, depth + 1)
+        if isinstance(text, UnknownValue) or OPEN in text:
+            return None
+        word = text.strip().lower()
+        return True if word in _TRUE_WORDS else False if word in _FALSE_WORDS else None
+
+    def _judge_operation(self, value: Substitution, depth: int) -> bool | None:
+        if value.kind in {"equals", "differs"}:
+            left, right = (self.resolve(part, depth) for part in value.parts[:2])
+            if isinstance(left, UnknownValue) or isinstance(right, UnknownValue) or OPEN in left + right:
+                return None
+            return (left.strip() == right.strip()) == (value.kind == "equals")
+        verdicts = [self.judge(part, depth) for part in value.parts]
+        if value.kind == "not":
+            return None if verdicts[0] is None else not verdicts[0]
+        decisive = value.kind == "or"
+        if decisive in verdicts:
+            return decisive
+        return None if None in verdicts else not decisive
+
+    def judge_condition(self, condition: LaunchCondition) -> tuple[str, bool | None]:
+        """Return a condition as words, and whether it holds by the defaults."""
+        verdict = self.judge(condition.value)
+        if condition.is_negated:
+            verdict = None if verdict is None else not verdict
+        word = "unless" if condition.is_negated else "if"
+        return f"{word} {describe_launch_value(condition.value)}", verdict

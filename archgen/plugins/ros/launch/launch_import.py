@@ -1,0 +1,110 @@
+"""`archgen import launch`: nodes that exist, as launch files of ROS 1 and ROS 2 start them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from archgen.plugin.importing import ForeignFileError, ForeignImport, Span, make_id, make_unique_id, title_from_id
+from archgen.plugins.ros.launch.launch_files import LaunchFiles
+from archgen.plugins.ros.launch.launch_loading import load_actions, load_included
+from archgen.plugins.ros.launch.launch_run import LaunchRun
+from archgen.plugins.ros.launch.launch_slices import SliceMaker
+from archgen.plugins.ros.launch.launched_nodes import LaunchedNode
+from archgen.plugins.ros.launch.server_parameters import give_server_parameters
+
+_ENDINGS = (".launch.py", ".launch.xml", ".launch.yaml", ".launch.yml", ".launch", ".py", ".xml", ".yaml", ".yml")
+
+
+def read_launch(files: Sequence[Path], arguments: Mapping[str, str] | None = None) -> ForeignImport:
+    """Read launch files, or all that lie in folders and that no other one includes. Raise ForeignFileError.
+
+    `arguments` are values of launch arguments by their names, as `ros2 launch` takes them.
+    """
+    launch_files = LaunchFiles(files)
+    run = LaunchRun(launch_files, load_included, arguments)
+    given = [path.resolve() for path in files if not path.is_dir()]
+    entries = given or launch_files.list_launch_files()
+    if not entries:
+        words = "there is no launch file in it"
+        raise ForeignFileError(
+            words, Span.of_file(str(files[0]) if files else "."), "name a launch file, or a folder with some"
+        )
+    for path in given:
+        # What is given by name must be readable; what lies in a folder or is included is only noted.
+        load_actions(path, LaunchRun(launch_files, load_included))
+    launched: dict[Path, tuple[list[LaunchedNode], Counter[str]]] = {}
+    for path in dict.fromkeys(entries):
+        run.nodes, run.taken = [], Counter()
+        run.run_file(path)
+        launched[path] = (run.nodes, run.taken)
+    run.arguments.refuse_unknown(run.context.asked, launch_files.show_path(entries[0]))
+    for root, count in launch_files.cut_roots.items():
+        words = f"only the first {count:,} folders in it were looked through: packages that lie in others are not found"
+        run.add_note("folder", words, Span.of_file(root.name or "/"), "give folders that hold less", fate="noted")
+    if not given:
+        launched = {path: each for path, each in launched.items() if path not in run.included} or launched
+    return _make_import(run, launched)
+
+
+def _make_import(run: LaunchRun, launched: Mapping[Path, tuple[list[LaunchedNode], Counter[str]]]) -> ForeignImport:
+    kept = _drop_twins(run, [node for nodes, _ in launched.values() for node in nodes])
+    for_all = give_server_parameters(
+        run, run.server_parameters, [node for nodes in launched.values() for node in nodes[0] if id(node) in kept]
+    )
+    maker = SliceMaker(run)
+    slices: dict[str, Mapping[str, Any]] = {}
+    comments: dict[str, Mapping[tuple[str | int, ...], str]] = {}
+    names: set[str] = set()
+    for path, (nodes, _) in launched.items():
+        name = make_unique_id(
+            f"{make_id(_find_stem(path), 'launch')}_launch".replace("_launch_launch", "_launch"), names
+        )
+        names.add(name)
+        sections = maker.make_sections([node for node in nodes if id(node) in kept])
+        if for_all:
+            sections = {"ros": {"parameters": for_all}, **sections}
+            for_all = {}
+        if sections:
+            slices[f"{name}.yaml"] = sections
+            comments[f"{name}.yaml"] = maker.comments
+    taken = sum((counts for _, counts in launched.values()), Counter[str]())
+    title = title_from_id(make_id(_find_stem(next(iter(launched))), "robot"))
+    return ForeignImport(slices, dict(sorted((+taken).items())), tuple(run.notes), title, comments=comments)
+
+
+def _find_stem(path: Path) -> str:
+    name = path.name
+    return next((name[: -len(ending)] for ending in _ENDINGS if name.lower().endswith(ending)), path.stem) or "robot"
+
+
+def _drop_twins(run: LaunchRun, nodes: Sequence[LaunchedNode]) -> set[int]:
+    """Return which nodes are taken, by identity: of those with one full name the one that runs by the defaults."""
+    kept: dict[str, LaunchedNode] = {}
+    # What is no node may be called as another one.
+    free = [node for node in nodes if not node.full_name or node.form == "program"]
+    for node in nodes:
+        if not node.full_name or node.form == "program":
+            continue
+        other = kept.get(node.full_name)
+        if other is None:
+            kept[node.full_name] = node
+            continue
+        winner, loser = (node, other) if node.is_on and not other.is_on else (other, node)
+        kept[node.full_name] = winner
+        is_same = (winner.package, winner.executable, winner.plugin) == (loser.package, loser.executable, loser.plugin)
+        if not is_same or winner.form != loser.form:
+            conditions = list(dict.fromkeys(loser.conditions))
+            words = f" (only {' and '.join(conditions)})" if conditions else ""
+            message = f"another action starts `{loser.full_name}`, too: this one{words} is kept as a hint"
+            run.add_note(loser.word, message, loser.span, fate="noted")
+            way = {key: getattr(loser, key) for key in ("package", "executable", "plugin")}
+            way |= {"container": loser.container_name, "conditions": conditions}
+            winner.other_ways += [{key: value for key, value in way.items() if value}, *loser.other_ways]
+    for node in nodes:
+        # What a container that is left out would load is loaded by the one of its name.
+        if node.container is not None:
+            node.container = kept.get(node.container.full_name, node.container)
+    return {id(node) for node in [*free, *kept.values()]}

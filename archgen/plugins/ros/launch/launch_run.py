@@ -1,0 +1,256 @@
+"""Walk through the actions of launch files as ROS would, without starting anything: what they start, and how."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from archgen.plugins.ros.launch.launch_actions import LaunchAction
+from archgen.plugins.ros.launch.launch_arguments import LaunchArguments
+from archgen.plugins.ros.launch.launch_context import LaunchContext, LaunchScope
+from archgen.plugins.ros.launch.launch_files import LaunchFiles
+from archgen.plugins.ros.launch.launch_values import OPEN, UnknownValue
+from archgen.plugins.ros.launch.launched_nodes import LaunchedNode, join_names
+from archgen.plugins.ros.launch.node_making import NodeMaker
+from archgen.plugins.ros.launch.scope_run import ScopeRun
+from archgen.plugins.ros.launch.server_parameters import ServerParameter, read_server_parameters
+
+ActionLoader = Callable[[Path, "LaunchRun"], list[LaunchAction]]
+MAX_NODES = 20_000
+MAX_ACTIONS = 100_000
+MAX_INCLUDES = 500
+_MAX_DEPTH = 25
+_SETTERS = frozenset(
+    {"argument", "configure", "namespace", "parameter", "parameter_file", "remap", "environment", "host"}
+)
+"""Actions that only set something for others."""
+_LATER_HELP = "what it starts is taken; say with `start: {after: ...}` what it waits for"
+
+
+class LaunchRun(ScopeRun):
+    """Everything that was found so far. One run reads all files that were given."""
+
+    def __init__(
+        self, files: LaunchFiles, load_actions: ActionLoader, arguments: Mapping[str, str] | None = None
+    ) -> None:
+        super().__init__(files, LaunchArguments(dict(arguments or {})))
+        self.nodes: list[LaunchedNode] = []
+        self.taken: Counter[str] = Counter()
+        """What was taken of the file that is read."""
+        self.included: set[Path] = set()
+        self.server_parameters: list[ServerParameter] = []
+        """Parameters of ROS 1 that stand outside of nodes, by their full names."""
+        self._load_actions = load_actions
+        self._maker = NodeMaker(self)
+        self._includes = 0
+        self._actions = 0
+        self._has_told_nodes = False
+        self._handlers |= {
+            "ignored": self._run_ignored,
+            "description": self._run_description,
+            "server_parameter": self._run_server_parameter,
+            "group": self._run_group,
+            "later": self._run_later,
+            "call": self._run_call,
+            "include": self._run_include,
+            "node": self._run_node,
+            "process": self._run_process,
+            "container": self._run_container,
+            "load": self._run_load,
+        }
+
+    def run_file(self, path: Path) -> None:
+        """Walk through a file that was given, with nothing set from outside but arguments of the command line."""
+        self.context.push()
+        self.context.scope = LaunchScope(configurations=dict(self.arguments.given))
+        self._run_file(path)
+        self.context.pop()
+
+    def _run_file(self, path: Path) -> None:
+        was_ros_1 = self.context.is_ros_1
+        self.open_files.append(path)
+        actions = self._load_actions(path, self)
+        self.run_actions(actions)
+        self.open_files.pop()
+        self.context.is_ros_1 = was_ros_1
+
+    def run_actions(self, actions: list[LaunchAction]) -> None:
+        """Walk through actions in their order."""
+        for action in actions:
+            self._actions += 1
+            if self._actions <= MAX_ACTIONS:
+                self._run_conditional(action)
+            elif self._actions == MAX_ACTIONS + 1:
+                # Actions that stand in one another twice, level by level, would have no end.
+                self.add_note(action.word, f"more than {MAX_ACTIONS:,} actions are not followed", action.span)
+
+    def _run_conditional(self, action: LaunchAction) -> None:
+        action.is_taken = True
+        verdicts = tuple(map(self.context.judge_condition, action.conditions))
+        if any(verdict is False for _, verdict in verdicts):
+            # What does not run sets nothing for what stands behind it.
+            if action.kind not in _SETTERS:
+                self.context.push()
+                self.context.scope.conditions += verdicts
+                self._run_action(action)
+                self.context.pop()
+            return
+        before = self.context.scope.conditions
+        self.context.scope.conditions += verdicts
+        self._run_action(action)
+        self.context.scope.conditions = before
+
+    def _run_action(self, action: LaunchAction) -> None:
+        handler = self._handlers.get(action.kind)
+        if handler is None:
+            self.add_note(
+                action.word, str(action.get("reason") or "it has no counterpart in the language"), action.span
+            )
+            return
+        if action.kind not in {"ignored", "description"}:
+            self.taken[action.word] += 1
+        handler(action)
+
+    def _run_ignored(self, action: LaunchAction) -> None:
+        """Nothing that an architecture holds."""
+
+    def _run_description(self, action: LaunchAction) -> None:
+        self.run_actions(action.children)
+
+    def _run_server_parameter(self, action: LaunchAction) -> None:
+        scope = self.context.scope
+        for name, value in read_server_parameters(self, action).items():
+            if isinstance(scope.namespace, str):
+                full_name = join_names(scope.namespace, name)
+                self.server_parameters.append(ServerParameter(full_name, value, action.span, scope.conditions))
+
+    def _run_group(self, action: LaunchAction) -> None:
+        is_scoped = action.get("scoped", True)
+        is_scoped = is_scoped if isinstance(is_scoped, bool) else self.context.judge(is_scoped) is not False
+        pairs = self.resolve_pairs(action.get("configurations"))
+        if is_scoped:
+            self.context.push()
+            if action.get("forwards") is not None and self.context.judge(action.get("forwards")) is False:
+                self.context.scope.configurations = {}
+        for name, value in pairs:
+            self.context.scope.configurations[name] = value
+        if action.get("namespace") is not None:
+            self.push_namespace(action, action.get("namespace"))
+        self.run_actions(action.children)
+        if is_scoped:
+            self.context.pop()
+
+    def _run_later(self, action: LaunchAction) -> None:
+        if action.children:
+            reason = str(action.get("reason") or "what is in it starts later")
+            self.add_note(action.word, reason, action.span, _LATER_HELP, "noted")
+        self.run_actions(action.children)
+
+    def _run_call(self, action: LaunchAction) -> None:
+        call: Callable[[LaunchContext], list[LaunchAction]] = action.values["call"]
+        self.run_actions(call(self.context))
+
+    def _run_include(self, action: LaunchAction) -> None:
+        text = self.context.resolve(action.get("file"))
+        if isinstance(text, UnknownValue):
+            self._tell_computed(action, "the file", text)
+            return
+        self._includes += 1
+        path = self.files.find_file(text)
+        if (
+            path is None
+            or path in self.open_files
+            or len(self.open_files) > _MAX_DEPTH
+            or self._includes > MAX_INCLUDES
+        ):
+            is_far = path is None
+            message = f"`{text}` is not read: " + (
+                "it does not lie in the folders that were given"
+                if is_far
+                else "it includes itself"
+                if path in self.open_files
+                else f"more than {MAX_INCLUDES} files, or {_MAX_DEPTH} in one another"
+            )
+            help_line = "give the folder of its package, too" if is_far else ""
+            self.add_note(action.word, message, action.span, help_line)
+            return
+        self._run_included(action, path)
+
+    def _run_included(self, action: LaunchAction, path: Path) -> None:
+        arguments = action.get("arguments")
+        given = self.resolve_pairs(arguments if isinstance(arguments, dict) else self.choose_values(action, arguments))
+        is_scoped = bool(action.get("scoped"))
+        if is_scoped:
+            self.context.push()
+            if not action.get("passes_all"):
+                self.context.scope.configurations = {}
+        for name, value in given:
+            self.context.scope.configurations[name] = value
+        if action.get("namespace") is not None:
+            self.push_namespace(action, action.get("namespace"))
+        self.included.add(path)
+        self._run_file(path)
+        if is_scoped:
+            self.context.pop()
+
+    def _run_node(self, action: LaunchAction) -> None:
+        self._add_node(self._maker.make_node(action, "node"), action)
+
+    def _run_process(self, action: LaunchAction) -> None:
+        self._add_node(self._maker.make_process(action), action)
+
+    def _run_container(self, action: LaunchAction) -> None:
+        container = self._maker.make_node(action, "container")
+        self._add_node(container, action)
+        for child in action.children:
+            self._load_child(child, container, "")
+
+    def _run_load(self, action: LaunchAction) -> None:
+        target = action.get("target")
+        container_name = ""
+        container = self._find_started(target) if isinstance(target, LaunchAction) else None
+        if isinstance(target, LaunchAction) and container is None:
+            target = target.get("name")
+        if target is not None and container is None:
+            name = self.context.resolve(target)
+            if isinstance(name, UnknownValue):
+                self._tell_computed(action, "the container", name)
+            elif OPEN in name:
+                self.add_note(
+                    action.word, f"the container is known at the launch only: `{name}`", action.span, fate="noted"
+                )
+            else:
+                # ROS asks for it from the root, in whatever namespace that is done.
+                container_name = join_names("", name)
+        for child in action.children:
+            self._load_child(child, container, container_name)
+
+    def _find_started(self, action: LaunchAction) -> LaunchedNode | None:
+        """Return the container that an action has started last."""
+        return next((node for node in reversed(self.nodes) if node.action is action), None)
+
+    def _load_child(self, child: LaunchAction, container: LaunchedNode | None, container_name: str) -> None:
+        child.is_taken = True
+        before = self.context.scope.conditions
+        for condition in child.conditions:
+            self.context.scope.conditions = (*self.context.scope.conditions, self.context.judge_condition(condition))
+        if child.kind == "node":
+            node = self._maker.make_node(child, "loaded")
+            node.container, node.container_name = container, container_name
+            self.taken[child.word] += 1
+            self._add_node(node, child)
+        else:
+            self._run_action(child)
+        self.context.scope.conditions = before
+
+    def _add_node(self, node: LaunchedNode | None, action: LaunchAction) -> None:
+        if node is None:
+            self.taken[action.word] -= 1
+        elif len(self.nodes) >= MAX_NODES:
+            if not self._has_told_nodes:
+                self.add_note(action.word, f"more than {MAX_NODES:,} nodes are not taken", action.span)
+            self._has_told_nodes = True
+        else:
+            node.action = action
+            self.nodes.append(node)

@@ -1,0 +1,292 @@
+"""Make what an action starts: a node, a container or a program, with everything filled in that the file says."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from archgen.plugins.ros.launch.command_words import split_words
+from archgen.plugins.ros.launch.launch_actions import LaunchAction
+from archgen.plugins.ros.launch.launch_parameter_files import FILE_KIND, overlay_parameters
+from archgen.plugins.ros.launch.launch_parameter_values import evaluate_parameter, split_parameter
+from archgen.plugins.ros.launch.launch_values import (
+    OPEN,
+    LaunchValue,
+    Substitution,
+    UnknownValue,
+    describe_launch_value,
+)
+from archgen.plugins.ros.launch.launched_nodes import LaunchedNode, clean_name, join_names
+from archgen.plugins.ros.launch.rewritten_files import FileRewrites
+from archgen.plugins.ros.launch.ros_arguments import read_nodelet, read_prefix, read_ros_arguments
+from archgen.plugins.ros.launch.scope_run import ScopeRun
+
+CONTAINER_PACKAGE = "rclcpp_components"
+
+
+class NodeMaker:
+    """Makes nodes for a run, whose context says what is set."""
+
+    def __init__(self, run: ScopeRun) -> None:
+        self._run = run
+
+    def make_node(self, action: LaunchAction, form: str) -> LaunchedNode:
+        """Return the node, container or loaded node of an action."""
+        node = self._begin(action, form)
+        for key in ("package", "executable", "plugin", "name"):
+            setattr(node, key, self._resolve_key(node, action, key))
+        if form == "node" and node.package == CONTAINER_PACKAGE and node.executable.startswith("component_container"):
+            # Nav2 starts its container as a node.
+            node.form = "container"
+        node.is_lifecycle = bool(action.get("is_lifecycle"))
+        self._set_namespace(node, action)
+        self._set_remaps(node, action)
+        if form != "loaded":
+            self._set_process(node, action)
+            self._set_arguments(node, action)
+        self._set_parameters(node, action)
+        self._finish(node)
+        return node
+
+    def make_process(self, action: LaunchAction) -> LaunchedNode | None:
+        """Return the program that an action starts; None where its words are computed."""
+        node = self._begin(action, "program")
+        words: list[str] = []
+        for value in wrap_in_list(action.get("command")):
+            if value is None:
+                continue
+            text = self._run.context.resolve(value)
+            if isinstance(text, UnknownValue):
+                self._run.tell_computed(action.word, "a word of the command", text, action.span)
+                return None
+            words += split_words(text) if action.get("splits_words") else [text]
+        if not words:
+            self._run.add_note(action.word, "it has no command", action.span)
+            return None
+        node.command, node.name = words, self._resolve_key(node, action, "name")
+        self._set_process(node, action)
+        self._finish(node)
+        return node
+
+    def _begin(self, action: LaunchAction, form: str) -> LaunchedNode:
+        self._run.context.used = {}
+        scope = self._run.context.scope
+        node = LaunchedNode(form, action.word, action.span, action.span.file)
+        node.conditions = [words for words, _ in scope.conditions]
+        node.is_on = all(verdict is not False for _, verdict in scope.conditions)
+        return node
+
+    def _finish(self, node: LaunchedNode) -> None:
+        node.launch_arguments = dict(self._run.context.used)
+
+    def _resolve_key(self, node: LaunchedNode, action: LaunchAction, key: str) -> str:
+        """Return a text of a node; empty where it is absent or cannot be told."""
+        value = action.get(key)
+        if value is None:
+            return ""
+        text = self._run.context.resolve(value)
+        if isinstance(text, UnknownValue):
+            self._run.tell_computed(action.word, f"its {key}", text, action.span)
+            return ""
+        if OPEN in text:
+            self._run.add_note(
+                action.word, f"its {key} is known at the launch only: `{text}`", action.span, fate="noted"
+            )
+            node.written[key] = text
+            return ""
+        self._keep_written(node, key, value)
+        return text
+
+    def _keep_written(self, node: LaunchedNode, key: str, value: LaunchValue) -> None:
+        """Remember what stood where a launch argument was filled in."""
+        if isinstance(value, Substitution | list | tuple):
+            shown = describe_launch_value(value)
+            if "$(var " in shown and len(shown) <= 500:  # noqa: PLR2004 - a hint, not a file
+                node.written[key] = shown
+
+    def _set_namespace(self, node: LaunchedNode, action: LaunchAction) -> None:
+        outer = self._run.context.scope.namespace
+        value = action.get("namespace")
+        inner = self._run.context.resolve("" if value is None else value)
+        for part in (outer, inner):
+            if isinstance(part, UnknownValue):
+                self._run.tell_computed(action.word, "its namespace", part, action.span)
+                return
+        joined = join_names(str(outer), str(inner))
+        if OPEN in joined:
+            message = f"its namespace is known at the launch only: `{joined}`"
+            self._run.add_note(action.word, message, action.span, fate="noted")
+            node.written["namespace"] = joined
+            return
+        if value is not None:
+            self._keep_written(node, "namespace", value)
+        node.namespace = joined
+
+    def _set_remaps(self, node: LaunchedNode, action: LaunchAction) -> None:
+        # The first rule for a name counts. Those of the scope come first, in ROS 1 last.
+        around, own = list(self._run.context.scope.remaps), self._run.choose_values(action, action.get("remaps"))
+        pairs: list[Any] = [*reversed(own), *around] if self._run.context.is_ros_1 else [*around, *own]
+        for pair in pairs:
+            if isinstance(pair, UnknownValue) or not isinstance(pair, list | tuple) or len(pair) != 2:  # noqa: PLR2004
+                unknown = pair if isinstance(pair, UnknownValue) else UnknownValue(describe_launch_value(pair))
+                self._run.tell_computed(action.word, "a remap", unknown, action.span)
+                continue
+            self._add_remap(node, action, pair)
+
+    def _add_remap(self, node: LaunchedNode, action: LaunchAction, pair: Sequence[LaunchValue]) -> None:
+        own_name, name = (self._run.context.resolve(part) for part in pair)
+        unknown = next((each for each in (own_name, name) if isinstance(each, UnknownValue)), None)
+        if unknown is not None:
+            self._run.tell_computed(action.word, "a remap", unknown, action.span)
+            return
+        assert isinstance(own_name, str)  # noqa: S101 - nothing unknown is left
+        assert isinstance(name, str)  # noqa: S101 - as above
+        if self._run.context.is_ros_1:
+            own_name, name = clean_name(own_name), clean_name(name)
+        self._keep_written(node, f"remaps.{own_name}", pair[1])
+        node.remaps.setdefault(own_name, name)
+
+    def _set_process(self, node: LaunchedNode, action: LaunchAction) -> None:
+        context = self._run.context
+        node.respawn = action.get("respawn") is not None and context.judge(action.get("respawn")) is True
+        delay = action.get("respawn_delay")
+        delay_text = context.resolve(delay) if delay is not None else ""
+        node.respawn_delay = delay_text if isinstance(delay_text, str) and node.respawn else ""
+        for name, value in context.scope.environment:
+            node.environment[name] = value
+        given = action.get("environment")
+        pairs = given.items() if isinstance(given, Mapping) else _list_pairs(self._run.choose_values(action, given))
+        for name, value in pairs:
+            variable, setting = context.resolve(name), context.resolve(value)
+            if isinstance(variable, str) and isinstance(setting, str):
+                node.environment[variable] = setting
+            else:
+                unknown = setting if isinstance(setting, UnknownValue) else UnknownValue(describe_launch_value(name))
+                self._run.tell_computed(action.word, "a variable of its environment", unknown, action.span)
+        directory = context.resolve(action.get("directory")) if action.get("directory") is not None else ""
+        if isinstance(directory, UnknownValue):
+            self._run.tell_computed(action.word, "its folder", directory, action.span)
+        else:
+            node.directory = directory
+        prefix = context.resolve(action.get("prefix")) if action.get("prefix") is not None else ""
+        rest = prefix.reason if isinstance(prefix, UnknownValue) else read_prefix(node, prefix)
+        if rest:
+            self._run.add_note(action.word, f"what runs it is left out: `{rest}`", action.span)
+        host = context.resolve(action.get("host")) if action.get("host") is not None else ""
+        node.host = host if isinstance(host, str) else ""
+
+    def _set_arguments(self, node: LaunchedNode, action: LaunchAction) -> None:
+        words: list[str] = []
+        for key in ("arguments", "ros_arguments"):
+            given: list[str] = []
+            for value in wrap_in_list(action.get(key)):
+                text = self._run.context.resolve(value)
+                if isinstance(text, UnknownValue):
+                    self._run.tell_computed(action.word, "an argument of the program", text, action.span)
+                    continue
+                self._keep_written(node, "arguments", value)
+                given += split_words(text) if action.get("splits_words") else [text]
+            words += ["--ros-args", *given] if key == "ros_arguments" and given else given
+        node.arguments = words
+        if not self._run.context.is_ros_1:
+            read_ros_arguments(node, lambda path: self._add_file(node, path, "", None))
+        elif action.get("keeps_arguments") is not True:
+            read_nodelet(node)
+
+    def _set_parameters(self, node: LaunchedNode, action: LaunchAction) -> None:
+        own = self._run.choose_values(action, action.get("parameters"))
+        for entry in [*self._run.context.scope.parameters, *own]:
+            if isinstance(entry, Mapping):
+                for raw_name, value in entry.items():
+                    name = self._run.context.resolve(raw_name)
+                    if isinstance(name, str):
+                        self._set_parameter(node, action, name, value)
+                    else:
+                        self._run.tell_computed(action.word, "the name of a parameter", name, action.span)
+            else:
+                self._add_file_value(node, action, entry)
+
+    def _set_parameter(self, node: LaunchedNode, action: LaunchAction, name: str, value: LaunchValue) -> None:
+        found, others = split_parameter(evaluate_parameter(value, self._run.context), name)
+        for inner_name, other in others:
+            node.parameters.pop(inner_name, None)
+            node.parameter_commands.pop(inner_name, None)
+            if isinstance(other, UnknownValue):
+                self._run.tell_computed(action.word, f"the parameter `{inner_name}`", other, action.span)
+            elif other:
+                node.parameter_commands[inner_name] = list(other)
+        if found is not None:
+            self._keep_written(node, f"parameters.{name}", value)
+            # In ROS 1 a `/` in a parameter's name is a level of its tree.
+            for part in reversed(name.strip("/").split("/") if self._run.context.is_ros_1 else [name]):
+                found = {part: found}
+            overlay_parameters(node.parameters, found)
+            node.parameter_commands.pop(name, None)
+
+    def _add_file_value(self, node: LaunchedNode, action: LaunchAction, entry: LaunchValue) -> None:
+        if isinstance(entry, Substitution) and entry.kind == "typed":
+            entry = entry.parts[0]
+        is_file = isinstance(entry, Substitution) and entry.kind == FILE_KIND
+        value, namespace, changes = entry.parts if is_file else (entry, "", None)
+        text = self._run.context.resolve(value)
+        if isinstance(text, UnknownValue):
+            self._run.tell_computed(action.word, "a parameter file", text, action.span)
+            return
+        self._keep_written(node, "parameter_files", value)
+        self._add_file(
+            node, text, self._resolve_text(namespace), changes if isinstance(changes, FileRewrites) else None
+        )
+
+    def _resolve_text(self, value: LaunchValue) -> str:
+        text = self._run.context.resolve("" if value is None else value)
+        return text if isinstance(text, str) else ""
+
+    def _add_file(self, node: LaunchedNode, text: str, root_name: str, changes: FileRewrites | None) -> None:
+        """Add a parameter file: its name, and what it says to the node where it can be read."""
+        if not text:
+            return
+        path = self._run.files.find_file(text)
+        if self._run.context.is_ros_1:
+            self._add_ros_1_file(node, text, path, root_name)
+            return
+        # A file below a namespace is for the nodes of that namespace.
+        full_name = node.full_name.removeprefix(join_names("", root_name)) if root_name else node.full_name
+        values = None if path is None else self._run.parameter_reader.read_for_node(path, full_name or node.executable)
+        if path is not None:
+            text = self._run.files.name_file(path)
+        if text not in node.parameter_files and text.startswith("$("):
+            node.parameter_files.append(text)
+        if values is None:
+            words = "it is not read" if path is None else "it is no file of parameters of ROS 2"
+            self._run.add_note(FILE_KIND, f"`{text}`: {words}", node.span, fate="noted")
+            return
+        for name, value in (changes.change_values(values, self._run.context) if changes else values).items():
+            if isinstance(value, UnknownValue):
+                node.parameters.pop(name, None)
+                self._run.tell_computed(node.word, f"the parameter `{name}`", value, node.span)
+            else:
+                node.parameters[name] = value
+
+    def _add_ros_1_file(self, node: LaunchedNode, text: str, path: Path | None, inner_name: str) -> None:
+        """Add a file that ROS 1 loads below a node's name, or deeper."""
+        values = None if path is None else self._run.parameter_reader.read_whole(path)
+        if values is None:
+            self._run.add_note(FILE_KIND, f"`{text}`: it is not read", node.span, fate="noted")
+            if not inner_name and text not in node.parameter_files:
+                node.parameter_files.append(text)
+            return
+        for part in reversed(inner_name.split("/") if inner_name else []):
+            values = {part: values}
+        overlay_parameters(node.parameters, values)
+
+
+def wrap_in_list(value: LaunchValue) -> list[LaunchValue]:
+    """Return a list of values; of one value alone a list of it."""
+    if value is None:
+        return []
+    return list(value) if isinstance(value, list | tuple) else [value]
+
+
+def _list_pairs(value: LaunchValue) -> list[tuple[LaunchValue, LaunchValue]]:
+    return [(each[0], each[1]) for each in wrap_in_list(value) if isinstance(each, list | tuple) and len(each) == 2]  # noqa: PLR2004

@@ -1,0 +1,320 @@
+"""Work out expressions of launch files in Python from their syntax tree, as far as their text alone says what they are."""
+
+from __future__ import annotations
+
+import ast
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+from archgen.plugins.ros.launch.launch_actions import LaunchAction
+from archgen.plugins.ros.launch.launch_context import LaunchContext
+from archgen.plugins.ros.launch.launch_values import MAX_TEXT, LaunchValue, Substitution, UnknownValue, join_values
+from archgen.plugins.ros.launch.python_operators import MAX_ITEMS, combine_values, compare_values
+from archgen.plugins.ros.launch.python_values import (
+    BoundMethod,
+    CallArguments,
+    FunctionValue,
+    ImportedName,
+    ModuleValue,
+    NameScope,
+    RecordValue,
+)
+
+MAX_STEPS = 300_000
+MAX_DEPTH = 60
+_MAX_QUOTED = 80
+_NUMBERS = (int, float)
+_KNOWN_TEXTS = {"os.sep": "/", "os.path.sep": "/", "os.pathsep": ":"}
+
+
+class ExpressionReader(ABC):
+    """Reads expressions. `context` is there while a function is read that is called at the launch."""
+
+    def __init__(self, file: str, lines: list[str]) -> None:
+        self.file = file
+        self.context: LaunchContext | None = None
+        self._lines = lines
+        self._steps = 0
+        self._depth = 0
+        self._expression_readers: dict[type[ast.expr], Callable[[Any, NameScope], LaunchValue]] = {
+            ast.Constant: self._read_constant,
+            ast.Name: self._read_name,
+            ast.Attribute: self._read_attribute,
+            ast.List: self._read_list,
+            ast.Tuple: self._read_tuple,
+            ast.Set: self._read_set,
+            ast.Dict: self._read_dict,
+            ast.JoinedStr: self._read_joined_text,
+            ast.BinOp: self._read_operation,
+            ast.UnaryOp: self._read_unary_operation,
+            ast.BoolOp: self._read_truth_operation,
+            ast.Compare: self._read_comparison,
+            ast.IfExp: self._read_choice,
+            ast.Subscript: self._read_subscript,
+            ast.Lambda: self._read_lambda,
+            ast.NamedExpr: self._read_named_expression,
+            ast.Call: self._read_call,
+        }
+        """Who reads which kind of expression; any other kind is quoted."""
+
+    @abstractmethod
+    def call(self, function: LaunchValue, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        """Return what a call gives; made by the reader of calls."""
+
+    def quote(self, node: ast.AST) -> UnknownValue:
+        """Return an expression that only running it would tell, as it is written."""
+        line_number = getattr(node, "lineno", 0)
+        if not 0 < line_number <= len(self._lines):
+            return UnknownValue(type(node).__name__, line_number, self.file)
+        line = self._lines[line_number - 1].encode("utf-8", "replace")
+        is_one_line = getattr(node, "end_lineno", line_number) == line_number
+        end = getattr(node, "end_col_offset", len(line)) if is_one_line else len(line)
+        text = line[getattr(node, "col_offset", 0) : end].decode("utf-8", "replace").strip()
+        shown = text if len(text) <= _MAX_QUOTED else f"{text[:_MAX_QUOTED]}..."
+        return UnknownValue(shown if is_one_line or shown.endswith("...") else f"{shown}...", line_number, self.file)
+
+    @abstractmethod
+    def tell_lost(self, word: str, message: str, node: ast.AST) -> None:
+        """Note what is left out because only running it would tell; by the reader of the whole file."""
+
+    def count_steps(self, number: int) -> None:
+        """Count what takes the time of several steps."""
+        self._steps += number
+
+    def count_step(self) -> bool:
+        """Whether one more step may be taken."""
+        self._steps += 1
+        return self._steps <= MAX_STEPS
+
+    def evaluate(self, node: ast.expr, scope: NameScope) -> LaunchValue:
+        """Return what an expression stands for."""
+        reader = self._expression_readers.get(type(node))
+        if reader is None or self._depth >= MAX_DEPTH or not self.count_step():
+            return self.quote(node)
+        self._depth += 1
+        try:
+            return reader(node, scope)
+        finally:
+            self._depth -= 1
+
+    def force(self, value: LaunchValue) -> LaunchValue:
+        """Return a value with its substitutions filled in, where that is possible here."""
+        if isinstance(value, Substitution) and self.context is not None:
+            return self.context.resolve(value)
+        return value
+
+    def judge(self, value: LaunchValue) -> bool | None:
+        """Return whether Python takes a value for true; None where that is not known."""
+        found = self.force(value)
+        if found is None or isinstance(found, bool | int | float | str | list | tuple | dict):
+            return None if isinstance(found, str) and "$(" in found else bool(found)
+        return True if isinstance(found, LaunchAction | FunctionValue | ImportedName) else None
+
+    def _read_constant(self, node: ast.Constant, _scope: NameScope) -> LaunchValue:
+        is_plain = node.value is None or isinstance(node.value, bool | int | float | str)
+        return node.value if is_plain else self.quote(node)
+
+    def _read_name(self, node: ast.Name, scope: NameScope) -> LaunchValue:
+        is_known, value = scope.find(node.id)
+        return value if is_known else ImportedName(node.id)
+
+    def _read_attribute(self, node: ast.Attribute, scope: NameScope) -> LaunchValue:
+        owner = self.evaluate(node.value, scope)
+        if isinstance(owner, ImportedName):
+            name = f"{owner.name}.{node.attr}"
+            return _KNOWN_TEXTS.get(name) or ImportedName(name)
+        if isinstance(owner, ModuleValue):
+            is_known, value = owner.scope.find(node.attr)
+            return value if is_known else ImportedName(f"{owner.name}.{node.attr}")
+        if isinstance(owner, UnknownValue):
+            return self.quote(node)
+        if isinstance(owner, RecordValue) and node.attr not in owner.methods:
+            return owner.values.get(node.attr, self.quote(node))
+        if node.attr in {"parent", "name"} and isinstance(owner, str | Substitution):
+            return self._read_path_part(node, owner)
+        return BoundMethod(owner, node.attr)
+
+    def _read_path_part(self, node: ast.Attribute, owner: str | Substitution) -> LaunchValue:
+        if isinstance(owner, str):
+            head, _, tail = owner.rstrip("/").rpartition("/")
+            return head if node.attr == "parent" else tail
+        if owner.kind == "path" and len(owner.parts) > 1:
+            return Substitution("path", owner.parts[:-1]) if node.attr == "parent" else owner.parts[-1]
+        return self.quote(node)
+
+    def _read_list(self, node: ast.List, scope: NameScope) -> LaunchValue:
+        return list(self._read_items(node.elts, scope))
+
+    def _read_tuple(self, node: ast.Tuple, scope: NameScope) -> LaunchValue:
+        return tuple(self._read_items(node.elts, scope))
+
+    def _read_set(self, node: ast.Set, scope: NameScope) -> LaunchValue:
+        return list(self._read_items(node.elts, scope))
+
+    def _read_items(self, nodes: list[ast.expr], scope: NameScope) -> Iterator[LaunchValue]:
+        count = len(nodes)
+        for node in nodes:
+            if isinstance(node, ast.Starred):
+                value = self.evaluate(node.value, scope)
+                # What doubles in every line would fill the memory.
+                count += len(value) if isinstance(value, list | tuple) else 0
+                is_known = isinstance(value, list | tuple) and count <= MAX_ITEMS
+                yield from value if is_known else (self.quote(node),)
+            else:
+                yield self.evaluate(node, scope)
+
+    def _read_dict(self, node: ast.Dict, scope: NameScope) -> LaunchValue:
+        found: dict[LaunchValue, LaunchValue] = {}
+        for key_node, value_node in zip(node.keys, node.values, strict=True):
+            value = self.evaluate(value_node, scope)
+            if key_node is None:
+                if not isinstance(value, Mapping):
+                    return self.quote(node)
+                found |= value
+                continue
+            key = self.evaluate(key_node, scope)
+            if isinstance(key, UnknownValue | list | dict):
+                return self.quote(node)
+            try:
+                found[key] = value
+            except TypeError:
+                return self.quote(node)
+        return found
+
+    def _read_joined_text(self, node: ast.JoinedStr, scope: NameScope) -> LaunchValue:
+        parts: list[LaunchValue] = []
+        for part in node.values:
+            value = (
+                self.evaluate(part.value, scope) if isinstance(part, ast.FormattedValue) else self.evaluate(part, scope)
+            )
+            is_formatted = isinstance(part, ast.FormattedValue) and part.format_spec is not None
+            if is_formatted or not isinstance(value, str | int | float | bool | Substitution):
+                return self.quote(node)
+            # In a text Python writes `True`, not `true`.
+            parts.append(str(value) if isinstance(value, bool) else value)
+        return join_values(parts) if parts else ""
+
+    def _read_operation(self, node: ast.BinOp, scope: NameScope) -> LaunchValue:
+        left, right = self.evaluate(node.left, scope), self.evaluate(node.right, scope)
+        return self.combine(node.op, left, right, node)
+
+    def combine(self, sign: ast.operator, left: LaunchValue, right: LaunchValue, node: ast.AST) -> LaunchValue:
+        """Return what an operator makes of two values."""
+        made = combine_values(sign, left, right)
+        return self.quote(node) if made is None else made
+
+    def _read_unary_operation(self, node: ast.UnaryOp, scope: NameScope) -> LaunchValue:
+        value = self.evaluate(node.operand, scope)
+        if isinstance(node.op, ast.Not):
+            verdict = self.judge(value)
+            return self.quote(node) if verdict is None else not verdict
+        is_number = isinstance(value, _NUMBERS) and not isinstance(value, bool)
+        if is_number and isinstance(node.op, ast.USub | ast.UAdd):
+            return -value if isinstance(node.op, ast.USub) else value
+        return self.quote(node)
+
+    def _read_truth_operation(self, node: ast.BoolOp, scope: NameScope) -> LaunchValue:
+        is_or = isinstance(node.op, ast.Or)
+        value: LaunchValue = None
+        for part in node.values:
+            value = self.evaluate(part, scope)
+            verdict = self.judge(value)
+            if verdict is None:
+                return self.quote(node)
+            if verdict == is_or:
+                return value
+        return value
+
+    def _read_comparison(self, node: ast.Compare, scope: NameScope) -> LaunchValue:
+        values = [self.force(self.evaluate(each, scope)) for each in (node.left, *node.comparators)]
+        for sign, left, right in zip(node.ops, values, values[1:], strict=False):
+            verdict = compare_values(sign, left, right)
+            if verdict is None:
+                return self.quote(node)
+            if not verdict:
+                return False
+        return True
+
+    def _read_choice(self, node: ast.IfExp, scope: NameScope) -> LaunchValue:
+        verdict = self.judge(self.evaluate(node.test, scope))
+        if verdict is None:
+            return self.quote(node)
+        return self.evaluate(node.body if verdict else node.orelse, scope)
+
+    def _read_subscript(self, node: ast.Subscript, scope: NameScope) -> LaunchValue:
+        owner = self.evaluate(node.value, scope)
+        if isinstance(node.slice, ast.Slice):
+            return self._read_slice(node, owner, node.slice, scope)
+        key = self.evaluate(node.slice, scope)
+        if isinstance(owner, ImportedName) and owner.name == "os.environ":
+            return Substitution("env", (key,))
+        if isinstance(owner, BoundMethod) and owner.name == "launch_configurations":
+            return Substitution("var", (key,))
+        if isinstance(owner, Mapping | list | tuple | str) and isinstance(key, str | int):
+            try:
+                return owner[key]  # type: ignore[index]
+            except (KeyError, IndexError, TypeError):
+                return self.quote(node)
+        return self.quote(node)
+
+    def _read_slice(self, node: ast.Subscript, owner: LaunchValue, span: ast.Slice, scope: NameScope) -> LaunchValue:
+        ends = [None if each is None else self.evaluate(each, scope) for each in (span.lower, span.upper, span.step)]
+        if not isinstance(owner, str | list | tuple) or any(
+            end is not None and not isinstance(end, int) for end in ends
+        ):
+            return self.quote(node)
+        try:
+            return owner[slice(*ends)]
+        except ValueError:
+            return self.quote(node)
+
+    def _read_lambda(self, node: ast.Lambda, scope: NameScope) -> LaunchValue:
+        return FunctionValue(node, scope, self)
+
+    def _read_named_expression(self, node: ast.NamedExpr, scope: NameScope) -> LaunchValue:
+        scope.values[node.target.id] = value = self.evaluate(node.value, scope)
+        return value
+
+    def assign(self, target: ast.expr, value: LaunchValue, scope: NameScope) -> None:
+        """Give a value to a name, to several names, or to a place in a list or dict."""
+        if isinstance(target, ast.Name):
+            scope.values[target.id] = value
+        elif isinstance(target, ast.Tuple | ast.List):
+            items = list_loop_items(value) if not isinstance(value, Mapping) else None
+            fits = items is not None and len(items) == len(target.elts)
+            for number, each in enumerate(target.elts):
+                self.assign(each, items[number] if fits and items else self.quote(target), scope)
+        elif isinstance(target, ast.Subscript):
+            self._assign_entry(target, value, scope)
+
+    def _assign_entry(self, target: ast.Subscript, value: LaunchValue, scope: NameScope) -> None:
+        owner, key = self.evaluate(target.value, scope), self.evaluate(target.slice, scope)
+        if isinstance(owner, dict) and isinstance(key, str | int):
+            owner[key] = value
+        elif isinstance(owner, list) and isinstance(key, int):
+            if -len(owner) <= key < len(owner):
+                owner[key] = value
+        elif isinstance(owner, dict | list):
+            self.tell_lost("=", f"which entry `{self.quote(target).reason}` is, is computed", target)
+
+    def _read_call(self, node: ast.Call, scope: NameScope) -> LaunchValue:
+        function = self.evaluate(node.func, scope)
+        positional = list(self._read_items(node.args, scope))
+        named: dict[str, LaunchValue] = {}
+        for keyword in node.keywords:
+            value = self.evaluate(keyword.value, scope)
+            if keyword.arg is not None:
+                named[keyword.arg] = value
+            elif isinstance(value, Mapping):
+                named |= {str(key): inner for key, inner in value.items()}
+            else:
+                self.tell_lost("call", "arguments of it are computed", keyword.value)
+        return self.call(function, CallArguments(positional, named), node)
+
+
+def list_loop_items(value: LaunchValue) -> list[LaunchValue] | None:
+    """Return what a loop over a value takes one after the other; None where that is not known."""
+    if isinstance(value, list | tuple | Mapping):
+        return list(value)[:MAX_ITEMS] if len(value) <= MAX_ITEMS else None
+    return list(value) if isinstance(value, str) and len(value) <= MAX_TEXT else None

@@ -1,0 +1,167 @@
+"""What methods of values do in launch files in Python: of lists, dicts, texts, and of the description that is launched."""
+
+from __future__ import annotations
+
+import ast
+from abc import abstractmethod
+from collections.abc import Mapping
+
+from archgen.plugin.importing import Span
+from archgen.plugins.ros.launch.launch_actions import LaunchAction
+from archgen.plugins.ros.launch.launch_values import OPEN_FILE, LaunchValue, Substitution, UnknownValue, join_values
+from archgen.plugins.ros.launch.python_operators import MANY_ITEMS, MAX_ITEMS, fill_text
+from archgen.plugins.ros.launch.python_statements import StatementReader
+from archgen.plugins.ros.launch.python_values import BoundMethod, CallArguments
+
+_TEXT_METHODS = frozenset(
+    {"lower", "upper", "strip", "lstrip", "rstrip", "replace", "split", "startswith", "endswith", "title"}
+)
+_SAME_METHODS = frozenset(
+    {"perform", "as_posix", "resolve", "absolute", "toxml", "toprettyxml", "expanduser", "copy", "string"}
+)
+
+
+class MethodReader(StatementReader):
+    """Reads calls of methods."""
+
+    @abstractmethod
+    def place(self, node: ast.AST) -> Span:
+        """Return where a part of the file stands; by the reader of the whole file."""
+
+    @abstractmethod
+    def read_yaml(self, path: LaunchValue, node: ast.AST) -> LaunchValue:
+        """Return what a file says, as a mapping; an UnknownValue where it cannot be read; by the reader of the whole file."""
+
+    @abstractmethod
+    def has_file(self, path: LaunchValue) -> bool:
+        """Whether a file lies in the folders that were given; by the reader of the whole file."""
+
+    @abstractmethod
+    def list_names(self, folder: LaunchValue) -> list[str]:
+        """Return the names of the files in a folder; by the reader of the whole file."""
+
+    def add_children(self, action: LaunchAction, value: LaunchValue, depth: int = 0) -> None:
+        """Put what a value holds into an action, list by list."""
+        if value is None or depth > 20 or not self.count_step():  # noqa: PLR2004 - lists in lists
+            return
+        if isinstance(value, LaunchAction):
+            action.children.append(value)
+        elif isinstance(value, list | tuple):
+            for item in value:
+                self.add_children(action, item, depth + 1)
+        elif isinstance(value, UnknownValue):
+            line = value.line or action.span.line
+            span = Span(value.file or action.span.file, line, 1, line, 2)
+            reason = f"what it gives is computed: `{value.reason}`"
+            action.children.append(LaunchAction("unread", _name_call(value.reason), span, {"reason": reason}))
+
+    def call_method(self, method: BoundMethod, arguments: CallArguments, node: ast.Call) -> LaunchValue:  # noqa: C901, PLR0911, PLR0912
+        """Return what a method gives; what it changes is changed."""
+        owner, name = method.owner, method.name
+        if name == "perform_substitution":
+            return arguments.get(0, "substitution")
+        if name == "get" and isinstance(owner, BoundMethod) and owner.name == "launch_configurations":
+            return Substitution("var", tuple(arguments.positional[:2]))
+        if isinstance(owner, LaunchAction) and name in {"add_action", "add_entity"}:
+            self.add_children(owner, arguments.get(0, "action", "entity"))
+            if owner.children and self.conditions and not owner.children[-1].conditions:
+                owner.children[-1].conditions += self.conditions
+            return None
+        if name == "read" and isinstance(owner, Substitution) and owner.kind == OPEN_FILE:
+            # What a file holds is what printing it gives.
+            return Substitution("command", (["cat ", owner.parts[0]],))
+        if name == "find" and isinstance(owner, Substitution) and owner.kind in {"share", "prefix"}:
+            return Substitution(owner.kind, (arguments.get(0, "package_name"),))
+        if name in _SAME_METHODS and isinstance(owner, str | Substitution):
+            return owner
+        if isinstance(owner, list):
+            return self._call_list_method(owner, name, arguments, node)
+        if isinstance(owner, dict):
+            return self._call_dict_method(owner, name, arguments, node)
+        if name == "join" and isinstance(owner, str):
+            return self._join_texts(owner, arguments.get(0), node)
+        if name == "joinpath" and isinstance(owner, str | Substitution):
+            return Substitution("path", (owner, *arguments.positional))
+        if name == "format" and isinstance(owner, str):
+            return self._format_text(owner, arguments, node)
+        text = self.force(owner)
+        if (
+            name in _TEXT_METHODS
+            and isinstance(text, str)
+            and all(isinstance(each, str) for each in arguments.positional)
+        ):
+            found: LaunchValue = getattr(text, name)(*arguments.positional) if len(arguments.positional) <= 2 else None  # noqa: PLR2004
+            return found if not isinstance(found, str) or len(found) <= 2 * len(text) + 100 else self.quote(node)
+        return self.quote(node)
+
+    def _call_list_method(
+        self, owner: list[LaunchValue], name: str, arguments: CallArguments, node: ast.Call
+    ) -> LaunchValue:
+        value = arguments.get(0)
+        if name == "append":
+            owner.append(self._with_conditions(value))
+        elif name == "extend":
+            items = list(value) if isinstance(value, list | tuple) else [value]
+            if len(owner) + len(items) > MAX_ITEMS:
+                self.tell_lost("extend", MANY_ITEMS, node)
+            else:
+                owner += map(self._with_conditions, items)
+        elif name == "insert" and len(arguments.positional) == 2 and isinstance(value, int):  # noqa: PLR2004 - place and value
+            owner.insert(value, self._with_conditions(arguments.positional[1]))
+        elif name == "copy":
+            return list(owner)
+        else:
+            return self.quote(node)
+        return None
+
+    def _with_conditions(self, value: LaunchValue) -> LaunchValue:
+        """Return an action that is added only if the conditions around hold."""
+        if isinstance(value, LaunchAction):
+            value.conditions += [each for each in self.conditions if each not in value.conditions]
+        return value
+
+    def _call_dict_method(  # noqa: C901, PLR0911 - a method each
+        self, owner: dict[LaunchValue, LaunchValue], name: str, arguments: CallArguments, node: ast.Call
+    ) -> LaunchValue:
+        value = arguments.get(0)
+        match name:
+            case "update":
+                if isinstance(value, Mapping):
+                    owner |= value
+                elif value is not None:
+                    self.tell_lost("update", f"what it adds is computed: `{self.quote(node).reason}`", node)
+                owner |= arguments.named
+                return None
+            case "items":
+                return [[key, each] for key, each in owner.items()]
+            case "keys":
+                return list(owner)
+            case "values":
+                return list(owner.values())
+            case "copy":
+                return dict(owner)
+            case "get" if isinstance(value, str | int):
+                return owner.get(value, arguments.get(1, "default"))
+            case "pop" if isinstance(value, str | int):
+                return owner.pop(value, arguments.get(1))
+            case "setdefault" if isinstance(value, str | int):
+                return owner.setdefault(value, arguments.get(1))
+        return self.quote(node)
+
+    def _join_texts(self, separator: str, items: LaunchValue, node: ast.Call) -> LaunchValue:
+        if not isinstance(items, list | tuple) or not all(isinstance(item, str | Substitution) for item in items):
+            return self.quote(node)
+        parts: list[LaunchValue] = []
+        for item in items:
+            parts += [separator, item] if parts and separator else [item]
+        return join_values(parts) if parts else ""
+
+    def _format_text(self, text: str, arguments: CallArguments, node: ast.Call) -> LaunchValue:
+        made = None if arguments.named else fill_text(text.split("{}"), arguments.positional, "{")
+        return self.quote(node) if made is None else made
+
+
+def _name_call(text: str) -> str:
+    """Return the name of what is called, for the kind of a note."""
+    name = text.partition("(")[0].strip()
+    return name.rpartition(".")[2] if name.replace(".", "").replace("_", "").isalnum() else "expression"

@@ -1,0 +1,291 @@
+"""Follow the statements of launch files in Python: names that are given values, conditions, loops, functions."""
+
+from __future__ import annotations
+
+import ast
+from abc import abstractmethod
+from collections.abc import Callable
+from typing import Any, Literal
+
+from archgen.plugins.ros.launch.launch_actions import LaunchCondition
+from archgen.plugins.ros.launch.launch_values import LaunchValue, UnknownValue
+from archgen.plugins.ros.launch.python_branches import BranchRecord, Container, merge_names
+from archgen.plugins.ros.launch.python_comprehensions import ComprehensionReader
+from archgen.plugins.ros.launch.python_expressions import MAX_DEPTH, list_loop_items
+from archgen.plugins.ros.launch.python_operators import MANY_ITEMS, MAX_ITEMS
+from archgen.plugins.ros.launch.python_values import CallArguments, FunctionValue, ImportedName, ModuleValue, NameScope
+
+Ending = Literal["", "return", "break", "continue", "raise"]
+"""How a block ended."""
+_MAX_FUNCTIONS = 20
+_REMEMBERED_IN_A_STEP = 10
+
+
+class StatementReader(ComprehensionReader):
+    """Follows statements. What a function may return stands in its scope."""
+
+    def __init__(self, file: str, lines: list[str]) -> None:
+        super().__init__(file, lines)
+        self.conditions: list[LaunchCondition] = []
+        """The conditions around that are not known: what is made there counts only if they hold."""
+        self._functions = 0
+        self._statement_runners: dict[type[ast.stmt], Callable[[Any, NameScope], Ending]] = {
+            ast.Assign: self._run_assignment,
+            ast.AnnAssign: self._run_annotated_assignment,
+            ast.AugAssign: self._run_augmented_assignment,
+            ast.Expr: self._run_expression,
+            ast.Import: self._run_import,
+            ast.ImportFrom: self._run_import_from,
+            ast.FunctionDef: self._run_definition,
+            ast.Return: self._run_return,
+            ast.Raise: self._run_raise,
+            ast.Break: self._run_break,
+            ast.Continue: self._run_continue,
+            ast.With: self._run_with,
+            ast.Try: self._run_try,
+            ast.If: self._run_if,
+            ast.For: self._run_for,
+            ast.While: self._run_while,
+        }
+        """Who follows which kind of statement; any other kind is passed over."""
+
+    @abstractmethod
+    def tell_noted(self, word: str, message: str, node: ast.AST) -> None:
+        """Note what is taken otherwise than it is written; by the reader of the whole file."""
+
+    @abstractmethod
+    def load_module(self, name: str) -> ModuleValue | None:
+        """Return a module that lies beside the file; by the reader of the whole file."""
+
+    def run_block(self, statements: list[ast.stmt], scope: NameScope) -> Ending:
+        """Follow statements in their order."""
+        for statement in statements:
+            ending = self._run_statement(statement, scope)
+            if ending:
+                return ending
+        return ""
+
+    def _run_statement(self, statement: ast.stmt, scope: NameScope) -> Ending:
+        runner = self._statement_runners.get(type(statement))
+        if runner is None or self._depth >= MAX_DEPTH or not self.count_step():
+            return ""
+        self._depth += 1
+        try:
+            return runner(statement, scope)
+        finally:
+            self._depth -= 1
+
+    def _run_assignment(self, statement: ast.Assign, scope: NameScope) -> Ending:
+        value = self.evaluate(statement.value, scope)
+        for target in statement.targets:
+            self.assign(target, value, scope)
+        return ""
+
+    def _run_annotated_assignment(self, statement: ast.AnnAssign, scope: NameScope) -> Ending:
+        if statement.value is not None:
+            self.assign(statement.target, self.evaluate(statement.value, scope), scope)
+        return ""
+
+    def _run_augmented_assignment(self, statement: ast.AugAssign, scope: NameScope) -> Ending:
+        if not isinstance(statement.target, ast.Name):
+            return ""
+        old, new = scope.find(statement.target.id)[1], self.evaluate(statement.value, scope)
+        if isinstance(old, list) and isinstance(statement.op, ast.Add):
+            items = new if isinstance(new, list | tuple) else [new]
+            if len(old) + len(items) > MAX_ITEMS:
+                self.tell_lost("+=", MANY_ITEMS, statement)
+            else:
+                old += items
+        else:
+            scope.values[statement.target.id] = self.combine(statement.op, old, new, statement)
+        return ""
+
+    def _run_expression(self, statement: ast.Expr, scope: NameScope) -> Ending:
+        self.evaluate(statement.value, scope)
+        return ""
+
+    def _run_import(self, statement: ast.Import, scope: NameScope) -> Ending:
+        for alias in statement.names:
+            name = alias.name if alias.asname else alias.name.partition(".")[0]
+            scope.values[alias.asname or name] = self.load_module(name) or ImportedName(name)
+        return ""
+
+    def _run_import_from(self, statement: ast.ImportFrom, scope: NameScope) -> Ending:
+        module = self.load_module(statement.module or "")
+        for alias in statement.names:
+            is_known, value = module.scope.find(alias.name) if module else (False, None)
+            if alias.name != "*":
+                imported = ImportedName(f"{statement.module or ''}.{alias.name}")
+                scope.values[alias.asname or alias.name] = value if is_known else imported
+            elif module:
+                scope.values |= module.scope.values
+        return ""
+
+    def _run_definition(self, statement: ast.FunctionDef, scope: NameScope) -> Ending:
+        scope.values[statement.name] = FunctionValue(statement, scope, self)
+        return ""
+
+    def _run_return(self, statement: ast.Return, scope: NameScope) -> Ending:
+        value = self.evaluate(statement.value, scope) if statement.value is not None else None
+        # A list goes on to change where the way that does not return here is followed.
+        scope.returned.append(list(value) if isinstance(value, list) and self.conditions else value)
+        return "return"
+
+    def _run_raise(self, _statement: ast.Raise, _scope: NameScope) -> Ending:
+        return "raise"
+
+    def _run_break(self, _statement: ast.Break, _scope: NameScope) -> Ending:
+        return "break"
+
+    def _run_continue(self, _statement: ast.Continue, _scope: NameScope) -> Ending:
+        return "continue"
+
+    def _run_with(self, statement: ast.With, scope: NameScope) -> Ending:
+        for item in statement.items:
+            value = self.evaluate(item.context_expr, scope)
+            if item.optional_vars is not None:
+                self.assign(item.optional_vars, value, scope)
+        return self.run_block(statement.body, scope)
+
+    def _run_try(self, statement: ast.Try, scope: NameScope) -> Ending:
+        ending = self.run_block([*statement.body, *statement.orelse], scope)
+        if ending == "raise" and statement.handlers:
+            ending = self.run_block(statement.handlers[0].body, scope)
+        return self.run_block(statement.finalbody, scope) or ending
+
+    def _run_if(self, statement: ast.If, scope: NameScope) -> Ending:
+        test = self.evaluate(statement.test, scope)
+        verdict = self.judge(test)
+        if verdict is None:
+            return self._run_both(statement, scope)
+        if self.context is not None and not _is_plain_name_test(statement.test):
+            words = "holds" if verdict else "does not hold"
+            message = f"`{self.quote(statement.test).reason}` {words} by the defaults: the other way is not read"
+            self.tell_noted("if", message, statement.test)
+        return self.run_block(statement.body if verdict else statement.orelse, scope)
+
+    def _run_both(self, statement: ast.If, scope: NameScope) -> Ending:
+        """Follow both ways of a condition that is not known; what differs behind it is not known either."""
+        test, depth = self.quote(statement.test), len(self.conditions)
+        before = dict(scope.values)
+        record = BranchRecord(scope)
+        self.count_steps(record.size // _REMEMBERED_IN_A_STEP)
+        endings: list[Ending] = []
+        names: list[dict[LaunchValue, LaunchValue]] = []
+        contents: list[list[Container]] = []
+        for block, is_negated in ((statement.body, False), (statement.orelse, True)):
+            scope.values = dict(before)
+            self.conditions.append(LaunchCondition(test, is_negated))
+            endings.append(self.run_block(block, scope))
+            del self.conditions[depth:]
+            names.append(dict(scope.values))
+            contents.append(record.take_outcome())
+        gone = [ending in {"return", "raise"} for ending in endings]
+        if gone[0] != gone[1]:
+            # What follows is reached by the other way only.
+            stays = int(gone[0])
+            record.put_back(contents[stays])
+            merged = names[stays]
+        else:
+            record.merge_outcomes(contents[0], contents[1], test)
+            merged = merge_names(names[0], names[1], test)
+        scope.values = {name: value for name, value in merged.items() if isinstance(name, str)}
+        first, second = endings
+        if first and second:
+            # Nothing behind it is reached. What may go on in another round does.
+            return next(ending for ending in ("continue", "break", "return", "raise") if ending in endings)
+        if first or second:
+            self.conditions.append(LaunchCondition(test, is_negated=bool(first)))
+        return ""
+
+    def _run_for(self, statement: ast.For, scope: NameScope) -> Ending:
+        items = list_loop_items(self.evaluate(statement.iter, scope))
+        if items is None:
+            repeated = self.quote(statement.iter)
+            self.tell_noted("for", f"how often is computed: `{repeated.reason}`; what is in it is read once", statement)
+            items = [repeated]
+        for item in items:
+            if not self.count_step():
+                break
+            self.assign(statement.target, item, scope)
+            depth = len(self.conditions)
+            ending = self.run_block(statement.body, scope)
+            del self.conditions[depth:]
+            if ending == "break":
+                return ""
+            if ending in {"return", "raise"}:
+                return ending
+        return self.run_block(statement.orelse, scope)
+
+    def _run_while(self, statement: ast.While, scope: NameScope) -> Ending:
+        for _ in range(MAX_ITEMS):
+            verdict = self.judge(self.evaluate(statement.test, scope))
+            if verdict is False or not self.count_step():
+                break
+            if verdict is None:
+                self.tell_noted("while", "how often is computed; what is in it is read once", statement)
+            depth = len(self.conditions)
+            ending = self.run_block(statement.body, scope)
+            del self.conditions[depth:]
+            if ending in {"return", "raise"}:
+                return ending
+            if ending == "break" or verdict is None:
+                return ""
+        return self.run_block(statement.orelse, scope)
+
+    def call_function(self, function: FunctionValue, arguments: CallArguments, node: ast.AST) -> LaunchValue:
+        """Return what a function of the file gives."""
+        if self._functions >= _MAX_FUNCTIONS or not self.count_step():
+            return self.quote(node)
+        if isinstance(function.reader, StatementReader) and function.reader is not self:
+            return function.reader.call_from(self, function, arguments)
+        scope = NameScope(function.scope)
+        self._bind_arguments(function, arguments, scope)
+        self._functions += 1
+        depth = len(self.conditions)
+        try:
+            if isinstance(function.definition, ast.Lambda):
+                return self.evaluate(function.definition.body, scope)
+            self.run_block(function.definition.body, scope)
+        finally:
+            self._functions -= 1
+            del self.conditions[depth:]
+        returned = scope.returned
+        if len(returned) > 1:
+            # Several conditions that are not known led to several ends: what they start is taken together, once each.
+            items = [item for value in returned for item in (value if isinstance(value, list | tuple) else [value])]
+            return list({id(item): item for item in items if item is not None}.values())
+        return returned[0] if returned else None
+
+    def call_from(self, caller: StatementReader, function: FunctionValue, arguments: CallArguments) -> LaunchValue:
+        """Return what a function of this module gives that another file calls."""
+        before = self.context, self.conditions, self._functions
+        self.context, self.conditions, self._functions = caller.context, caller.conditions, caller._functions
+        try:
+            return self.call_function(function, arguments, function.definition)
+        finally:
+            self.context, self.conditions, self._functions = before
+
+    def _bind_arguments(self, function: FunctionValue, arguments: CallArguments, scope: NameScope) -> None:
+        declared = function.definition.args
+        names = [each.arg for each in (*declared.posonlyargs, *declared.args)]
+        for name, default in zip(reversed(names), reversed(declared.defaults), strict=False):
+            scope.values[name] = self.evaluate(default, function.scope)
+        for each, keyword_default in zip(declared.kwonlyargs, declared.kw_defaults, strict=True):
+            if keyword_default is not None:
+                scope.values[each.arg] = self.evaluate(keyword_default, function.scope)
+        scope.values |= dict(zip(names, arguments.positional, strict=False))
+        known_names = {*names, *(each.arg for each in declared.kwonlyargs)}
+        scope.values |= {name: value for name, value in arguments.named.items() if name in known_names}
+        if declared.vararg:
+            scope.values[declared.vararg.arg] = list(arguments.positional[len(names) :])
+        if declared.kwarg:
+            rest = {name: value for name, value in arguments.named.items() if name not in known_names}
+            scope.values[declared.kwarg.arg] = rest
+        for name in sorted(known_names - scope.values.keys()):
+            scope.values[name] = UnknownValue(name, function.definition.lineno, self.file)
+
+
+def _is_plain_name_test(test: ast.expr) -> bool:
+    """Whether a condition is `__name__ == "__main__"`."""
+    return isinstance(test, ast.Compare) and isinstance(test.left, ast.Name) and test.left.id == "__name__"

@@ -1,0 +1,187 @@
+"""What actions of launch files set for those behind them: arguments, namespaces, remaps, parameters, the environment."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from archgen.plugin.importing import ImportNote, Span
+from archgen.plugins.ros.launch.launch_actions import ActionKind, ConditionalValue, LaunchAction
+from archgen.plugins.ros.launch.launch_arguments import DeclaredArgument, LaunchArguments
+from archgen.plugins.ros.launch.launch_context import LaunchContext
+from archgen.plugins.ros.launch.launch_files import LaunchFiles
+from archgen.plugins.ros.launch.launch_parameter_files import FILE_KIND, ParameterFileReader
+from archgen.plugins.ros.launch.launch_values import (
+    OPEN,
+    LaunchValue,
+    Substitution,
+    UnknownValue,
+    describe_launch_value,
+)
+from archgen.plugins.ros.launch.launched_nodes import clean_name, join_names
+
+
+class ScopeRun:
+    """Walks through what sets something. Notes are kept here, each one once for a place."""
+
+    def __init__(self, files: LaunchFiles, arguments: LaunchArguments) -> None:
+        self.files, self.arguments = files, arguments
+        self.parameter_reader = ParameterFileReader()
+        self.context = LaunchContext()
+        self.notes: list[ImportNote] = []
+        self.hosts: dict[str, str] = {}
+        """The machines of ROS 1, with their addresses."""
+        self.open_files: list[Path] = []
+        """The files that are read just now, each included by the one before."""
+        self._seen_notes: set[tuple[str, str, int, str]] = set()
+        self._handlers: dict[ActionKind, Callable[[LaunchAction], None]] = {
+            "argument": self._run_argument,
+            "configure": self._run_configure,
+            "namespace": self._run_namespace,
+            "parameter": self._run_parameter,
+            "parameter_file": self._run_parameter_file,
+            "remap": self._run_remap,
+            "environment": self._run_environment,
+            "host": self._run_host,
+        }
+        """Who walks through which kind of action; any other kind is not read."""
+
+    def _run_argument(self, action: LaunchAction) -> None:
+        name = self.context.resolve(action.get("name"))
+        if isinstance(name, UnknownValue):
+            self._tell_computed(action, "its name", name)
+            return
+        if self._can_be_set():
+            self.arguments.declare(name, DeclaredArgument(action.span, self._read_choices(action)))
+        default = action.get("default")
+        if name not in self.context.scope.configurations and default is not None:
+            value = self.context.resolve(default)
+            if isinstance(value, UnknownValue):
+                self.add_note(
+                    action.word, f"the default of `{name}` is computed: `{value.reason}`", action.span, fate="noted"
+                )
+            self.context.scope.configurations[name] = value
+        if default is None and name not in self.context.scope.configurations:
+            message = f"the argument `{name}` has no default: what it gives stays `{describe_launch_value(Substitution('var', (name,)))}`"
+            self.add_note(action.word, message, action.span, fate="noted")
+
+    def _can_be_set(self) -> bool:
+        """Whether arguments of this file can be set on the command line: in ROS 1 only those of the file that is launched."""
+        return not self.context.is_ros_1 or len(self.open_files) == 1
+
+    def _read_choices(self, action: LaunchAction) -> tuple[str, ...]:
+        choices = action.get("choices")
+        texts = [self.context.resolve(each) for each in choices] if isinstance(choices, list | tuple) else []
+        plain_texts = tuple(text for text in texts if isinstance(text, str) and OPEN not in text)
+        return plain_texts if len(plain_texts) == len(texts) else ()
+
+    def _run_configure(self, action: LaunchAction) -> None:
+        name = self.context.resolve(action.get("name"))
+        if not isinstance(name, str):
+            self._tell_computed(action, "its name", name)
+            return
+        if action.get("is_fixed") and self._can_be_set():
+            self.arguments.declare(name, DeclaredArgument(action.span, is_fixed=True))
+        value = self.context.resolve(action.get("value"))
+        verdicts = [self.context.judge_condition(condition) for condition in action.conditions]
+        unsure = next((words for words, verdict in verdicts if verdict is None), None)
+        if unsure is not None and self.context.scope.configurations.get(name) != value:
+            value = UnknownValue(f"either way of `{unsure}`", action.span.line, action.span.file)
+        self.context.scope.configurations[name] = value
+
+    def _run_namespace(self, action: LaunchAction) -> None:
+        self.push_namespace(action, action.get("namespace"))
+
+    def push_namespace(self, action: LaunchAction, value: LaunchValue) -> None:
+        """Go into a namespace."""
+        text = self.context.resolve(value)
+        scope = self.context.scope
+        if isinstance(text, UnknownValue):
+            self._tell_computed(action, "the namespace", text)
+            scope.namespace = text
+        elif isinstance(scope.namespace, str):
+            scope.namespace = join_names(scope.namespace, text)
+
+    def _run_parameter(self, action: LaunchAction) -> None:
+        name = self.context.resolve(action.get("name"))
+        if isinstance(name, UnknownValue):
+            self._tell_computed(action, "its name", name)
+        else:
+            self.context.scope.parameters = (*self.context.scope.parameters, {name: action.get("value")})
+
+    def _run_parameter_file(self, action: LaunchAction) -> None:
+        file = Substitution(FILE_KIND, (action.get("file"), "", None))
+        self.context.scope.parameters = (*self.context.scope.parameters, file)
+
+    def _run_remap(self, action: LaunchAction) -> None:
+        pair = (self.context.resolve(action.get("from")), self.context.resolve(action.get("to")))
+        own_name, name = pair
+        if isinstance(own_name, UnknownValue) or isinstance(name, UnknownValue):
+            self._tell_computed(action, "the name", next(each for each in pair if isinstance(each, UnknownValue)))
+        else:
+            scope = self.context.scope
+            if self.context.is_ros_1:
+                own_name, name = clean_name(own_name), clean_name(name)
+            # In ROS 1 a later rule for a name takes the place of an earlier one, in ROS 2 the first one counts.
+            kept = [pair for pair in scope.remaps if not (self.context.is_ros_1 and pair[0] == own_name)]
+            scope.remaps = (*kept, (own_name, name))
+
+    def _run_environment(self, action: LaunchAction) -> None:
+        name, value = self.context.resolve(action.get("name")), self.context.resolve(action.get("value"))
+        if isinstance(name, str) and isinstance(value, str):
+            self.context.scope.environment = (*self.context.scope.environment, (name, value))
+        else:
+            self._tell_computed(
+                action, "the value", value if isinstance(value, UnknownValue) else UnknownValue(str(name))
+            )
+
+    def _run_host(self, action: LaunchAction) -> None:
+        name = self.context.resolve(action.get("name"))
+        address = self.context.resolve(action.get("address", ""))
+        if isinstance(name, str):
+            self.hosts[name] = address if isinstance(address, str) else ""
+
+    def resolve_pairs(self, pairs: LaunchValue) -> list[tuple[str, LaunchValue]]:
+        """Return pairs of a name and a value, filled in."""
+        items = pairs.items() if isinstance(pairs, Mapping) else pairs if isinstance(pairs, list | tuple) else ()
+        resolved = []
+        for pair in items:
+            if isinstance(pair, list | tuple) and len(pair) == 2:  # noqa: PLR2004 - a name and a value
+                name, value = self.context.resolve(pair[0]), self.context.resolve(pair[1])
+                if isinstance(name, str):
+                    resolved.append((name, value))
+        return resolved
+
+    def choose_values(self, action: LaunchAction, values: LaunchValue) -> list[LaunchValue]:
+        """Return what is given, as a list, without what does not count by its own conditions."""
+        items = list(values) if isinstance(values, list | tuple) else [] if values is None else [values]
+        chosen: list[LaunchValue] = []
+        for item in items:
+            verdicts = (
+                [self.context.judge_condition(each) for each in item.conditions]
+                if isinstance(item, ConditionalValue)
+                else []
+            )
+            unsure = next((words for words, verdict in verdicts if verdict is None), None)
+            if any(verdict is False for _, verdict in verdicts):
+                continue
+            if unsure is not None:
+                self.add_note(action.word, f"what counts only {unsure} is left out", action.span)
+                continue
+            chosen.append(item.value if isinstance(item, ConditionalValue) else item)
+        return chosen
+
+    def add_note(self, kind: str, message: str, span: Span, help_line: str = "", fate: str = "not taken") -> None:
+        """Add a note, once for each place."""
+        key = (span.file, kind, span.line, message)
+        if key not in self._seen_notes:
+            self._seen_notes.add(key)
+            self.notes.append(ImportNote(kind, message, span, help_line, fate))
+
+    def _tell_computed(self, action: LaunchAction, what: str, value: UnknownValue) -> None:
+        self.tell_computed(action.word, what, value, action.span)
+
+    def tell_computed(self, word: str, what: str, value: UnknownValue, span: Span) -> None:
+        """Note what only running the file would tell."""
+        place = Span(value.file or span.file, value.line, 1, value.line, 2) if value.line else span
+        self.add_note(word, f"{what} is computed: `{value.reason}`", place)

@@ -1,0 +1,225 @@
+"""The views `programs` and `ros1_programs`: the packages of ROS nodes to generate, and each program in them with all that it has."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from archgen.plugin.findings import NO_SPAN, Diagnostic, Span, first_written_span
+from archgen.plugin.generating import (
+    GeneratedView,
+    GenerationContext,
+    ProgramNames,
+    find_name_clashes,
+    group_by_program,
+    index_endpoints,
+    list_generated_nodes,
+    list_node_values,
+    make_camel_name,
+    make_identifier_in,
+    make_ros_name,
+    make_snake_name,
+    name_package,
+    record_parameters,
+    record_ports,
+    tell_left_out,
+    write_place,
+)
+from archgen.plugin.model import Architecture, Endpoint, Node
+from archgen.plugin.ros import is_ros_1
+from archgen.plugins.ros_code.cpp_programs import complete_cpp_program, find_bad_classes, list_cpp_libraries
+from archgen.plugins.ros_code.package_facts import record_package_facts
+from archgen.plugins.ros_code.program_callbacks import add_callback_groups
+from archgen.plugins.ros_code.program_differences import find_program_differences
+from archgen.plugins.ros_code.program_imports import import_in_ros_1, import_in_ros_2
+from archgen.plugins.ros_code.program_timers import list_timers
+from archgen.plugins.ros_code.usable_programs import drop_unusable
+
+
+def make_ros1_view(context: GenerationContext) -> GeneratedView:
+    """Return the programs to generate for ROS 1."""
+    return make_view(context, ros=1)
+
+
+def make_view(context: GenerationContext, ros: int = 2) -> GeneratedView:
+    """Return the programs to generate for a generation of ROS: `packages`, and all their `programs`.
+
+    Nodes that exist (`status: existing` or `adapted`) have a program already, and what is no node of ROS has none here. The option
+    `language` says whose programs are made, `python` or `cpp`; nodes that say none are generated in `python`.
+    With the option `with_cpp` there is also what code in C++ asks for.
+    """
+    if is_ros_1(context.architecture.distro) != (ros == 1):
+        return GeneratedView({"packages": [], "programs": []}, (_tell_other_ros(ros),))
+    language = str(context.options.get("language") or "python")
+    is_cpp = bool(context.options.get("with_cpp"))
+    all_programs = _find_programs(context, language)
+    endpoints = index_endpoints(context.architecture)
+    program_names = ProgramNames(context.architecture, ros)
+    findings: list[Diagnostic] = list(_find_mixed_packages(context, all_programs, language))
+    programs, unusable = drop_unusable(all_programs, language)
+    findings += unusable
+    packages: dict[str, dict[str, object]] = {}
+    records: list[dict[str, object]] = []
+    made_nodes: list[Sequence[Node]] = []
+    for (package_name, program_name), program_nodes in sorted(programs.items()):
+        if is_cpp:
+            bad_classes = find_bad_classes(
+                package_name, program_name, program_nodes, _find_place(context.architecture, program_nodes[0])
+            )
+            findings += bad_classes
+            if bad_classes:
+                continue
+        record, program_findings = _record_program(
+            context, (package_name, program_name), program_nodes, endpoints, program_names
+        )
+        if is_cpp:
+            complete_cpp_program(context.architecture, record, program_nodes)
+        made_nodes.append(program_nodes)
+        records.append(record)
+        findings += program_findings
+        findings += find_program_differences(program_name, program_nodes, endpoints)
+        package = packages.setdefault(
+            package_name,
+            {
+                **record_package_facts(context, program_nodes[0].owner),
+                "name": package_name,
+                "language": language,
+                "programs": [],
+                "dependencies": [],
+                "has_values": False,
+                "place": write_place(_find_place(context.architecture, program_nodes[0])),
+            },
+        )
+        package["programs"].append(record)  # type: ignore[attr-defined]
+        package["has_values"] |= any(each["parameters"] for each in record["nodes"])  # type: ignore[attr-defined,operator]
+    for package in packages.values():
+        used = {name for each in package["programs"] for name in each["message_packages"]}  # type: ignore[attr-defined]
+        package["dependencies"] = sorted(used)
+        if is_cpp:
+            package["libraries"] = list_cpp_libraries(package["programs"])  # type: ignore[arg-type]
+        package["has_actions"] = any(
+            each["action_servers"] or each["action_clients"]
+            for each in package["programs"]  # type: ignore[attr-defined]
+        )
+    names = [
+        (str(each["class_name"]), program_nodes[0].id, program_nodes[0].at)
+        for each, program_nodes in zip(records, made_nodes, strict=True)
+    ]
+    for package_name in packages:
+        in_package = [name for name, each in zip(names, records, strict=True) if each["package"] == package_name]
+        findings += find_name_clashes(in_package, "class")
+    return GeneratedView({"packages": list(packages.values()), "programs": records}, tuple(findings))
+
+
+def _tell_other_ros(ros: int) -> Diagnostic:
+    return tell_left_out(
+        f"the project is made for ROS {3 - ros}: it has no nodes for ROS {ros}",
+        NO_SPAN,
+        help_line="generate with another backend, or write another `distro` below `ros`",
+    )
+
+
+def _name_module(program_name: str) -> str:
+    """Return the module of a program: `planner` of the program `planner_node`, since its node stands in `planner_node.py`."""
+    return make_identifier_in("python", make_snake_name(make_snake_name(program_name).removesuffix("_node")))
+
+
+def _find_programs(context: GenerationContext, language: str) -> dict[tuple[str, str], list[Node]]:
+    """Return the nodes of each program that is asked for. One node is enough for all of its package, which is made whole."""
+    nodes = [each for each in list_generated_nodes(context.architecture) if _is_in_language(each, language)]
+    programs = group_by_program(context.architecture, nodes)
+    packages = {
+        package
+        for (package, _), program_nodes in programs.items()
+        if any(each.id in context.wanted_nodes for each in program_nodes)
+    }
+    return {names: program_nodes for names, program_nodes in programs.items() if names[0] in packages}
+
+
+def _is_in_language(node: Node, language: str) -> bool:
+    # What a container loads is a library of C++.
+    usual_language = "cpp" if {"composable", "nodelet"} & set(node.kinds) else "python"
+    return (node.language or usual_language) == language
+
+
+def _find_mixed_packages(
+    context: GenerationContext, programs: Mapping[tuple[str, str], Sequence[Node]], language: str
+) -> Iterator[Diagnostic]:
+    """Yield packages that hold programs of both languages: one build cannot make both."""
+    other_language = "cpp" if language == "python" else "python"
+    others = {
+        name_package(context.architecture, node): node
+        for node in list_generated_nodes(context.architecture)
+        if _is_in_language(node, other_language)
+    }
+    told = set[str]()
+    for (package_name, _), nodes in programs.items():
+        if package_name in others and package_name not in told:
+            told.add(package_name)
+            yield tell_left_out(
+                f"the package `{package_name}` has programs in Python and in C++: `{nodes[0].id}` and "
+                f"`{others[package_name].id}`; here it has only those in {'Python' if language == 'python' else 'C++'}",
+                nodes[0].at,
+                element=nodes[0].id,
+                help_line="give the nodes of one language a `package` of their own",
+            )
+
+
+def _record_program(
+    context: GenerationContext,
+    package_and_program: tuple[str, str],
+    nodes: Sequence[Node],
+    endpoints: Mapping[str, Sequence[Endpoint]],
+    program_names: ProgramNames,
+) -> tuple[dict[str, object], list[Diagnostic]]:
+    architecture, first = context.architecture, nodes[0]
+    package_name, program_name = package_and_program
+    components = [architecture.components[each] for each in first.implements]
+    sections, findings = record_ports(architecture, nodes, endpoints)
+    timers = list(list_timers(first))
+    parameters, parameter_findings = record_parameters(architecture, nodes)
+    message_packages = {str(port["package"]) for ports in sections.values() for port in ports}
+    functionalities = [each.functionality for each in components if each.functionality]
+    class_name = make_camel_name(_name_module(program_name))
+    import_messages = import_in_ros_1 if is_ros_1(architecture.distro) else import_in_ros_2
+    record: dict[str, object] = {
+        "package": package_name,
+        "executable": program_name,
+        "module": _name_module(program_name),
+        "class_name": class_name,
+        "title": components[0].title if len(components) == 1 and components[0].component_type is None else first.title,
+        "description": first.description or " ".join(functionalities),
+        "is_lifecycle": "lifecycle" in first.kinds,
+        "is_composable": "composable" in first.kinds,
+        "nodes": [_record_node(architecture, each, program_names) for each in nodes],
+        "node_name": first.name if len(nodes) == 1 else make_ros_name(program_name),
+        "namespace": first.namespace if len(nodes) == 1 else "/",
+        "threads": first.threads,
+        "reentrant": first.reentrant,
+        "timers": timers,
+        "callback_groups": add_callback_groups(first, sections, timers),
+        "parameters": parameters,
+        **sections,
+        "message_packages": sorted(message_packages),
+        "python_imports": import_messages(sections, class_name),
+        "place": write_place(_find_place(architecture, first)),
+    }
+    return record, [*findings, *parameter_findings]
+
+
+def _record_node(architecture: Architecture, node: Node, program_names: ProgramNames) -> dict[str, object]:
+    return {
+        "id": node.id,
+        "name": node.name,
+        "namespace": node.namespace,
+        "full_name": node.full_name,
+        "implements": list(node.implements),
+        "parameters": list_node_values(architecture, node),
+        "remaps": [{"own_name": own_name, "name": name} for own_name, name in program_names.find_remaps(node).items()],
+        "place": write_place(_find_place(architecture, node)),
+    }
+
+
+def _find_place(architecture: Architecture, node: Node) -> Span:
+    """Return where a node is written; of one that archgen adds, its component."""
+    components = (architecture.components[each] for each in node.implements)
+    return first_written_span(node.at, *(each.at for each in components))

@@ -1,0 +1,180 @@
+"""Import what rows say about groups, components and requirements themselves."""
+
+from __future__ import annotations
+
+import re
+
+from archgen.plugins.tables import cell_values
+from archgen.plugins.tables.imported_project import UNSORTED, ImportedComponent, ImportedGroup, ImportedProject
+from archgen.plugins.tables.row_records import TableRecord
+from archgen.plugins.tables.table_cells import TableCell
+
+_ROLE_SPELLINGS = {
+    "source": "source; sensor; quelle; capteur; fuente; origen",
+    "filter": "filter; processing; verarbeitung; filtre; traitement; filtro; procesamiento",
+    "sink": "sink; actuator; senke; aktor; aktuator; aktorik; puits; actionneur; sumidero; actuador",
+    "reactive": "reactive; service; reaktiv; dienst; réactif; reactivo; servicio",
+}
+_ROLE_BY_WORD = {word.strip(): role for role, words in _ROLE_SPELLINGS.items() for word in words.split(";")}
+
+
+def import_declaration(project: ImportedProject, row: TableRecord) -> None:
+    """Import what a row says about groups, components or requirements; report a row that names none."""
+    first_cell = row.first_cell
+    # Formulas go first: every later step then sees an empty cell in their place.
+    for key in list(row.cells):
+        if cell_values.reject_formula(project, row.cells[key]):
+            del row.cells[key]
+    if row.kind == "group" and row.cell_below("group"):
+        _import_group(project, row)
+    elif row.kind == "requirement" and row.cell_below("requirement"):
+        _import_requirement(project, row)
+    elif row.kind in {"component", "connection"} and row.cell_below("component"):
+        _import_component(project, row)
+    elif row.kind in {"component", "group", "requirement"}:
+        message = f"this row names no {row.kind} and was not taken"
+        help_line = "fill in its name, or take the row out"
+        row.is_lost = True
+        if row.cells:
+            project.reject_cell("missing-key", message, next(iter(row.cells.values())), help_line)
+        else:
+            project.add_warning("missing-key", message, first_cell.span, help_line)
+
+
+def _import_group(project: ImportedProject, row: TableRecord) -> None:
+    cell = row.cells["group"]
+    group = project.get_group(cell)
+    title, owner, description = (
+        row.cell_below("title") or row.cell_below("component"),
+        row.cell_below("owner"),
+        row.cell_below("description") or row.cell_below("functionality"),
+    )
+    if title:
+        group.name = title.one_line
+        project.ledger.take_cell(title, "title", group.path, title.one_line)
+    if owner:
+        group.values["owner"] = _read_owners(project, owner, group)
+    if description:
+        group.values["description"] = cell_values.join_cell_lines(description)
+        project.ledger.take_cell(description, "description", group.path, cell_values.join_cell_lines(description))
+
+
+def _import_requirement(project: ImportedProject, row: TableRecord) -> None:
+    cell, text = (
+        row.cells["requirement"],
+        row.cell_below("title") or row.cell_below("description") or row.cell_below("functionality"),
+    )
+    for name in cell_values.read_requirements(project, cell):
+        if name in project.requirements:
+            project.ledger.take_cell(cell, "requirement", ("requirements", name), name)
+            if text:
+                project.requirements[name] = text.one_line
+                project.ledger.take_cell(text, "title", ("requirements", name), text.one_line)
+
+
+def _import_component(project: ImportedProject, row: TableRecord) -> None:
+    cell = row.cells["component"]
+    row.component = component = _find_component(project, row, cell)
+    project.take_cell(cell, "component", component, component.id)
+    title = row.cell_below("title")
+    if title:
+        component.name = title.one_line
+        project.take_cell(title, "title", component, title.one_line)
+    if row.kind == "component":
+        for key in ("functionality", "description"):
+            if text := row.cell_below(key):
+                _set_key(project, component, key, cell_values.join_cell_lines(text), text)
+    owner = row.cell_below("owner")
+    if owner:
+        _set_key(project, component, "owner", _read_owners(project, owner, component), owner)
+    _import_role(project, component, row.cell_below("role"))
+    requirement_cell = row.cell_below("requirement")
+    if requirement_cell and row.kind == "component":
+        for requirement in cell_values.read_requirements(project, requirement_cell):
+            project.take_cell(requirement_cell, "requirements", component, requirement)
+            if requirement not in component.requirements:
+                component.requirements.append(requirement)
+    if row.kind == "component":
+        import_timing(project, row, component)
+
+
+def _find_component(project: ImportedProject, row: TableRecord, cell: TableCell) -> ImportedComponent:
+    """Return the component of a row, a new one where there is none."""
+    group_cell, name = row.cell_below("group"), cell.one_line
+    if row.has_exact_ids:
+        group_id, _, name = name.rpartition(".")
+        group = project.get_named_group(group_id, cell.span)
+    elif group_cell:
+        group = project.get_group(group_cell)
+    else:
+        namesakes = project.find_components(name)
+        group = (
+            project.groups[namesakes[0].group] if len(namesakes) == 1 else project.get_named_group(UNSORTED, cell.span)
+        )
+    id_cell = row.cell_below("id")
+    component = project.get_component(group, name, cell.span, id_cell.one_line if id_cell else "")
+    if id_cell and component.wanted_id != id_cell.one_line:
+        message = f"`{component.name}` has the id `{component.id}` already: `{id_cell.quotation}` was not taken"
+        project.reject_cell("conflicting-values", message, id_cell, "say it in the first row of the component")
+    elif id_cell:
+        project.take_cell(id_cell, "id", component, component.id)
+    return component
+
+
+def import_timing(project: ImportedProject, row: TableRecord, component: ImportedComponent) -> None:
+    """Import a component's rate, or else its period; a different one from an earlier row stays."""
+    rate, period = row.cell_below("rate"), row.cell_below("period")
+    cell = rate or period
+    if cell is None:
+        return
+    if rate and period:
+        message = f"`{period.quotation}` was not taken: the row has a rate, and a period says the same"
+        project.reject_cell("conflicting-values", message, period, "leave out one of the two")
+    unit = row.units.get("rate" if rate else "period", "Hz" if rate else "ms")
+    timing = cell_values.read_timing(project, cell, unit)
+    if timing is None:
+        return
+    if component.values.setdefault("timing", timing) == timing:
+        project.take_cell(cell, next(iter(timing)), component, next(iter(timing.values())))
+        return
+    message = f"`{component.name}` has another rate already: `{cell.quotation}` was not taken"
+    help_line = "a component has one rate; slower outputs are written by hand"
+    project.reject_cell("conflicting-values", message, cell, help_line)
+
+
+def _set_key(
+    project: ImportedProject, component: ImportedComponent, key: str, value: str | tuple[str, ...], cell: TableCell
+) -> None:
+    """Set a key; a different value from an earlier row stays."""
+    if component.values.setdefault(key, value) == value:
+        for words in (value,) if isinstance(value, str) else value:
+            project.ledger.take_cell(
+                cell, key, ("groups", component.group) if key == "owner" else component.path, words
+            )
+    else:
+        message = f"another row says something else on {key} of `{component.name}`: this was not taken"
+        project.reject_cell("conflicting-values", message, cell, "say it once")
+
+
+def _import_role(project: ImportedProject, component: ImportedComponent, cell: TableCell | None) -> None:
+    if cell is None:
+        return
+    role = _ROLE_BY_WORD.get(cell.one_line.casefold())
+    if role:
+        _set_key(project, component, "role", role, cell)
+    else:
+        message = f"`{cell.quotation}` is no role and was not taken"
+        project.reject_cell("wrong-value", message, cell, "write source, filter, sink or reactive")
+
+
+def _read_owners(
+    project: ImportedProject, cell: TableCell, owned: ImportedComponent | ImportedGroup
+) -> str | tuple[str, ...]:
+    """Read one partner or several."""
+    # Not at `&`: it stands in the names of companies.
+    names = [name.strip() for name in re.split(r"[,;/+\n]| (?:and|und|et|y) ", cell.text) if name.strip()]
+    owners = tuple(dict.fromkeys(project.get_partner_id(name) for name in names or [cell.one_line]))
+    if isinstance(owned, ImportedGroup):
+        for owner in owners:
+            project.ledger.take_cell(cell, "owner", owned.path, owner)
+    return owners[0] if len(owners) == 1 else owners

@@ -1,0 +1,172 @@
+"""The properties and operations of a class: parameters, operations and the period of a component or component type."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass, field
+
+from archgen.plugin.importing import XmlElement
+from archgen.plugins.xmi import uml_values
+from archgen.plugins.xmi.import_ledger import ImportLedger, name_element
+from archgen.plugins.xmi.made_names import choose_id, name_parameter
+from archgen.plugins.xmi.uml_catalogue import read_description
+from archgen.plugins.xmi.uml_index import UmlIndex, get_kind, get_name, is_true, list_child_elements
+
+_PERIOD_NAME = "sample"
+_VISIBILITIES = frozenset({"public", "protected", "private"})
+_ANSWERS = frozenset({"return", "out"})
+
+
+@dataclass(slots=True)
+class ClassFeatures:
+    """What the features of a class become."""
+
+    parameters: dict[str, object] = field(default_factory=dict)
+    operations: dict[str, object] = field(default_factory=dict)
+    timing: dict[str, object] = field(default_factory=dict)
+    data_types: dict[str, str] = field(default_factory=dict)
+    """The types of its protected properties by name: the data of ports of these names."""
+
+    def list_sections(self) -> dict[str, object]:
+        """Return the keys of a component for what there is."""
+        sections = {"parameters": self.parameters, "operations": self.operations, "timing": self.timing}
+        return {key: value for key, value in sections.items() if value}
+
+
+def read_features(
+    index: UmlIndex, ledger: ImportLedger, owner: XmlElement, port_names: Collection[str], parts: Collection[XmlElement]
+) -> ClassFeatures:
+    """Return the features of a class. `port_names` are those of its ports, `parts` what is a component inside of it."""
+    features = ClassFeatures()
+    for child in list_child_elements(owner, "Property", "Operation"):
+        if child in parts:
+            continue
+        if get_kind(child) == "Operation":
+            _read_operation(index, ledger, child, features)
+        elif child.tag in {"ownedAttribute", "attribute", "ownedMember"}:
+            _read_property(index, ledger, child, features, port_names)
+    return features
+
+
+def _read_property(
+    index: UmlIndex, ledger: ImportLedger, element: XmlElement, features: ClassFeatures, port_names: Collection[str]
+) -> None:
+    name, type_name = get_name(element), uml_values.find_type_name(index, element)
+    visibility = element.attributes.get("visibility", "")
+    if name in port_names:
+        # A port gives access to it: it is the port's data, and no parameter.
+        features.data_types[name] = type_name
+        ledger.take(element)
+    elif not name:
+        ledger.leave(element, f"{name_element(element)} is not taken: it has no name")
+    elif name.lower() == _PERIOD_NAME and (text := uml_values.read_default(index, element)) is not None:
+        default = element.find("defaultValue")
+        # archgen keeps the words of a period as the literal's name.
+        words = get_name(default) if default is not None else ""
+        timing = uml_values.read_period(words) if words else None
+        timing = uml_values.read_period(text) if timing is None else timing
+        if timing is None:
+            ledger.leave(
+                element, f"`{text[:60]}` of `{name}` is no period in seconds", "write a number, such as `0.02`"
+            )
+            return
+        features.timing |= timing
+        ledger.take(element)
+    else:
+        _read_parameter(index, ledger, element, features, (name, type_name, visibility))
+
+
+def _read_parameter(
+    index: UmlIndex, ledger: ImportLedger, element: XmlElement, features: ClassFeatures, words: tuple[str, str, str]
+) -> None:
+    name, type_name, visibility = words
+    reference = index.find_reference(element, "type")
+    enumeration = reference.element if reference and reference.element is not None else None
+    choices = (
+        [get_name(each) for each in list_child_elements(enumeration, "EnumerationLiteral") if get_name(each)]
+        if enumeration is not None and get_kind(enumeration) == "Enumeration"
+        else []
+    )
+    kind = "string" if choices else uml_values.find_parameter_type(type_name)
+    key = name_parameter(name)
+    if kind is None:
+        why = f"its type `{type_name[:60]}` is no value" if type_name else "nothing says what type it has"
+        ledger.leave(element, f"the property `{name[:80]}` is no parameter: {why}")
+        return
+    if key in features.parameters:
+        ledger.leave(element, f"{name_element(element)} is not taken: there is another one of this name")
+        return
+    parameter: dict[str, object] = {"choices": choices} if choices else {"type": kind}
+    is_list = uml_values.is_many(element)
+    if is_list:
+        parameter["type"] = f"{kind}[]"
+    _add_default(index, ledger, element, parameter, (kind, is_list, choices))
+    parameter |= read_description(index, ledger, element)
+    if is_true(element, "isReadOnly"):
+        parameter["read_only"] = True
+    if visibility in _VISIBILITIES:
+        parameter["visibility"] = visibility
+    features.parameters[key] = parameter
+    ledger.take(element)
+
+
+def _add_default(
+    index: UmlIndex,
+    ledger: ImportLedger,
+    element: XmlElement,
+    parameter: dict[str, object],
+    form: tuple[str, bool, list[str]],
+) -> None:
+    kind, is_list, choices = form
+    text = uml_values.read_default(index, element)
+    if text is None:
+        return
+    words = [word for each in text.strip().strip("[]{}").split(",") if (word := each.strip())] if is_list else [text]
+    try:
+        values = [uml_values.convert_value(each, kind) for each in words]
+    except ValueError:
+        ledger.leave(
+            element, f"the default `{text[:60]}` of `{get_name(element)}` is no {kind}: the parameter has no value"
+        )
+        return
+    if choices and not set(values) <= set(choices):
+        ledger.leave(element, f"the default `{text[:60]}` of `{get_name(element)}` is none of its enumeration's values")
+        return
+    parameter["value"] = values if is_list else values[0]
+
+
+def _read_operation(index: UmlIndex, ledger: ImportLedger, element: XmlElement, features: ClassFeatures) -> None:
+    name = get_name(element)
+    if not name:
+        ledger.leave(element, f"{name_element(element)} is not taken: it has no name")
+        return
+    operation_id = choose_id(element, "operation", features.operations)
+    # Code calls an operation by its id where it has no other name.
+    operation: dict[str, object] = {} if name == operation_id else {"title": name}
+    request: dict[str, object] = {}
+    answers: dict[str, object] = {}
+    for parameter in list_child_elements(element, "Parameter"):
+        direction = parameter.attributes.get("direction", "in")
+        type_name = uml_values.find_type_name(index, parameter)
+        type_name = uml_values.find_field_type(type_name) or type_name
+        type_name += uml_values.write_array(parameter) if type_name else ""
+        ledger.take(parameter)
+        if direction == "return" and not type_name:
+            continue
+        sides = answers if direction in _ANSWERS else request
+        answer_id = "return" if direction == "return" and "return" not in sides else ""
+        sides[answer_id or choose_id(parameter, "value", sides)] = type_name or None
+        if direction == "inout":
+            answers[choose_id(parameter, "value", answers)] = type_name or None
+    if request:
+        operation["request"] = request
+    if answers:
+        # An answer alone needs no name.
+        operation["response"] = answers.get("return") if answers.keys() == {"return"} else answers
+    visibility = element.attributes.get("visibility", "")
+    if visibility == "protected" and name.lower().startswith(("get", "set")):
+        operation["call"] = "synchronous" if name.lower().startswith("get") else "asynchronous"
+    if visibility in _VISIBILITIES:
+        operation["visibility"] = visibility
+    features.operations[operation_id] = operation | read_description(index, ledger, element)
+    ledger.take(element)

@@ -1,0 +1,200 @@
+"""Components put together: where each stands, its parts, its ports, and the types that instances need."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+
+from archgen.plugin.importing import XmlElement, make_id
+from archgen.plugins.xmi.class_features import ClassFeatures, read_features
+from archgen.plugins.xmi.component_facts import ClassFacts, ClassSorting
+from archgen.plugins.xmi.import_ledger import ImportLedger, name_element
+from archgen.plugins.xmi.made_names import choose_id
+from archgen.plugins.xmi.port_facts import InterfaceUses, PortFacts
+from archgen.plugins.xmi.uml_catalogue import UmlCatalogue
+from archgen.plugins.xmi.uml_index import UmlIndex, get_kind, get_name, is_true, list_child_elements
+
+_HARDWARE = frozenset({"Node", "ExecutionEnvironment"})
+
+
+class ComponentAssembly:
+    """The components and component types of a model with their ids, ports and features."""
+
+    def __init__(
+        self,
+        index: UmlIndex,
+        ledger: ImportLedger,
+        catalogue: UmlCatalogue,
+        uses: InterfaceUses,
+        sorting: ClassSorting,
+    ) -> None:
+        self._index, self._ledger, self._catalogue = index, ledger, catalogue
+        self._uses, self._sorting = uses, sorting
+        self.types: dict[str, ClassFacts] = {}
+        self.groups: dict[str, XmlElement] = {}
+        """The packages that became groups, by id."""
+        self.components: list[ClassFacts] = []
+        """All of them, those that stand in others behind these."""
+        self.hosted: dict[ClassFacts, XmlElement] = {}
+        """The node that a component stands in."""
+        self.features: dict[XmlElement, ClassFeatures] = {}
+        self._group_of: dict[XmlElement, str] = {}
+        self._taken_ids: dict[str, set[str]] = defaultdict(set)
+        self._place_types()
+        self._find_owners()
+        self._add_parts()
+        self._cut_containment_circles()
+        self._add_devices()
+        self._place_components()
+        self._port_of: dict[tuple[int, XmlElement], PortFacts] = {}
+        for facts in (*self.types.values(), *self.components):
+            self._read_ports(facts)
+        self._read_features()
+
+    def _place_types(self) -> None:
+        for facts in self._sorting.facts.values():
+            if facts.sort == "component_type":
+                facts.id = choose_id(facts.element, "type", self.types, known_ids=self._index.known_ids)
+                facts.path = (facts.id,)
+                self.types[facts.id] = facts
+
+    def _find_owners(self) -> None:
+        """Find what each component stands in: the class or node around it."""
+        known = self._sorting.facts
+        for facts in known.values():
+            if facts.sort != "component":
+                continue
+            parent = self._index.get_parent(facts.element)
+            while parent is not None:
+                if parent in known and known[parent].sort != "data":
+                    facts.owner = known[parent]
+                    facts.owner.inside.append(facts)
+                    break
+                if get_kind(parent) in _HARDWARE:
+                    self.hosted[facts] = parent
+                parent = self._index.get_parent(parent)
+
+    def _add_parts(self) -> None:
+        """Add a component for each property that is a place for one: an instance of the property's type."""
+        for owner in list(self._sorting.facts.values()):
+            if owner.sort == "data":
+                continue
+            for part in list_child_elements(owner.element, "Property"):
+                part_type, arguments = self._sorting.find_part_type(part)
+                if part_type is None or part_type.sort != "component_type":
+                    continue
+                if is_true(part_type.element, "isAbstract"):
+                    words = f"{name_element(part)} is not taken: `{get_name(part_type.element)}` is abstract"
+                    self._ledger.leave(part, words)
+                    continue
+                facts = ClassFacts(part, "component", owner=owner, base=part_type, base_arguments=arguments)
+                owner.inside.append(facts)
+                self._sorting.parts[part] = facts
+
+    def _cut_containment_circles(self) -> None:
+        """Leave out parts by which a type would contain itself."""
+        done: set[int] = set()
+        for start in self.types.values():
+            self._visit_type(start, done)
+
+    def _visit_type(self, start: ClassFacts, done: set[int]) -> None:
+        active: dict[int, None] = {}
+        stack: list[tuple[ClassFacts, bool]] = [(start, False)]
+        while stack:
+            facts, is_left = stack.pop()
+            if is_left:
+                active.pop(id(facts))
+                done.add(id(facts))
+                continue
+            if id(facts) in done or id(facts) in active:
+                continue
+            active[id(facts)] = None
+            stack.append((facts, True))
+            for inner in list(facts.inside):
+                if inner.base is not None and any(
+                    id(each) in active for each in (inner.base, *inner.base.list_bases())
+                ):
+                    words = f"{name_element(inner.element)} is not taken: the component type would contain itself"
+                    self._ledger.leave(inner.element, words)
+                    facts.inside.remove(inner)
+                    self._sorting.parts.pop(inner.element, None)
+                else:
+                    stack += [(each, False) for each in (inner, inner.base) if each is not None]
+            if facts.base is not None and id(facts.base) not in active:
+                stack.append((facts.base, False))
+
+    def _add_devices(self) -> None:
+        """Make a component on the boundary of each device."""
+        for element in self._catalogue.hardware:
+            if get_kind(element) == "Device":
+                self._sorting.facts[element] = ClassFacts(element, "component", device=True)
+                self._ledger.take(element)
+
+    def _place_components(self) -> None:
+        outermost = [each for each in self._sorting.facts.values() if each.sort == "component" and each.owner is None]
+        for facts in outermost:
+            group_id = self._find_group(facts.element)
+            facts.id = choose_id(facts.element, "component", self._taken_ids[group_id], known_ids=self._index.known_ids)
+            self._taken_ids[group_id].add(facts.id)
+            facts.path = (group_id, facts.id)
+        stack = [*reversed(self.types.values()), *reversed(outermost)]
+        while stack:
+            facts = stack.pop()
+            if facts.sort == "component":
+                self.components.append(facts)
+            # A port and a component inside share no name: what is told outside is the port's.
+            outer = (facts, *facts.list_bases()) if facts.inside else ()
+            taken = {
+                make_id(get_name(port), "port") for each in outer for port in list_child_elements(each.element, "Port")
+            }
+            for inner in facts.inside:
+                inner.id = choose_id(inner.element, "component", taken, known_ids=self._index.known_ids)
+                taken.add(inner.id)
+                inner.path = (*facts.path, inner.id)
+            stack += reversed(facts.inside)
+
+    def _find_group(self, element: XmlElement) -> str:
+        package = self._catalogue.packages[element]
+        group_id = self._group_of.get(package)
+        if group_id is None:
+            group_id = choose_id(package, "group", self.groups, known_ids=self._index.known_ids)
+            self.groups[group_id] = package
+            self._group_of[package] = group_id
+            self._ledger.take(package)
+        return group_id
+
+    def _read_ports(self, facts: ClassFacts) -> None:
+        if facts.element in self._sorting.parts:
+            return
+        ports = [self._uses.make_port(each) for each in list_child_elements(facts.element, "Port")]
+        for port in ports:
+            self._ledger.take(port.element)
+        # What a class provides to others as code is no port of a component type: only components meet here.
+        is_component = facts.sort == "component" or get_kind(facts.element) == "Component"
+        facts.ports = [*ports, *(self._uses.list_bare_ports(facts.element, ports) if is_component else ())]
+        self._port_of |= {(id(facts), port.element): port for port in reversed(facts.ports)}
+
+    def _read_features(self) -> None:
+        realized: dict[int, set[str]] = defaultdict(set)
+        for other in self._sorting.facts.values():
+            if other.base is not None:
+                realized[id(other.base)] |= {get_name(each) for each in list_child_elements(other.element, "Port")}
+        for facts in (*self.types.values(), *self.components):
+            if facts.element in self._sorting.parts:
+                self.features[facts.element] = ClassFeatures()
+                self._ledger.take(facts.element)
+                continue
+            parts = {inner.element for inner in facts.inside}
+            names = {port.name for port in facts.ports} | realized[id(facts)]
+            self.features[facts.element] = read_features(self._index, self._ledger, facts.element, names, parts)
+            kind = "Class" if get_kind(facts.element) == "AssociationClass" else ""
+            if not facts.device:
+                self._ledger.take(facts.element, kind)
+
+    def list_ports(self) -> list[PortFacts]:
+        """Return the ports of all components and component types."""
+        return [port for facts in (*self.types.values(), *self.components) for port in facts.ports]
+
+    def find_port(self, facts: ClassFacts, element: XmlElement) -> PortFacts | None:
+        """Return the port of a component that an element of it or of one of its types stands for."""
+        owners = (facts, *facts.list_bases())
+        return next((port for each in owners if (port := self._port_of.get((id(each), element)))), None)

@@ -1,0 +1,277 @@
+"""Components and component types written as sections of the language."""
+
+from __future__ import annotations
+
+from collections import ChainMap, defaultdict
+from collections.abc import Iterable, Mapping
+
+from archgen.plugin.importing import XmlElement, make_unique_id, title_from_id
+from archgen.plugins.xmi.class_features import ClassFeatures
+from archgen.plugins.xmi.component_assembly import ComponentAssembly
+from archgen.plugins.xmi.component_facts import ClassFacts
+from archgen.plugins.xmi.import_ledger import OWN_PREFIX, ImportLedger, make_hints, name_element
+from archgen.plugins.xmi.made_names import choose_id, say_title
+from archgen.plugins.xmi.port_facts import InterfaceUses, PortFacts, get_interface_name
+from archgen.plugins.xmi.port_wiring import PortWiring, list_inner_references, name_port
+from archgen.plugins.xmi.uml_catalogue import read_description
+from archgen.plugins.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, is_true
+from archgen.plugins.xmi.uml_values import find_field_type
+
+_DECLARING_KEYS = frozenset({"title", "description", "inputs", "outputs", "components"})
+PortKey = tuple[str, str]
+"""`inputs` or `outputs`, and the id of a port."""
+
+
+def assign_port_ids(assembly: ComponentAssembly, known_ids: Mapping[str, str]) -> None:
+    """Give each port its ids. What a type made from another, or an instance, has again is the same port."""
+    done: set[int] = set()
+    for facts in (*assembly.types.values(), *assembly.components):
+        for each in (*reversed(facts.list_bases()), facts):
+            if id(each) not in done:
+                done.add(id(each))
+                _assign_own_ids(each, known_ids)
+
+
+def _assign_own_ids(facts: ClassFacts, known_ids: Mapping[str, str]) -> None:
+    bases = facts.list_bases()
+    # Not one set of all ids: a hundred types made from one of a hundred ports would make a hundred of them.
+    taken = ChainMap(facts.port_ids, *(base.port_ids for base in bases))
+    for port in facts.ports:
+        inherited = (base.ids_by_port_name.get(port.name) for base in bases) if port.name else ()
+        port_id = next((each for each in inherited if each is not None), None)
+        if port_id is None or port_id in facts.port_ids:
+            # Two ports of one name in one class are two: the second one is not the inherited one again.
+            port_id = choose_id(port.element, "port", taken, name_port(port) or "port", known_ids)
+        facts.port_ids[port_id] = port.name
+        facts.ids_by_port_name.setdefault(port.name, port_id)
+        port.input_id = port.output_id = port_id
+
+
+class ComponentSections:
+    """Makes the sections `groups` and `component_types`."""
+
+    def __init__(
+        self,
+        index: UmlIndex,
+        ledger: ImportLedger,
+        uses: InterfaceUses,
+        assembly: ComponentAssembly,
+        wiring: PortWiring,
+    ) -> None:
+        self._index, self._ledger, self._uses = index, ledger, uses
+        self._assembly, self._wiring = assembly, wiring
+        self._port_keys = {facts: _list_keys(facts.ports) for facts in assembly.types.values()}
+        self._given_ports: dict[ClassFacts, list[PortFacts]] = defaultdict(list)
+        self._made_types: dict[str, dict[str, object]] = {}
+        self._type_of: dict[ClassFacts, str] = {}
+        self._settle_types()
+
+    def _settle_types(self) -> None:
+        """Let the class that realizes a component have its ports, or make a type between the two.
+
+        An instance adds nothing to its type: where two components of one class differ, each has a type of its own.
+        """
+        instances: dict[ClassFacts, list[ClassFacts]] = defaultdict(list)
+        for facts in self._assembly.components:
+            if facts.base is not None:
+                instances[facts.base].append(facts)
+        bases = {facts.base for facts in self._assembly.types.values() if facts.base is not None}
+        for base, users in instances.items():
+            missing = [self._find_missing(each) for each in users]
+            has_same = all(_list_keys(each) == _list_keys(missing[0]) for each in missing)
+            is_plain = not is_true(base.element, "isAbstract") and base not in bases
+            for user, ports in zip(users, missing, strict=True):
+                if (
+                    self._adds_features(user)
+                    or is_true(base.element, "isAbstract")
+                    or (ports and not (is_plain and has_same))
+                ):
+                    self._make_type(user, ports)
+                else:
+                    self._type_of[user] = user.say_base()
+                    if user is users[0]:
+                        self._given_ports[base] = ports
+
+    def _find_missing(self, facts: ClassFacts) -> list[PortFacts]:
+        known = [self._port_keys[base] for base in facts.list_bases()] if facts.ports else []
+        return [
+            port for port in facts.ports if not all(any(key in each for each in known) for key in _list_keys([port]))
+        ]
+
+    def _adds_features(self, facts: ClassFacts) -> bool:
+        own = self._assembly.features[facts.element]
+        if not own.parameters:
+            return bool(own.operations or facts.inside)
+        inherited = {name for base in facts.list_bases() for name in self._assembly.features[base.element].parameters}
+        return bool(own.parameters.keys() - inherited or own.operations or facts.inside)
+
+    def _make_type(self, facts: ClassFacts, ports: list[PortFacts]) -> None:
+        used = {*self._assembly.types, *self._made_types}
+        type_id = make_unique_id(facts.id, used)
+        body: dict[str, object] = {"is": facts.say_base()} if facts.base else {}
+        body |= self._write_ports(ports, facts, is_type=True)
+        features = self._assembly.features[facts.element]
+        body |= features.list_sections()
+        body |= self._write_inside(facts)
+        self._made_types[type_id] = body
+        self._type_of[facts] = type_id
+        words = f"{name_element(facts.element)} has more than the class that realizes it: the component type `{type_id}` lies between them"
+        self._ledger.note(facts.element, words)
+
+    def make_types(self) -> dict[str, object]:
+        """Return the section `component_types`."""
+        section: dict[str, object] = {}
+        for facts in self._assembly.types.values():
+            element = facts.element
+            body: dict[str, object] = say_title(get_name(element), facts.id)
+            body |= read_description(self._index, self._ledger, element)
+            if is_true(element, "isAbstract"):
+                body["abstract"] = True
+            if facts.generic_names:
+                body["generic"] = list(facts.generic_names)
+            if facts.base is not None:
+                body["is"] = facts.say_base()
+            body |= self._write_ports([*facts.ports, *self._given_ports[facts]], facts, is_type=True)
+            body |= self._assembly.features[element].list_sections()
+            body |= self._write_inside(facts)
+            section[facts.id] = body | make_hints(element)
+        return section | self._made_types
+
+    def make_groups(self) -> dict[str, object]:
+        """Return the section `groups`."""
+        groups: dict[str, dict[str, object]] = {}
+        for group_id, package in self._assembly.groups.items():
+            body: dict[str, object] = say_title(get_name(package), group_id) | read_description(
+                self._index, self._ledger, package
+            )
+            groups[group_id] = body | {"components": {}} | make_hints(package)
+        for facts in self._assembly.components:
+            if facts.owner is None:
+                components = groups[facts.path[0]]["components"]
+                assert isinstance(components, dict)  # noqa: S101 - made above
+                components[facts.id] = self._write_component(facts)
+        return dict(groups)
+
+    def _write_component(self, facts: ClassFacts) -> dict[str, object]:
+        body: dict[str, object] = say_title(get_name(facts.element), facts.id)
+        body |= read_description(self._index, self._ledger, facts.element)
+        features = self._assembly.features[facts.element]
+        type_id = self._type_of.get(facts)
+        if type_id is not None:
+            body["is"] = type_id
+            body |= self._write_instance_ports(facts)
+            if type_id not in self._made_types:
+                body |= _keep_values(features)
+            return body | make_hints(facts.element)
+        if (
+            get_kind(facts.element) == "Component"
+            and not _is_exported(facts)
+            and facts.base is None
+            and not features.list_sections()
+        ):
+            words = f"no class realizes {name_element(facts.element)}: it has no parameters and no operations"
+            self._ledger.note(facts.element, words)
+        body |= self._write_ports(facts.ports, facts, is_type=False)
+        body |= features.list_sections() | self._write_inside(facts)
+        if not _DECLARING_KEYS & body.keys():
+            # A component of which nothing else is known is declared by its title.
+            body = {"title": get_name(facts.element) or title_from_id(facts.id)} | body
+        return body | make_hints(facts.element, kind="Device" if facts.device else "")
+
+    def _write_inside(self, facts: ClassFacts) -> dict[str, object]:
+        return {"components": {each.id: self._write_component(each) for each in facts.inside}} if facts.inside else {}
+
+    def _write_ports(self, ports: Iterable[PortFacts], facts: ClassFacts, *, is_type: bool) -> dict[str, object]:
+        """Return `inputs` and `outputs`; those of a type read nothing."""
+        inputs: dict[str, object] = {}
+        outputs: dict[str, object] = {}
+        own = {id(port) for port in facts.ports}
+        for port in ports:
+            sources = [] if is_type else list(self._wiring.sources.get(facts, {}).get(port, ()))
+            port_type = self._find_type(port, facts, is_fed=bool(sources))
+            is_given = is_type and id(port) not in own
+            hints = {} if is_given else self._make_hints(port, is_fed=bool(sources))
+            texts = {} if is_given or not port.is_port else read_description(self._index, self._ledger, port.element)
+            if port.is_input:
+                inputs[port.input_id] = port_type | _write_sources(sources) | ({} if port.is_output else texts | hints)
+            if port.is_output:
+                given = list_inner_references(self._wiring, facts, port)
+                outputs[port.output_id] = (
+                    (port_type if port.type_name or not given else {}) | _write_sources(given) | texts | hints
+                )
+        return _leave_out_empty(inputs=inputs, outputs=outputs)
+
+    def _write_instance_ports(self, facts: ClassFacts) -> dict[str, object]:
+        inputs: dict[str, object] = {}
+        outputs: dict[str, object] = {}
+        read = self._wiring.sources.get(facts, {})
+        own = {id(port) for port in facts.ports}
+        for port in (*facts.ports, *(port for port in read if id(port) not in own)):
+            hints = self._make_hints(port, is_fed=bool(read.get(port))) if id(port) in own else {}
+            if port.is_input and (
+                written := _write_sources(list(read.get(port, ()))) | (hints if not port.is_output else {})
+            ):
+                inputs[port.input_id] = written
+            if port.is_output and hints:
+                outputs[port.output_id] = hints
+        return _leave_out_empty(inputs=inputs, outputs=outputs)
+
+    def _find_type(self, port: PortFacts, facts: ClassFacts, *, is_fed: bool) -> dict[str, object]:
+        features = [self._assembly.features[each.element] for each in (facts, *facts.list_bases())]
+        known = next((each.data_types[port.name] for each in features if each.data_types.get(port.name)), "")
+        name = known or port.type_name
+        if not name and not (is_fed and not port.is_output):
+            # What an input reads says its type; the interface does where nobody provides it.
+            name = self._uses.find_data_type(port)
+        return {"type": find_field_type(name) or name} if name else {}
+
+    @staticmethod
+    def _make_hints(port: PortFacts, *, is_fed: bool = False) -> dict[str, object]:
+        interfaces = [
+            name
+            for key in (port.provided if port.is_output else port.required)
+            if (name := get_interface_name(key)) and not _is_own(key)
+        ]
+        # The interface stands at who provides it: who uses it is connected with that.
+        kept = [] if is_fed and not port.is_output else interfaces
+        if not port.is_port:
+            return {"hints": {"uml": {"interface": kept[0]}}} if kept else {}
+        return make_hints(port.element, interface=kept[0] if len(kept) == 1 else kept)
+
+
+def _is_own(key: XmlElement | str) -> bool:
+    return isinstance(key, XmlElement) and (
+        get_id(key).startswith(f"{OWN_PREFIX}made_interface.") or get_kind(key) != "Interface"
+    )
+
+
+def _list_keys(ports: Iterable[PortFacts]) -> set[PortKey]:
+    return {
+        key
+        for port in ports
+        for key in [("inputs", port.input_id)] * port.is_input + [("outputs", port.output_id)] * port.is_output
+    }
+
+
+def _write_sources(references: list[str]) -> dict[str, object]:
+    if not references:
+        return {}
+    return {"from": references[0] if len(references) == 1 else references}
+
+
+def _keep_values(features: ClassFeatures) -> dict[str, object]:
+    """Return what an instance may say of its parameters and its timing: values."""
+    values = {
+        name: parameter["value"]
+        for name, parameter in features.parameters.items()
+        if isinstance(parameter, dict) and "value" in parameter
+    }
+    return _leave_out_empty(parameters=values, timing=features.timing)
+
+
+def _leave_out_empty(**sections: dict[str, object]) -> dict[str, object]:
+    return {key: value for key, value in sections.items() if value}
+
+
+def _is_exported(facts: ClassFacts) -> bool:
+    return get_id(facts.element).startswith(OWN_PREFIX)

@@ -1,0 +1,181 @@
+"""Data types, enumerations and classes that are only data: the types of the language, with fields where all are known."""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Collection, Iterable, Mapping
+
+from archgen.plugin.importing import XmlElement, make_id
+from archgen.plugin.model import read_generic_name
+from archgen.plugin.ros import spell_message_name
+from archgen.plugins.xmi import uml_values
+from archgen.plugins.xmi.import_ledger import OWN_PREFIX, ImportLedger, make_hints, name_element
+from archgen.plugins.xmi.template_classes import SIGNATURE_KINDS, read_generic_names
+from archgen.plugins.xmi.uml_catalogue import read_description
+from archgen.plugins.xmi.uml_index import Reference, UmlIndex, get_id, get_kind, get_name, list_child_elements
+
+_UNDECLARED = (f"{OWN_PREFIX}name.", f"{OWN_PREFIX}choices.")
+"""Ids of types that archgen wrote because something names them: nobody declares them."""
+_MESSAGE = re.compile(r"[a-zA-Z][a-zA-Z0-9_]*(?:/msg)?/[A-Z][A-Za-z0-9_]*\Z")
+
+
+class UmlDataTypes:
+    """Makes the section `types`. Nothing else than the file says: a type with a field of unknown type has no fields."""
+
+    def __init__(self, index: UmlIndex, ledger: ImportLedger, elements: Iterable[XmlElement]) -> None:
+        self._index, self._ledger = index, ledger
+        self._elements: dict[str, XmlElement] = {}
+        self._generic_names: dict[str, tuple[str, ...]] = {}
+        for element in elements:
+            name = uml_values.name_referenced(Reference(element, get_name(element)))
+            if uml_values.find_field_type(name) or get_id(element).startswith(_UNDECLARED):
+                # It is a type of the language itself.
+                ledger.take(element)
+                continue
+            if not name or name in self._elements:
+                why = "there is another one of this name" if name else "it has no name"
+                ledger.leave(element, f"{name_element(element)} is not taken: {why}")
+                continue
+            self._elements[name] = element
+            for signature in list_child_elements(element, *SIGNATURE_KINDS):
+                self._read_signature(name, signature)
+        self._valueless: set[str] = set()
+        self._fields = {name: self._read_fields(name, each) for name, each in self._elements.items()}
+        self._drop_nameless_fields()
+        self._drop_unknown_fields()
+
+    def _read_signature(self, name: str, signature: XmlElement) -> None:
+        names = read_generic_names(self._index, signature)
+        if names and name not in self._generic_names:
+            self._generic_names[name] = names
+            self._ledger.take(signature)
+        else:
+            words = f"`{name[:80]}` is no generic type: its template's parameters need a name each, as `T`"
+            self._ledger.leave(signature, words)
+
+    def _read_fields(self, type_name: str, element: XmlElement) -> dict[str, dict[str, object]] | None:
+        """Return the fields of a type; None where it has none, or one whose type is not known."""
+        fields: dict[str, dict[str, object]] = {}
+        children = list_child_elements(element, "Property")
+        for child in children:
+            name = make_id(get_name(child), "field") if get_name(child) else ""
+            written = uml_values.find_type_name(self._index, child)
+            primitive = uml_values.find_field_type(written)
+            known = primitive or written
+            is_known = primitive is not None or self._is_known(type_name, known) or _MESSAGE.match(known) is not None
+            problem = "it has no name" if not name else "there is another one" if name in fields else ""
+            if problem or not is_known:
+                why = problem or "its type is not known"
+                others = [each for each in children if each is not child]
+                words = f"the fields of `{get_name(element)[:80]}` are not taken: of `{get_name(child)[:80]}` {why}"
+                self._ledger.leave(child, words, others=others)
+                return None
+            texts = read_description(self._index, self._ledger, child)
+            comment = texts.get("comment") or texts.get("description")
+            fields[name] = {"type": known + uml_values.write_array(child)} | ({"comment": comment} if comment else {})
+        return fields or None
+
+    def _is_known(self, type_name: str, written: str) -> bool:
+        """Whether a type of a field is one of these files, a generic name of the type, or bound: `Envelope<Pose>`."""
+        base, arguments = read_generic_name(written)
+        if len(arguments) != len(self._generic_names.get(base, ())):
+            return False
+        if arguments:
+            return all(
+                self._is_known(type_name, each) or uml_values.find_field_type(each) is not None for each in arguments
+            )
+        return written in self._elements or written in self._generic_names.get(type_name, ())
+
+    def _drop_nameless_fields(self) -> None:
+        """Leave out fields and values of types after which no message can be called, or whose message another one has."""
+        first_types: dict[str, str] = {}
+        for name, element in self._elements.items():
+            literals = list_child_elements(element, "EnumerationLiteral") if _is_enumeration(element) else []
+            if not self._fields[name] and not literals:
+                continue
+            message = spell_message_name(name, {})
+            reason = "no message of ROS can be called so, which needs letters and digits, a letter first"
+            if message is not None:
+                first = first_types.setdefault(message, name)
+                reason = f"its message would be `{message}`, as that of `{first[:80]}`" if first != name else ""
+            if reason and literals:
+                self._valueless.add(name)
+                words = f"the values of `{name[:80]}` are not taken: {reason}"
+                self._ledger.leave(literals[0], words, others=literals[1:])
+            elif reason:
+                self._drop_fields(name, reason)
+
+    def _drop_unknown_fields(self) -> None:
+        """Leave out fields of types that have none themselves, and of those that hold themselves."""
+        inner_types = {name: self._list_inner_types(fields or {}) for name, fields in self._fields.items()}
+        users: dict[str, list[str]] = defaultdict(list)
+        for name, inner in inner_types.items():
+            for each in inner:
+                users[each].append(name)
+        unknown = [
+            name for name, element in self._elements.items() if not self._fields[name] and not _is_enumeration(element)
+        ]
+        while unknown:
+            for user in users[unknown.pop()]:
+                if self._fields[user]:
+                    self._drop_fields(user, "the fields of one of their types are not known")
+                    unknown.append(user)
+        for name in self._list_unwhole(inner_types, users):
+            self._drop_fields(name, "it would hold itself, or a type that does")
+
+    def _list_unwhole(self, inner_types: Mapping[str, Collection[str]], users: Mapping[str, list[str]]) -> list[str]:
+        """Return the types with fields that are not reached from those that hold no others."""
+        open_counts = {name: len(inner_types[name]) for name, fields in self._fields.items() if fields}
+        whole = [name for name, count in open_counts.items() if not count]
+        while whole:
+            for user in users.get(whole.pop(), ()):
+                if user in open_counts:
+                    open_counts[user] -= 1
+                    if not open_counts[user]:
+                        whole.append(user)
+        return [name for name, count in open_counts.items() if count]
+
+    def _list_inner_types(self, fields: Mapping[str, Mapping[str, object]]) -> dict[str, None]:
+        """Return the types of these files that fields have, without enumerations: these are whole in themselves."""
+        names = dict.fromkeys(str(field["type"]).partition("[")[0] for field in fields.values())
+        return {name: None for name in names if name in self._elements and not _is_enumeration(self._elements[name])}
+
+    def _drop_fields(self, name: str, reason: str) -> None:
+        self._fields[name] = None
+        element = self._elements[name]
+        properties = list_child_elements(element, "Property")
+        self._ledger.leave(properties[0], f"the fields of `{name[:80]}` are not taken: {reason}", others=properties[1:])
+
+    def make_types(self) -> dict[str, object]:
+        """Return the section `types`."""
+        section: dict[str, object] = {}
+        for name, element in self._elements.items():
+            body: dict[str, object] = {}
+            if name in self._generic_names:
+                body["generic"] = list(self._generic_names[name])
+            if _is_enumeration(element) and name not in self._valueless:
+                body |= self._write_values(element)
+            elif fields := self._fields[name]:
+                for child in list_child_elements(element, "Property"):
+                    self._ledger.take(child)
+                body["fields"] = {key: each if len(each) > 1 else each["type"] for key, each in fields.items()}
+            texts = read_description(self._index, self._ledger, element)
+            comment = texts.get("comment") or texts.get("description")
+            body |= {"comment": comment} if comment else {}
+            section[name] = body | make_hints(element)
+            self._ledger.take(element)
+        return section
+
+    def _write_values(self, element: XmlElement) -> dict[str, object]:
+        values = [
+            make_id(get_name(each), "value").upper() for each in list_child_elements(element, "EnumerationLiteral")
+        ]
+        if len(set(values)) != len(values):
+            self._ledger.leave(element, f"the values of `{get_name(element)[:80]}` are not taken: two have one name")
+            return {}
+        return {"values": values} if values else {}
+
+
+def _is_enumeration(element: XmlElement) -> bool:
+    return get_kind(element) == "Enumeration"

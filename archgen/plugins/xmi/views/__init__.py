@@ -1,0 +1,1 @@
+"""The view `uml`: the architecture as a tree of elements that a template writes as XMI."""

@@ -1,0 +1,122 @@
+"""Conceptual types as data types and enumerations, and the types that ports, fields and parameters name."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from archgen.plugins.xmi.views.uml_signatures import make_signature
+from archgen.plugins.xmi.views.uml_tree import (
+    IdRegistry,
+    UmlTree,
+    make_comments,
+    make_id_word,
+    make_tree,
+    read_mapping,
+)
+
+_ARRAY = re.compile(r"\[(<=)?([0-9]*)\]\Z")
+_PRIMITIVE = re.compile(r"(?:bool|byte|char|u?int(?:8|16|32|64)|float(?:32|64)|w?string(?:<=[0-9]+)?|time|duration)\Z")
+_PARAMETER_TYPES = {"boolean": "Boolean", "integer": "Integer", "float": "Real", "string": "String"}
+_LITERALS = {
+    "boolean": "LiteralBoolean",
+    "integer": "LiteralInteger",
+    "float": "LiteralReal",
+    "string": "LiteralString",
+}
+
+
+class UmlTypes:
+    """The data types of the model. What is only named, and stands nowhere below `types`, gets an element, too."""
+
+    def __init__(self, registry: IdRegistry, types: Mapping[str, Any]) -> None:
+        self._registry = registry
+        self._types = types
+        self._ids: dict[str, str] = {}
+        self._named: dict[str, UmlTree] = {}
+        self._enumerations: list[UmlTree] = []
+        self._written: set[str] = set()
+        self.generic_ids: dict[str, str] = {}
+        """The ids of the names that stand for types in the component type that is being written."""
+        for name, body in types.items():
+            self._ids[name] = registry.claim(f"type.{make_id_word(name)}", read_mapping(body).get("hints"))
+
+    def refer(self, name: str) -> str:
+        """Return the id of a type that something names."""
+        if name in self.generic_ids:
+            return self.generic_ids[name]
+        self._written.add(name)
+        if name not in self._ids:
+            is_primitive = _PRIMITIVE.match(name) is not None
+            self._ids[name] = self._registry.claim(f"name.{make_id_word(name)}")
+            kind = "PrimitiveType" if is_primitive else "DataType"
+            self._named[name] = make_tree("packagedElement", kind, self._ids[name], name)
+        return self._ids[name]
+
+    def refer_parameter(self, kind: str) -> str:
+        """Return the id of UML's type for a type of a parameter."""
+        return self.refer(_PARAMETER_TYPES[kind])
+
+    def add_choices(self, path: str, choices: list[str]) -> str:
+        """Add an enumeration for the choices of a parameter, and return its id."""
+        element_id = self._registry.claim(f"choices.{path}")
+        tree = make_tree("packagedElement", "Enumeration", element_id, path.rpartition(".")[2])
+        for choice in choices:
+            literal_id = self._registry.claim(f"literal.{path}.{make_id_word(choice)}")
+            tree["children"].append(make_tree("ownedLiteral", "EnumerationLiteral", literal_id, choice))
+        self._enumerations.append(tree)
+        return element_id
+
+    def write_types(self, *, only_used: bool) -> list[UmlTree]:
+        """Return the elements of all types; with a selection those that are named."""
+        trees: dict[str, UmlTree] = {}
+        wanted = self._written if only_used else self._types.keys()
+        # A type may name others that nothing named before.
+        while names := [name for name in self._types if name in wanted and name not in trees]:
+            for name in names:
+                trees[name] = self._write_type(name, read_mapping(self._types[name]))
+        ordered = [trees[name] for name in self._types if name in trees]
+        return [*ordered, *self._named.values(), *self._enumerations]
+
+    def _write_type(self, name: str, body: Mapping[str, Any]) -> UmlTree:
+        element_id = self._ids[name]
+        kind = "Enumeration" if body.get("values") else "DataType"
+        tree = make_tree("packagedElement", kind, element_id, name)
+        tree["children"] += make_comments(element_id, body)
+        if names := [str(each) for each in body.get("generic") or ()]:
+            formal_ids = [self._registry.claim(f"formal.type.{make_id_word(name)}.{each}") for each in names]
+            signature_id = self._registry.claim(f"signature.type.{make_id_word(name)}")
+            signature, self.generic_ids = make_signature(signature_id, names, formal_ids)
+            tree["children"].append(signature)
+        for value in body.get("values") or ():
+            literal_id = self._registry.claim(f"literal.{element_id}.{make_id_word(str(value))}")
+            tree["children"].append(make_tree("ownedLiteral", "EnumerationLiteral", literal_id, str(value)))
+        for field_name, field in read_mapping(body.get("fields")).items():
+            written = str(read_mapping(field).get("type") or "")
+            field_id = self._registry.claim(f"field.{element_id}.{field_name}")
+            element_type = self.refer(_ARRAY.sub("", written)) if written else None
+            attribute = make_tree("ownedAttribute", "Property", field_id, field_name, type=element_type)
+            attribute["children"] += make_comments(field_id, read_mapping(field))
+            attribute["children"] += self.write_bounds(field_id, written)
+            tree["children"].append(attribute)
+        self.generic_ids = {}
+        return tree
+
+    def write_bounds(self, element_id: str, written: str) -> list[UmlTree]:
+        """Return the bounds of an array: `T[]`, `T[3]`, `T[<=5]`; none for a single value."""
+        array = _ARRAY.search(written)
+        if array is None:
+            return []
+        lower, upper = ("0" if array[1] or not array[2] else array[2]), array[2] or "*"
+        bounds = (("lowerValue", "LiteralInteger", lower), ("upperValue", "LiteralUnlimitedNatural", upper))
+        return [
+            make_tree(tag, kind, self._registry.claim(f"bound.{element_id}.{tag}"), value=value)
+            for tag, kind, value in bounds
+        ]
+
+    def write_default(self, element_id: str, kind: str, value: object, name: str = "") -> UmlTree:
+        """Return the default of a property as a literal; `name` keeps the words that it was written in."""
+        text = ("true" if value else "false") if isinstance(value, bool) else str(value)
+        literal_id = self._registry.claim(f"default.{element_id}")
+        return make_tree("defaultValue", _LITERALS[kind], literal_id, name, value=text)

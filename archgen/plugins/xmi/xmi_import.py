@@ -1,0 +1,105 @@
+"""Read UML models as an import: the stages in order."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from archgen.plugin.importing import ForeignImport, XmlElement
+from archgen.plugins.xmi.component_assembly import ComponentAssembly
+from archgen.plugins.xmi.component_facts import ClassSorting
+from archgen.plugins.xmi.deployment_sections import DeploymentSections
+from archgen.plugins.xmi.import_ledger import OWN_PREFIX, ImportLedger, name_element
+from archgen.plugins.xmi.leftovers import note_leftovers
+from archgen.plugins.xmi.port_facts import InterfaceUses
+from archgen.plugins.xmi.port_wiring import PortWiring
+from archgen.plugins.xmi.uml_catalogue import UmlCatalogue, make_catalogue
+from archgen.plugins.xmi.uml_component_sections import ComponentSections, assign_port_ids
+from archgen.plugins.xmi.uml_data_types import UmlDataTypes
+from archgen.plugins.xmi.uml_index import UmlIndex, get_id, get_kind, get_name
+from archgen.plugins.xmi.xmi_files import XmiDocument, read_documents
+
+_FILES = {
+    "component_types.yaml": ("component_types",),
+    "types.yaml": ("types",),
+    "components.yaml": ("groups",),
+    "deployment.yaml": ("hosts", "links", "nodes"),
+}
+"""The slices, and the sections that go to each."""
+
+
+def read_xmi(files: Sequence[Path], known_ids: Mapping[str, str] | None = None) -> ForeignImport:
+    """Read UML models that belong together. Raise ForeignFileError for a file that is none.
+
+    `known_ids` are ids that elements have since an earlier import, by their `xmi:id`: a new name is a new title.
+    """
+    documents = read_documents(files)
+    index = UmlIndex(documents, known_ids)
+    return convert_documents(documents, index, ImportLedger(index))
+
+
+def convert_documents(documents: Sequence[XmiDocument], index: UmlIndex, ledger: ImportLedger) -> ForeignImport:
+    """Return what documents of UML become. The ledger says of each element what became of it."""
+    for element in index.doubled:
+        words = f"{name_element(element)} has the id of another element: references mean the first one of the two"
+        ledger.note(element, words, "export the model again, or give it an id of its own", "xmi:id")
+    catalogue = make_catalogue(documents, index, ledger)
+    uses = InterfaceUses(index, catalogue)
+    sorting = ClassSorting(index, ledger, catalogue, uses)
+    assembly = ComponentAssembly(index, ledger, catalogue, uses, sorting)
+    assign_port_ids(assembly, index.known_ids)
+    wiring = PortWiring(index, ledger, catalogue, sorting, assembly)
+    components = ComponentSections(index, ledger, uses, assembly, wiring)
+    deployment = DeploymentSections(index, ledger, catalogue, assembly)
+    classes = [facts.element for facts in sorting.facts.values() if facts.sort == "data"]
+    sections = {
+        "component_types": components.make_types(),
+        "types": UmlDataTypes(index, ledger, (*catalogue.data_types, *classes)).make_types(),
+        "groups": components.make_groups(),
+        "hosts": deployment.make_hosts(),
+        "links": deployment.make_links(),
+        "nodes": deployment.make_nodes(),
+    }
+    titled = _find_titled(documents)
+    if titled is not None:
+        ledger.take(titled)
+    _count_relations(catalogue, uses, ledger, assembly)
+    _note_packages(
+        catalogue, ledger, frozenset((*assembly.groups.values(), *((titled,) if titled is not None else ())))
+    )
+    note_leftovers(ledger, documents)
+    slices = {
+        name: kept for name, keys in _FILES.items() if (kept := {key: sections[key] for key in keys if sections[key]})
+    }
+    title = get_name(titled) if titled is not None else ""
+    return ForeignImport(slices, dict(ledger.taken), ledger.list_notes(), title=title)
+
+
+def _count_relations(
+    catalogue: UmlCatalogue, uses: InterfaceUses, ledger: ImportLedger, assembly: ComponentAssembly
+) -> None:
+    """Count usages, realizations and interfaces, and note those that say nothing here."""
+    for element in (*catalogue.dependencies, *catalogue.realizations):
+        if element in uses.used_elements:
+            ledger.take(element)
+        elif get_kind(element) in {"Usage", "Dependency", "Abstraction", "Substitution"}:
+            words = f"{name_element(element)} is not taken: it does not say what flows"
+            ledger.leave(element, words, "let ports use and realize an interface")
+    meant = {key for keys in (*uses.provided.values(), *uses.required.values()) for key in keys}
+    meant |= {key for port in assembly.list_ports() for key in (*port.provided, *port.required)}
+    for element in catalogue.interfaces:
+        if element in meant:
+            ledger.take(element)
+        else:
+            ledger.leave(element, f"{name_element(element)} is not taken: nobody realizes or uses it")
+
+
+def _note_packages(catalogue: UmlCatalogue, ledger: ImportLedger, groups: frozenset[XmlElement]) -> None:
+    for package in catalogue.all_packages:
+        if package not in groups and not get_id(package).startswith(OWN_PREFIX):
+            ledger.note(package, f"{name_element(package)} is no group: no component stands directly in it")
+
+
+def _find_titled(documents: Sequence[XmiDocument]) -> XmlElement | None:
+    """Return the model whose name is the project's title."""
+    return next((model for document in documents for model in document.models if get_name(model)), None)

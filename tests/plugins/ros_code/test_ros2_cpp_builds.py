@@ -1,0 +1,127 @@
+"""The backend `ros2_cpp`: what it writes compiles, and is formatted as ament wants it."""
+
+from __future__ import annotations
+
+import dataclasses
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from archgen.pipeline import CheckedProject, check_project
+from tests.plugins.ros_code.cpp_compiler import HAS_COMPILER, compile_package
+from tests.plugins.ros_code.test_ros2_cpp import ROBOT, generate, write_project
+from tests.ros_environment import NEWEST_PYTHON, ROS_FOLDER, make_ros_python
+from tests.running import ROOT
+
+# What ament_cpplint of Jazzy has in its configuration; guards and licences it looks at in its own way.
+AMENT_CPPLINT = (
+    "-build/c++11,-runtime/references,-whitespace/braces,-whitespace/indent,-whitespace/parens,-whitespace/semicolon,"
+    "-build/header_guard,-legal/copyright"
+)
+ODD = """\
+archgen: 1
+project: {id: 'Odd', title: '*/ "); } ??/ // \\'}
+groups:
+  class:
+    components:
+      auto: {title: "a\\n*/ b ??/", outputs: {register: T, Register_: T, new: T}, parameters: {template: 1, int: {type: float, value: .inf}}}
+      double:
+        inputs: {register: auto.register, delete: auto.new}
+        parameters:
+          a: {b: {value: .nan}, B: -1}
+          deep.a1_b.x: 1
+          deep.a1b.x: 2
+          linux: true
+          least: -9223372036854775808
+          most: {value: 9223372036854775807, range: [-9223372036854775808, 9223372036854775807]}
+          tiny: {value: -5.0e-324, range: [-1.0e+308, .inf]}
+          texts: {value: ["*/", "??=", "\\\\", "a\\nb", "\\""], choices: ["*/", "??=", "\\\\", "a\\nb", "\\"", c]}
+          flags: {value: [true, false], choices: [true, false]}
+          flag: {value: true, choices: [true]}
+          numbers: {value: [1, 2], choices: [1, 2, 3]}
+          number: {value: 2, choices: [1, 2], description: "\\"quoted\\" ??/ \\\\ */ `x`"}
+          empty: {type: "string[]", value: []}
+          params.x: 1
+          'dashed-name': 1
+      void: {}
+      nameless: {outputs: {x: Unknown}}
+types: {T: std_msgs/msg/String}
+nodes:
+  auto: {implements: class.auto, language: cpp}
+  double: {implements: class.double, language: cpp, kind: [lifecycle, composable]}
+  void: {implements: class.void, language: cpp, package: own, executable: test}
+  nameless: {implements: class.nameless, language: cpp}
+"""
+needs_compiler = pytest.mark.skipif(not HAS_COMPILER, reason="needs a C++ compiler")
+needs_linters = pytest.mark.skipif(
+    shutil.which("uncrustify") is None or shutil.which("cpplint") is None, reason="needs uncrustify and cpplint"
+)
+
+
+def make_cpp(folder: Path) -> CheckedProject:
+    """Return a project of which all nodes are programs in C++."""
+    project = check_project(folder)
+    nodes = {each.id: dataclasses.replace(each, language="cpp") for each in project.architecture.nodes.values()}
+    return dataclasses.replace(project, architecture=dataclasses.replace(project.architecture, nodes=nodes))
+
+
+def compile_all(workspace: Path, folder: Path, include_folders: list[Path] | None = None) -> None:
+    packages = sorted(each.parent for each in workspace.glob("src/*/package.xml"))
+    assert packages
+    for package in packages:
+        assert compile_package(package, folder, include_folders) == "", package
+
+
+@needs_compiler
+@pytest.mark.build
+def test_odd_names_and_numbers_compile(tmp_path: Path) -> None:
+    project = write_project(tmp_path / "p", ODD)
+    left_out = generate(project, tmp_path / "w")
+    assert left_out == ["`class.nameless.x` of the node `nameless` is left out: nobody says which message it has"]
+    compile_all(tmp_path / "w", tmp_path)
+
+
+@needs_compiler
+@pytest.mark.build
+@pytest.mark.parametrize("example", ["examples/cleaning_robot", "example_ramcip"])
+def test_examples_compile(example: str, tmp_path: Path) -> None:
+    generate(make_cpp(ROOT / example), tmp_path / "w")
+    compile_all(tmp_path / "w", tmp_path)
+
+
+@needs_compiler
+@pytest.mark.ros
+def test_it_compiles_against_real_messages(tmp_path: Path) -> None:
+    if sys.version_info[:2] > NEWEST_PYTHON or sys.platform != "linux":
+        pytest.skip(f"there is no ROS 2 for {sys.platform} and Python {sys.version.split()[0]}")
+    make_ros_python()
+    generate(write_project(tmp_path / "p", ROBOT), tmp_path / "w")
+    compile_all(tmp_path / "w", tmp_path, sorted(each for each in (ROS_FOLDER / "include").iterdir() if each.is_dir()))
+
+
+@needs_linters
+@pytest.mark.build
+@pytest.mark.parametrize("example", ["robot", "example_ramcip"])
+def test_it_is_formatted_as_ament_wants_it(example: str, tmp_path: Path) -> None:
+    is_own = example == "robot"
+    generate(write_project(tmp_path / "p", ROBOT) if is_own else make_cpp(ROOT / example), tmp_path / "w")
+    files = sorted(str(path) for path in tmp_path.rglob("*.?pp"))
+    assert len(files) > 20
+    command = [
+        "cpplint",
+        "--quiet",
+        "--linelength=100",
+        "--extensions=hpp,cpp",
+        "--headers=hpp",
+        f"--filter={AMENT_CPPLINT}",
+    ]
+    done = subprocess.run([*command, *files], capture_output=True, text=True, check=False)  # noqa: S603 - a linter
+    assert (done.returncode, done.stderr) == (0, "")
+    style = Path(__file__).parent / "ament_code_style.cfg"
+    # With `--check` it names those that it would write otherwise.
+    command = ["uncrustify", "-q", "-l", "CPP", "-c", str(style), "--check"]
+    done = subprocess.run([*command, *files], capture_output=True, text=True, check=False)  # noqa: S603 - a formatter
+    assert done.returncode == 0, done.stdout + done.stderr
