@@ -41,7 +41,7 @@ def stamp_program() -> str:
     """Stamp all of archgen: its code and data, what ships beside it, all libraries, and the plug-ins of others."""
     shipped_data = (
         resources.resource_path(name)
-        for name in ("backends", "schemas", "passes", "ros_library", "ros_type_mapper.yaml")
+        for name in ("backends", "schemas", "passes", "docs/rules", "ros_library", "ros_type_mapper.yaml")
     )
     return f"{digest_files((_EMIT_FOLDER.parent, *shipped_data))} {_describe_libraries()}{_describe_plugins()}"
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from archgen import resources
 from archgen.cache import program_stamp
 
 if TYPE_CHECKING:
@@ -52,6 +53,14 @@ def test_libraries_and_graphviz_itself_are_named() -> None:
         assert "_graphviz" in stamp
         assert "lxml " in stamp
     assert program_stamp.stamp_writers().split()[0] != program_stamp.stamp_program().split()[0]
+
+
+def test_the_pages_of_rules_are_part_of_the_program(monkeypatch: pytest.MonkeyPatch) -> None:
+    # The site shows them: one that was edited is written again.
+    digested: list[Path] = []
+    monkeypatch.setattr(program_stamp, "digest_files", digested.extend)
+    program_stamp.stamp_program.__wrapped__()
+    assert resources.resource_path("docs", "rules") in digested
 
 
 def _describe_with(monkeypatch: pytest.MonkeyPatch, *places: Path) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from archgen.model.architecture import Architecture
+from archgen.model.known_interfaces import InterfaceConstant
 from archgen.model.message_types import ConceptualType, DataConstant, DataField, full_message_name
 from archgen.views import inline_text
 from archgen.views.element_references import message_link
@@ -22,7 +23,7 @@ def make_field_tables(architecture: Architecture, conceptual_type: ConceptualTyp
             caption = f"{_PART_TITLES[part]}: fields" if part else "Fields"
             yield _make_field_table(architecture, fields, f"table:type_fields/{name}/{part}", caption)
     if conceptual_type.constants:
-        yield _make_constant_table(conceptual_type.constants, f"table:type_constants/{name}")
+        yield make_constant_table(conceptual_type.constants, f"table:type_constants/{name}")
 
 
 def _make_field_table(architecture: Architecture, fields: Iterable[DataField], anchor: str, caption: str) -> Table:
@@ -56,7 +57,10 @@ def _type_cell(architecture: Architecture, field: DataField) -> Inlines:
     return inline_text.to_inlines(Text(field.type or "", code=True)) if field.type else inline_text.UNKNOWN_INLINES
 
 
-def _make_constant_table(constants: Iterable[DataConstant], anchor: str) -> Table:
+def make_constant_table(
+    constants: Iterable[DataConstant | InterfaceConstant], anchor: str, caption: str = "Constants"
+) -> Table:
+    """List the constants of a type or of a message."""
     rows = tuple(
         (
             inline_text.to_inlines(Text(each.name, code=True)),
@@ -67,7 +71,7 @@ def _make_constant_table(constants: Iterable[DataConstant], anchor: str) -> Tabl
         for each in constants
     )
     columns = (Column("Constant", 1.2), Column("Value", 0.8), Column("Type", 0.7), Column("Meaning", 2))
-    return drop_empty_columns(Table(anchor, "Constants", columns, rows))
+    return drop_empty_columns(Table(anchor, caption, columns, rows))
 
 
 def list_field_lines(conceptual_type: ConceptualType) -> Iterator[str]:

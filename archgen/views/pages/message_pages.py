@@ -7,12 +7,13 @@ from dataclasses import replace
 from typing import TypeVar
 
 from archgen.model.component import Output
-from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField
+from archgen.model.known_interfaces import Interface, InterfaceField
 from archgen.model.message_types import ConceptualType, flow_of
 from archgen.model.node import Topic
 from archgen.views import inline_text
 from archgen.views.agreement.message_fields import field_type_run
 from archgen.views.element_references import message_link
+from archgen.views.elements.type_fields import make_constant_table
 from archgen.views.lookup import Lookup, group_values
 from archgen.views.shapes import (
     Block,
@@ -156,7 +157,8 @@ class MessagePages:
             if fields:
                 yield self._make_field_table(f"table:fields/{message}/{part}", title, fields)
             if part_constants:
-                yield _make_constant_table(f"table:constants/{message}/{part}", title, part_constants)
+                caption = f"{title}: constants" if title else "Constants"
+                yield make_constant_table(part_constants, f"table:constants/{message}/{part}", caption)
             if not fields and not part_constants:
                 yield Paragraph(inline_text.to_inlines(f"{title}: nothing." if title else "It has no fields."))
 
@@ -222,20 +224,6 @@ class MessagePages:
         )
         columns = (Column("Given by", 1.5), Column("Owner", 0.9), Column("Type"), Column("Read by", 1.7))
         return Table(f"table:ports/{message}", "Outputs that give it, and who reads them", columns, rows)
-
-
-def _make_constant_table(anchor: str, title: str, constants: tuple[InterfaceConstant, ...]) -> Table:
-    rows = tuple(
-        (
-            inline_text.to_inlines(Text(constant.name, code=True)),
-            inline_text.to_inlines(Text(constant.value, code=True)),
-            inline_text.to_inlines(Text(constant.type, code=True)),
-            inline_text.to_inlines(constant.comment) if constant.comment else (),
-        )
-        for constant in constants
-    )
-    columns = (Column("Constant", 1.2), Column("Value", 0.8), Column("Type", 0.7), Column("Meaning", 2))
-    return drop_empty_columns(Table(anchor, f"{title}: constants" if title else "Constants", columns, rows))
 
 
 def _count_cell(count: int) -> Inlines:
