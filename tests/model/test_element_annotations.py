@@ -20,7 +20,8 @@ from archgen.model.element_annotations import (
 )
 from archgen.model.property_conditions import find_component_properties, find_node_properties, parse_property_condition
 from archgen.model.selector_keys import matches_wildcard
-from tests.compare.test_element_kinds import SCHEMA, SECTIONS
+from tests.compare.test_element_kinds import SECTIONS
+from tests.language_samples import SCHEMA
 
 Derived = Callable[[str], Architecture]
 
