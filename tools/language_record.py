@@ -16,6 +16,7 @@ from language_description import (
     Description,
     DescriptionError,
     Part,
+    PlainData,
     list_accepted,
     read_description_file,
 )
