@@ -16,6 +16,7 @@ from language_description import (
     Description,
     DescriptionError,
     Part,
+    PlainData,
     list_accepted,
     read_description_file,
 )
@@ -137,6 +138,8 @@ def load_record(description: Description, folder: Path = FOLDER) -> ResolvedReco
 
 def find_faults(record: ResolvedRecord) -> Iterator[str]:
     """Yield what is wrong with `record.yaml`, a sentence each."""
+    known_names = {*record.description.parts, *_list_texts(record.own)}
+    yield from (f"record.yaml: nothing names `{name}`" for name in record.own["parts"] if name not in known_names)
     for name, part in record.own["parts"].items():
         own_keys = {key: {} if isinstance(own, str) else own for key, own in part.get("keys", {}).items()}
         for place, words in ((name, part), *((f"{name}.{key}", own) for key, own in own_keys.items())):
@@ -153,6 +156,14 @@ def find_faults(record: ResolvedRecord) -> Iterator[str]:
                 yield f"record.yaml: {name}.{key}: no key of the language, and nothing says what stands there"
     for section, words in record.own["sections"].items():
         yield from (f"record.yaml: {section}: `{word}` is no word of a part" for word in words.keys() - _PART_WORDS)
+
+
+def _list_texts(data: PlainData) -> Iterator[str]:
+    """Yield all texts that are no keys."""
+    if isinstance(data, str):
+        yield data
+    for inner in data.values() if isinstance(data, dict) else data if isinstance(data, list) else ():
+        yield from _list_texts(inner)
 
 
 def make_record_schema(record: ResolvedRecord) -> Part:

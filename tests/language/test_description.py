@@ -149,6 +149,7 @@ def test_a_kind_in_two_files_is_refused(import_tool: Callable[[str], ModuleType]
     [
         (lambda own: own["host"]["order"].append("colour"), "host: there is no key `colour`"),
         (lambda own: own["channel"]["without"].update(none=["colour"]), "channel: there is no key `colour`"),
+        (lambda own: own.update(hots={"says": "Twice."}), "nothing names `hots`"),
         (lambda own: own["host"].update(odd=1), "host: `odd` is no word of a part"),
         (lambda own: own["chain"]["keys"]["through"].update(odd=1), "chain.through: `odd` is no word of a part"),
         (

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import ast
+import json
 from collections.abc import Iterator
 from pathlib import Path
 from typing import get_args
 
-from archgen.language.language_tables import KindName, SectionName
+from archgen.language.language_tables import ANNOTATED_KINDS, KindName, SectionName
 from tests.running import ROOT
 
 NAMES = frozenset((*get_args(KindName), *get_args(SectionName), "components", "inputs", "outputs", "composed"))
@@ -48,3 +49,9 @@ def test_every_list_of_kinds_has_a_reason_and_every_reason_a_list() -> None:
     listing = {file.relative_to(package).as_posix() for file in files if any(_list_literals(file))}
     assert sorted(listing - REASONS.keys()) == [], "ask archgen.language, or say why not"
     assert sorted(REASONS.keys() - listing) == [], "no list of kinds stands there any more"
+
+
+def test_the_schema_of_backends_knows_every_kind_with_hints() -> None:
+    schema = json.loads((ROOT / "schemas" / "backend.schema.json").read_text(encoding="utf-8"))
+    kinds = schema["properties"]["hints_schema"]["propertyNames"]["enum"]
+    assert sorted(kinds) == sorted([*ANNOTATED_KINDS, "parameter", "any"])
