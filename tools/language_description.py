@@ -295,10 +295,10 @@ def find_faults(description: Description) -> Iterator[str]:
     for name, part in description.types.items():
         yield from _find_part_faults(name, part, description)
         yield from _find_field_faults(name, part)
-        if "place" in part:
-            yield f"{name}: `place` is a word of keys"
+        yield from _find_words_of_keys(name, part, "place")
     for kind, part in description.kinds.items():
         yield from _find_part_faults(kind, part, description)
+        yield from _find_words_of_keys(kind, part, "attribute", "place")
         for name, key in description.keys_of(kind).items():
             yield from _find_part_faults(f"{kind}.{name}", key, description)
             is_known = key.get("type", kind) in description.parts
@@ -309,15 +309,19 @@ def find_faults(description: Description) -> Iterator[str]:
                 yield f"{kind}.{name}: `declares` says whether a file that says only this declares a {kind}"
 
 
-def _find_field_faults(place: str, part: Part) -> Iterator[str]:
+def _find_field_faults(place: str, key: Part) -> Iterator[str]:
     """Yield what is wrong with what a key or a type says of the fields that hold it."""
-    if "attribute" in part:
-        attribute, name = part["attribute"], place.rpartition(".")[2]
-        names = attribute if isinstance(attribute, list) else [attribute]
-        if names == [name] or len(set(names)) < len(names) or not all(map(_is_field, names)):
-            yield f"{place}: `attribute` is the field that holds it where that is called otherwise, or a list of fields"
-    if part.get("place", True) is not True:
+    attribute, name = key.get("attribute", []), place.rpartition(".")[2]
+    names = attribute if isinstance(attribute, list) else [attribute]
+    is_told = names not in ([], [name]) and len(set(names)) == len(names) and all(map(_is_field, names))
+    if "attribute" in key and not is_told:
+        yield f"{place}: `attribute` is the field that holds it where that is called otherwise, or a list of fields"
+    if key.get("place", True) is not True:
         yield f"{place}: `place` is `true`, or left out"
+
+
+def _find_words_of_keys(place: str, part: Part, *words: str) -> Iterator[str]:
+    return (f"{place}: `{word}` is a word of keys" for word in words if word in part)
 
 
 def _is_field(name: PlainData) -> bool:
@@ -341,6 +345,7 @@ def _find_part_faults(place: str, part: Part, description: Description) -> Itera
             yield f"{place}: there is no type or kind `{inner}`"
         if isinstance(inner, dict):
             yield from _find_part_faults(f"{place}.{word}", inner, description)
+            yield from _find_words_of_keys(f"{place}.{word}", inner, "attribute", "place")
 
 
 def list_accepted(part: Part) -> list[str]:

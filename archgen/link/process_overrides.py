@@ -44,7 +44,7 @@ def read_process_override(architecture: Architecture, path: str, text: str) -> P
     Raises `OverrideError` for an element or a value that does not fit.
     """
     words = path.split(".")
-    sections = [section for section in _KEYS if words[0] == section and len(words) > 2]  # noqa: PLR2004 - section, id, key
+    sections = [section for section in _KEYS if words[0] == section and words[2:]]
     element_id, *rest = words[1:] if sections else words
     if not rest or rest[0] not in _ALL_KEYS or "timing" in rest:
         return None

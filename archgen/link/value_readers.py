@@ -40,8 +40,8 @@ def read_values(kind: str, made_class: type, body: MappingNode) -> dict[str, Any
     values: dict[str, Any] = {}
     entries = body.entries
     for key in entries:
-        if key in readers:
-            names, read = readers[key]
+        if (reader := readers.get(key)) is not None:
+            names, read = reader
             value = read(body, key)
             if value is not None:
                 store_value(values, names, value)
@@ -203,11 +203,20 @@ VALUE_READERS: Mapping[str, ValueReader | None] = {
     **dict.fromkeys(("property_declaration.required", "start_ready.within", "timing.deadline"), None),
     **dict.fromkeys(("text", "prose", "requirement_word", "topic_name_or_nothing"), mapping_values.get_text),
     **dict.fromkeys(
-        ("system_user", "frame_name", "report.date", "project.id", "parameter_declaration.from"),
+        (
+            "system_user",
+            "frame_name",
+            "report.date",
+            "project.id",
+            "parameter_declaration.from",
+            "forge",
+            "repository_address",
+        ),
         mapping_values.get_text,
     ),
     **dict.fromkeys(
-        ("project.title", "requirement.title", "use_case.title", "frame.title", "node.name"), _read_filled_text
+        ("project.title", "requirement.title", "use_case.title", "frame.title", "node.name", "site.branch"),
+        _read_filled_text,
     ),
     **dict.fromkeys(("texts", "tags", "reviewers", "open_sets", "variant_ids"), mapping_values.get_texts),
     **dict.fromkeys(("key_paths", "property_declaration.choices", "report.authors"), mapping_values.get_texts),

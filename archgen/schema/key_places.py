@@ -58,7 +58,7 @@ _NAMED_ELEMENTS = {"node": "nodes", "nodes": "nodes", "type": "types", "host": "
 
 def find_key_home(key: str, path: KeyPath, kind: str) -> str | None:
     """Return the place where a key is written that an element of a kind (its title in the schema) does not have."""
-    is_port = len(path) > 2 and path[-2] in {"inputs", "outputs"} and path[0] == "groups"  # noqa: PLR2004
+    is_port = path[:1] == ("groups",) and path[-2:-1] in {("inputs",), ("outputs",)}
     is_policy = path[:1] == ("policies",) and key in _POLICY_KEYS.get(str(path[-1]), {})
     if is_policy or (path[:1] == ("variants",) and path[2:] == ("changes",)):
         return _POLICY_KEYS[str(path[-1])][key] if is_policy else _find_changes_help(key)
@@ -74,7 +74,7 @@ def find_key_home(key: str, path: KeyPath, kind: str) -> str | None:
     home = _find_kind(key, homes)
     if home is None:
         return _find_section_help(key, path)
-    component = f"{path[1]}.{path[3]}" if path[:1] == ("groups",) and len(path) > 3 else None  # noqa: PLR2004
+    component = _find_component(path)
     place = _HOMES[home].format(
         key=key,
         implements=f"implements: {component}, " if component else "",
@@ -90,14 +90,14 @@ def find_sibling_help(entry: MappingEntry, path: KeyPath, kind: str) -> str | No
     if not path:
         section = find_section_of(entry)
         return f"put it below `{section}:`, indented" if section else None
-    if path[0] == "groups" and _looks_like(entry.value, "component"):
-        if len(path) == 2:  # noqa: PLR2004 - groups, id
-            return f"it looks like a component: indent it below `components:` of `{path[1]}`"
-        if len(path) == 4:  # noqa: PLR2004 - groups, id, components, id
-            return f"it looks like a component: begin it in the column of `{path[3]}`"
-    section_kind = _ELEMENT_SECTIONS.get(str(path[0])) if len(path) == 2 else None  # noqa: PLR2004 - section, id
-    if section_kind and _looks_like(entry.value, section_kind):
-        return f"it looks like {add_article(kind)} of its own: begin it in the column of `{path[1]}`"
+    is_component, section_kind = _looks_like(entry.value, "component"), _ELEMENT_SECTIONS.get(str(path[0]))
+    match path:
+        case ("groups", element_id) if is_component:
+            return f"it looks like a component: indent it below `components:` of `{element_id}`"
+        case ("groups", _, "components", element_id) if is_component:
+            return f"it looks like a component: begin it in the column of `{element_id}`"
+        case (_, element_id) if section_kind and _looks_like(entry.value, section_kind):
+            return f"it looks like {add_article(kind)} of its own: begin it in the column of `{element_id}`"
     return None
 
 
@@ -191,10 +191,18 @@ def _find_changes_help(key: str) -> str | None:
     )
 
 
+def _find_component(path: KeyPath) -> str | None:
+    """Return the id of the component that a path leads into."""
+    match path:
+        case ("groups", group, "components", component, *_):
+            return f"{group}.{component}"
+    return None
+
+
 def _find_section_help(key: str, path: KeyPath) -> str | None:
     section = _NAMED_ELEMENTS.get(key)
-    if path and section == "nodes" and path[0] == "groups" and len(path) > 3:  # noqa: PLR2004
-        return f"nodes are written in their own section: `nodes: {{NODE: {{implements: {path[1]}.{path[3]}}}}}`"
+    if section == "nodes" and (component := _find_component(path)):
+        return f"nodes are written in their own section: `nodes: {{NODE: {{implements: {component}}}}}`"
     if path and (section or key in load_schema()["properties"]):
         return f"`{section or key}` is a section of its own: it begins in the first column"
     return None

@@ -204,11 +204,10 @@ def _is_part_of_declaration(path: tuple[str | int, ...]) -> bool:
 
 def _is_kept_list(path: tuple[str | int, ...]) -> bool:
     """Whether a path is that of a key in `_KEPT_LIST_KEYS`, not of an element that happens to have such an id."""
-    if path[-1] not in _KEPT_LIST_KEYS:
-        return False
-    if path[-1] == "from":
-        return path[-3:-2] == ("inputs",)
-    return len(path) == 3 and path[0] in {"nodes", "chains"}  # noqa: PLR2004 - section, id, key
+    match path:
+        case (*_, "inputs", _, "from") | ("nodes" | "chains", _, "implements" | "through"):
+            return True
+    return False
 
 
 def _drop_holes(node: YamlNode) -> None:

@@ -257,19 +257,19 @@ def _describe_place(place: ErrorPlace) -> str:
 
 def element_of_path(path: tuple[str | int, ...]) -> str | None:
     """Return the id of the element that a path leads into, or None outside of all elements."""
-    if len(path) < 2:  # noqa: PLR2004 - a section and an id
-        return None
-    if path[0] not in SECTIONS_BY_ID:
-        return None
-    if path[0] == "variants" and path[2:3] == ("changes",):
-        return element_of_path(path[3:]) or str(path[1])
-    ids = [str(path[1])]
-    # A component inside another has an id of as many parts as it lies deep.
-    rest = path[2:] if path[0] in {"groups", "component_types"} else ()
-    while len(rest) > 1 and rest[0] == "components":
-        ids.append(str(rest[1]))
-        rest = rest[2:]
-    return ".".join(ids)
+    match path:
+        case ("variants", variant, "changes", *rest):
+            return element_of_path(tuple(rest)) or str(variant)
+        case ("groups" | "component_types", element, *rest):
+            ids = [str(element)]
+            # A component inside another has an id of as many parts as it lies deep.
+            while rest[:1] == ["components"] and rest[1:]:
+                ids.append(str(rest[1]))
+                rest = rest[2:]
+            return ".".join(ids)
+        case (section, element, *_) if section in SECTIONS_BY_ID:
+            return str(element)
+    return None
 
 
 def add_article(title: str) -> str:

@@ -59,9 +59,11 @@ def test_generated_files_are_fresh(import_tool: Callable[[str], ModuleType]) -> 
         (lambda d: d.types["count"].update(biggest=3), "count: `biggest` is no word of a part"),
         (lambda d: d.kinds["host"]["keys"]["cores"].update(attribute="cores"), _WRONG_ATTRIBUTE),
         (lambda d: d.kinds["host"]["keys"]["cores"].update(attribute=["core", "core"]), _WRONG_ATTRIBUTE),
+        (lambda d: d.kinds["host"]["keys"]["cores"].update(attribute=[]), _WRONG_ATTRIBUTE),
         (lambda d: d.kinds["host"]["keys"]["cores"].update(attribute="Number of cores"), _WRONG_ATTRIBUTE),
         (lambda d: d.kinds["host"]["keys"]["cores"].update(place=False), "host.cores: `place` is `true`, or left out"),
         (lambda d: d.types["count"].update(place=True), "count: `place` is a word of keys"),
+        (lambda d: d.kinds["host"].update(attribute="computer"), "host: `attribute` is a word of keys"),
     ],
 )
 def test_what_is_forgotten_is_told(

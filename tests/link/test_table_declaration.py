@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from archgen.diagnostics.source_span import NO_SPAN
 from archgen.link.declare.element_declaration import declare_element, declare_sections
+from archgen.link.declare.key_declaration import read_link_ends
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.link.value_readers import read_values
 from archgen.model.deployment import Container, Host, Link
@@ -72,3 +74,11 @@ def test_sections_are_declared_by_the_fields_of_the_architecture(resolver: Refer
         "hosts": ["pc"],
     }
     assert (sections["hosts"]["pc"].cores, sections["partners"]["p"].contact) == (2, "c")
+
+
+def test_an_end_of_a_link_is_a_host_before_it_is_a_component() -> None:
+    spans = {"component": {"g.pc": NO_SPAN, "g.arm": NO_SPAN}, "output": {}, "input": {}, "node": {}, "group": {}}
+    resolver = ReferenceResolver(spans, {"host": {"pc": NO_SPAN}}, [])
+    body = read_root("{connects: [pc, arm, printer, pc]}")
+    assert read_link_ends(body, "connects", "lan", resolver) == (("pc",), ("g.arm",), ("printer",))
+    assert [each.message for each in resolver.diagnostics] == ["no host named `printer`"]

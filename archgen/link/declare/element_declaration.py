@@ -2,27 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import cache, partial
 from typing import Any, TypeVar
 
 from archgen.language.language_tables import KEYS, OFFERS, SECTION_KINDS
-from archgen.link import mapping_values, sanity_checks
-from archgen.link.declare.deployment_declaration import read_link_ends
-from archgen.link.declare.property_declaration import read_range, read_required
-from archgen.link.declare.requirement_declaration import read_parents, read_verifications
+from archgen.link import mapping_values
+from archgen.link.declare.key_declaration import DECLARERS, NAMING_TYPES, KeyDeclarer
 from archgen.link.reference_resolution import SECTIONS_OF_PLAIN_NAMES, ReferenceResolver
 from archgen.link.value_readers import find_type, find_value_reader, list_held_keys, read_element, store_value
 from archgen.model.architecture import Partner
 from archgen.model.deployment import Host, Link, Resource
 from archgen.model.element_annotations import PropertyDeclaration
-from archgen.model.quantity import Quantity
 from archgen.model.requirement import Requirement
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
 Element = TypeVar("Element")
-KeyDeclarer = Callable[[MappingNode, str, str, ReferenceResolver], Any]
-"""Returns what stands at a key of the element with an id; what is wrong with it goes to the resolver's diagnostics."""
 _SECTIONS = {kind: section for section, kind in SECTION_KINDS.items()}
 _PLAIN_KINDS = {section: kind for kind, section in SECTIONS_OF_PLAIN_NAMES.items()}
 
@@ -81,25 +76,9 @@ def find_declarer(kind: str, key: str) -> KeyDeclarer | None:
     if find_value_reader(kind, key):
         return None
     named_kinds = [_PLAIN_KINDS.get(section) for section in OFFERS.get(KEYS[kind][key], ())]
-    if part in _NAMING_TYPES and len(named_kinds) == 1 and named_kinds[0]:
-        return partial(_NAMING_TYPES[part], kind=named_kinds[0])
+    if part in NAMING_TYPES and len(named_kinds) == 1 and named_kinds[0]:
+        return partial(NAMING_TYPES[part], kind=named_kinds[0])
     return DECLARERS.get(part)
-
-
-def _resolve_id(body: MappingNode, key: str, element_id: str, resolver: ReferenceResolver, kind: str) -> str | None:
-    return resolver.resolve_plain_id(mapping_values.get_scalar(body, key), kind, element_id)
-
-
-def _resolve_ids(
-    body: MappingNode, key: str, element_id: str, resolver: ReferenceResolver, kind: str
-) -> tuple[str, ...]:
-    return resolver.resolve_plain_ids(mapping_values.get_scalars(body, key), kind, element_id)
-
-
-def _read_positive(
-    body: MappingNode, key: str, element_id: str, resolver: ReferenceResolver, dimension: str
-) -> Quantity | None:
-    return sanity_checks.read_positive(body, key, dimension, element_id, resolver.diagnostics)
 
 
 DECLARED_CLASSES: Mapping[str, type] = {
@@ -111,16 +90,3 @@ DECLARED_CLASSES: Mapping[str, type] = {
     "link": Link,
 }
 """The classes of the kinds of which the tables say all; their sections are fields of the architecture."""
-_NAMING_TYPES = {"id": _resolve_id, "requirement_ids": _resolve_ids}
-"""Types of what is named by its id alone; the description says what a key `offers`."""
-DECLARERS: Mapping[str, KeyDeclarer] = {
-    "bandwidth": partial(_read_positive, dimension="bandwidth"),
-    "chain.deadline": partial(_read_positive, dimension="duration"),
-    "link.connects": read_link_ends,
-    "link.latency": sanity_checks.read_latency,
-    "property_declaration.range": read_range,
-    "property_declaration.required": read_required,
-    "requirement.parent": read_parents,
-    "requirement.verified_by": read_verifications,
-}
-"""What declares the keys of a type, and single keys (`KIND.KEY`)."""

@@ -59,8 +59,8 @@ def _declare_frame(
     name, values = entry.key, read_values("frame", Frame, body)
     if parameters and component_id:
         name = parameters.fill_in_name(name, component_id, entry.key_span)
-        if "parent" in values:
-            values["parent"] = parameters.fill_in_name(values["parent"], component_id, values["parent_at"]) or None
+        parent = values.get("parent")
+        values["parent"] = parameters.fill_in_name(parent, component_id, values["parent_at"]) if parent else None
     reference = mapping_values.get_scalar(body, "by")
     own_component = ElementRef("component", component_id) if component_id else None
     writer = _resolve_writer(reference, name, component_id, resolver) if reference else own_component

@@ -78,17 +78,9 @@ def declare_views(root: MappingNode, resolver: ReferenceResolver) -> dict[str, V
 
 def declare_repository(root: MappingNode) -> SourceRepository | None:
     """Declare where the files are on the web; None where the project does not say."""
-    body = mapping_values.get_mapping(root, "site")
-    address = mapping_values.get_text(body, "repository")
-    if address is None:
-        return None
-    main_line = mapping_values.get_text(mapping_values.get_mapping(root, "review"), "main")
-    return SourceRepository(
-        address,
-        mapping_values.get_text(body, "branch") or main_line or DEFAULT_BRANCH,
-        mapping_values.get_text(body, "folder"),
-        mapping_values.get_text(body, "forge"),  # type: ignore[arg-type]
-    )
+    main_line = mapping_values.get_text(mapping_values.get_mapping(root, "review"), "main") or DEFAULT_BRANCH
+    site = read_values("site", SourceRepository, mapping_values.get_mapping(root, "site"))
+    return SourceRepository(**{"branch": main_line, **site}) if "address" in site else None
 
 
 def declare_review(root: MappingNode) -> ReviewSettings:
