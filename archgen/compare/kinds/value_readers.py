@@ -28,6 +28,8 @@ def make_form_reader(attribute: str, facts: KeyFacts) -> Reader:
 
 
 def _read_value(attribute: str, default: _Default) -> Reader:
+    if default is None:
+        return lambda element, _: getattr(element, attribute)
     # What counts where nothing is written is not told apart from nothing.
     return lambda element, _: None if (value := getattr(element, attribute)) == default else value
 
