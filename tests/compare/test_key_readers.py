@@ -84,5 +84,5 @@ def _read_by_type(name: str, facts: KeyFacts, element: object, context: ReadCont
         return getattr(element, attribute, _MISSING)
     try:
         return make_form_reader(attribute, facts)(element, context)
-    except (KeyError, AttributeError, TypeError):
+    except (LookupError, AttributeError, TypeError):
         return _MISSING
