@@ -108,11 +108,14 @@ def _list_rows(description: Description, name: str, key: Part) -> Iterator[tuple
         yield name, {**said, "form": _find_plain_form(part, accepted) if form == "mapping" else form}
     if is_mapping:
         below = shared if is_both else said
-        is_inner = key.get("type") in _list_compared(description)
-        if is_inner and isinstance(key.get("attribute"), list):  # several fields: what reads it knows them
+        compared = _list_compared(description)
+        form = below.get("form") or _find_form(description, part)
+        read = {"inner": key["type"]} if key.get("type") in compared else {"form": form}
+        if form == "entries" and isinstance(part.get("entries"), str) and part["entries"] in compared:
+            read = {"form": form, "inner": part["entries"]}
+        if "inner" in read and isinstance(key.get("attribute"), list):  # several fields: what reads it knows them
             below = {word: value for word, value in below.items() if word != "attribute"}
-        inner = {"inner": key["type"]} if is_inner else {"form": below.get("form") or _find_form(description, part)}
-        yield f"{name}.", {**below, **inner}
+        yield f"{name}.", {**below, **read}
 
 
 def _find_first_field(name: str, key: Part) -> Part:

@@ -43,12 +43,13 @@ def _list_version_elements(context: ReadContext) -> dict[ElementKey, ComparedEle
 
 
 def _list_kind(kind: KindSpec, context: ReadContext) -> Iterator[ComparedElement]:
+    keys = kind.keys
     for own_id, element in kind.elements(context.version).items() if kind.elements else ():
         yield ComparedElement(
             kind.name,
             context.matched_ids.common_id(kind.name, own_id),
             own_id,
-            drop_unset_values(key_values(kind.keys, element, context)),
+            drop_unset_values(key_values(keys, element, context)),
             kind.parent(element, context),
             kind.owner(element, context),
             kind.is_declared(element),

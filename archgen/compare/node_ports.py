@@ -15,6 +15,7 @@ from archgen.model.node import Node, PortUse
 
 def list_node_ports(context: ReadContext) -> Iterator[ComparedElement]:
     """Yield the ports of which a written node says more than what its component says already."""
+    port_keys = PORT.keys
     untold_components = context.single_node_components - context.told_components
     for node in context.architecture.nodes.values():
         if not node.written:
@@ -23,7 +24,7 @@ def list_node_ports(context: ReadContext) -> Iterator[ComparedElement]:
         owner = NODE.owner(node, context)
         for use in (*node.uses, *_implied_uses(context.architecture, node, untold_components)):
             is_stated = use.internal or not _is_port_of(use, context.told_components)
-            values = drop_unset_values(key_values(PORT.keys, NodePort(use, node, is_stated), context))
+            values = drop_unset_values(key_values(port_keys, NodePort(use, node, is_stated), context))
             if values:
                 key, own_key = _port_ids(use, node, context.matched_ids)
                 yield ComparedElement(

@@ -32,10 +32,11 @@ class KeyFacts(TypedDict, total=False):
 KIND_EFFECTS: Mapping[str, Reach] = {
     "project": "system", "partner": "system", "variant": "system", "use_case": "text", "requirement": "system",
     "view": "text", "group": "timing", "component": "timing", "component_type": "system", "input": "timing",
-    "output": "timing", "type": "timing", "frame": "system", "promise": "system", "deprecation": "system",
-    "node": "timing", "host": "timing", "container": "timing", "resource": "timing", "link": "timing",
-    "start": "system", "start_ready": "system", "policy": "system", "require": "system", "forbid": "system",
-    "timing": "timing", "latency": "timing", "chain": "timing",
+    "output": "timing", "indicator": "system", "type": "timing", "frame": "system", "promise": "system",
+    "deprecation": "system", "node": "timing", "host": "timing", "container": "timing", "resource": "timing",
+    "link": "timing", "start": "system", "start_ready": "system", "policy": "system", "require": "system",
+    "forbid": "system", "timing": "timing", "timing_input": "timing", "timing_output": "timing", "latency": "timing",
+    "chain": "timing",
 }
 """How far a change of an element of each kind reaches at most."""
 KEY_FACTS: Mapping[str, Mapping[str, KeyFacts]] = {
@@ -127,7 +128,7 @@ KEY_FACTS: Mapping[str, Mapping[str, KeyFacts]] = {
         "requirements": {
             "form": "set", "names": "requirement", "effect": "system", "verbs": ("now serves", "no longer serves"),
         },
-        "performance.": {"form": "entries", "effect": "system"},
+        "performance.": {"form": "entries", "inner": "indicator", "effect": "system"},
         "inputs": {},
         "outputs": {},
         "parameters.": {"form": "entries", "effect": "system"},
@@ -153,7 +154,7 @@ KEY_FACTS: Mapping[str, Mapping[str, KeyFacts]] = {
         "requirements": {
             "form": "set", "names": "requirement", "effect": "system", "verbs": ("now serves", "no longer serves"),
         },
-        "performance.": {"form": "entries", "effect": "system"},
+        "performance.": {"form": "entries", "inner": "indicator", "effect": "system"},
         "outputs": {"effect": "system"},
         "parameters.": {"form": "entries", "effect": "system"},
         "open": {"form": "set", "effect": "system", "noun": "open sets"},
@@ -196,6 +197,11 @@ KEY_FACTS: Mapping[str, Mapping[str, KeyFacts]] = {
         "properties.": {"form": "properties", "effect": "system"},
         "hints.": {"form": "hints", "effect": "system"},
         "urls.": {"form": "mapping", "effect": "text"},
+    },
+    "indicator": {
+        "title": {"form": "title", "effect": "text"},
+        "accuracy": {"effect": "system"},
+        "execution_time": {"effect": "system"},
     },
     "type": {
         "message": {"names": "message", "worse": "always", "verb": "is", "new_verb": "is"},
@@ -371,8 +377,8 @@ KEY_FACTS: Mapping[str, Mapping[str, KeyFacts]] = {
         "every": {"worse": "less"},
         "throttle": {"worse": "less"},
         "dropped": {"default": "kept", "worse": "always", "noun": "what becomes of dropped messages"},
-        "inputs.": {"form": "entries", "worse": "more"},
-        "outputs.": {"form": "entries", "worse": "always"},
+        "inputs.": {"form": "entries", "inner": "timing_input", "worse": "more"},
+        "outputs.": {"form": "entries", "inner": "timing_output", "worse": "always"},
         "calls.": {"form": "mapping", "worse": "always"},
         "uses.": {"form": "entries", "worse": "more"},
         "priority": {"worse": "always"},
@@ -380,6 +386,15 @@ KEY_FACTS: Mapping[str, Mapping[str, KeyFacts]] = {
         "core": {"worse": "always"},
         "cores": {"form": "set", "worse": "always"},
         "response": {"worse": "more", "noun": "stated response time"},
+    },
+    "timing_input": {
+        "wcet": {},
+        "bcet": {},
+        "stored": {"attribute": "stored_at_once"},
+    },
+    "timing_output": {
+        "conditional": {"form": "flag"},
+        "max_gap": {},
     },
     "latency": {
         "best": {"worse": "more", "noun": "best latency"},

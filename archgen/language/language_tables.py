@@ -489,8 +489,8 @@ ATTRIBUTES: Mapping[str, tuple[str, ...]] = {
     "link.connects": ("connects", "devices", "unresolved"), "link.latency": ("best", "worst"),
     "start.by": ("by", "by_written"), "policy.forbid": ("forbid_from", "forbid_to", "from_at", "to_at"),
     "policy.accepted": ("accepted", "accepted_places"), "forbid.from": ("forbid_from",), "forbid.to": ("forbid_to",),
-    "timing.wcet": ("wcet", "measured_times"), "chain.through": ("through", "unresolved"),
-    "chain.requirements": ("requirements", "requirement_places"),
+    "timing.wcet": ("wcet", "measured_times"), "timing_input.stored": ("stored_at_once",),
+    "chain.through": ("through", "unresolved"), "chain.requirements": ("requirements", "requirement_places"),
 }
 """The fields of the model that hold what stands at a key, or keys of a type, where they are not called as it."""
 PLACED_KEYS: Mapping[str, tuple[str, ...]] = {

@@ -264,3 +264,13 @@ def test_of_a_type_without_a_pattern_only_what_it_says_itself_is_known(tmp_path:
     }
     # A key of many values has none, a plain one is not known.
     assert (values["timing."], values["parameters."], values["tags"], values["role"]) == ({}, {}, None, None)
+
+
+def test_the_owner_of_a_type_that_got_another_id_is_the_same(compared: Compared) -> None:
+    text = """\
+partners: {lab: Robots}
+component_types: {motor: {owner: lab, outputs: {o: std_msgs/msg/Bool}}}
+groups: {g: {owner: lab, components: {c: C}}}
+"""
+    changes = compared(text, text.replace("lab", "institute")).changes
+    assert [(change.kind, change.element_kind) for change in changes] == [("renamed", "partner")]

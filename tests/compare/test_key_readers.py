@@ -23,6 +23,7 @@ groups:
     components:
       a: {outputs: {do: std_srvs/srv/Trigger}, timing: {period: 10 ms, cores: [1]}}
       b: {inputs: {do: a.do}}
+      c: {outputs: {o: std_msgs/msg/Bool}, timing: {outputs: {o: {conditional: true}}}}
 nodes:
   n: {implements: b, parameter_files: [n.yaml], timing: {calls: {do: 2}}}
   odometry: {kind: program}
@@ -84,5 +85,5 @@ def _read_by_type(name: str, facts: KeyFacts, element: object, context: ReadCont
         return getattr(element, attribute, _MISSING)
     try:
         return make_form_reader(attribute, facts)(element, context)
-    except (KeyError, AttributeError, TypeError):
+    except (LookupError, AttributeError, TypeError):
         return _MISSING

@@ -120,7 +120,11 @@ def test_what_a_comparison_cannot_do_without_is_told(
         ("{type: tags, says: S, noun: n}", {"cells": {"form": "set", "noun": "n", "effect": "text"}}),
         ("{type: urls, says: S}", {"cells.": {"form": "mapping", "effect": "text"}}),
         ("{type: start, says: S}", {"cells.": {"inner": "start", "effect": "system"}}),
-        ("{type: performance, says: S, effect: system}", {"cells.": {"form": "entries", "effect": "system"}}),
+        ("{type: operations, says: S}", {"cells.": {"form": "entries", "effect": "system"}}),
+        (
+            "{type: performance, says: S, effect: system}",
+            {"cells.": {"form": "entries", "inner": "indicator", "effect": "system"}},
+        ),
         ("{type: count, says: S, told: elsewhere}", {}),
     ],
 )

@@ -1,7 +1,8 @@
 """The table of kinds: what elements of each kind have, how it is compared, matched and worded.
 
-A new field of a kind is one `KeySpec` (and a `FeatureSpec`, if elements are recognised by it) in the module of its kind.
-tests/compare/test_element_kinds.py compares the table with the schema, the model, the resolved record and the cards.
+A kind has its keys from the description of the language (`described_keys`), and beside them what is no key of it. What
+elements are recognised by is a `FeatureSpec` in the module of their kind. tests/compare/test_element_kinds.py compares the
+table with the description, the model, the resolved record and the cards.
 """
 
 from archgen.compare.kinds.component_type_kind import COMPONENT_TYPE

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from archgen.compare.compared_elements import SOME_PORTS
 from archgen.compare.kinds.key_spec import ReadContext
 from archgen.compare.normal_values import ElementTitle, freeze_value, normalize_text, normalize_title
-from archgen.model.component import Component, ComponentType, Input, Output
+from archgen.model.component import Component, ComponentType, Input, Output, PerformanceIndicator
 from archgen.model.declared_timing import Timing
 from archgen.model.generic_names import read_generic_name
 from archgen.model.parameter import format_parameter
@@ -43,17 +43,9 @@ def read_medium(port: Input | Output, _context: ReadContext) -> str | None:
     return port.medium if port.medium_written else None
 
 
-def read_performance(component: Component, _context: ReadContext) -> Mapping[str, object]:
-    """Return the performance by `id.key`: title, accuracy and execution time."""
-    return {
-        f"{performance.id}.{key}": value
-        for performance in component.performance
-        for key, value in (
-            ("title", normalize_title(performance.id, performance.title)),
-            ("accuracy", performance.accuracy),
-            ("execution_time", performance.execution_time),
-        )
-    }
+def find_indicators(component: Component, _context: ReadContext) -> Mapping[str, PerformanceIndicator]:
+    """Return the indicators of performance, each by what stands before its keys."""
+    return {f"{indicator.id}.": indicator for indicator in component.performance}
 
 
 def find_node_timing(component: Component, context: ReadContext) -> Timing | None:

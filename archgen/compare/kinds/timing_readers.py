@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from archgen.compare.kinds.key_spec import ReadContext
 from archgen.compare.normal_values import last_part
-from archgen.model.declared_timing import Timing
+from archgen.model.declared_timing import InputTiming, OutputTiming, Timing
 from archgen.model.quantity import Quantity
 from archgen.timing.figures.figure_wording import format_rate
 
@@ -23,34 +23,28 @@ def read_rate(timing: Timing, _context: ReadContext) -> Quantity | None:
     return Quantity(rate, format_rate(rate))
 
 
-def read_output_timing(timing: Timing, context: ReadContext) -> Mapping[str, object]:
-    """Return what is said of outputs that are not published at each activation, by `output.key`."""
-    return {
-        f"{last_part(context.matched_ids.common_id('output', port))}.{key}": value
-        for port, output_timing in timing.outputs.items()
-        for key, value in (
-            ("conditional", output_timing.conditional or None),
-            ("max_gap", output_timing.max_gap),
-        )
-    }
+def find_output_timing(timing: Timing, context: ReadContext) -> Mapping[str, OutputTiming]:
+    """Return the outputs that are not published at each activation, each by what stands before its keys."""
+    return {_name_port("output", port, context): said for port, said in timing.outputs.items()}
+
+
+def find_input_timing(timing: Timing, context: ReadContext) -> Mapping[str, InputTiming]:
+    """Return the inputs whose messages a callback stores, each by what stands before its keys."""
+    return {_name_port("input", port, context): said for port, said in timing.inputs.items()}
+
+
+def _name_port(kind: str, port: str, context: ReadContext) -> str:
+    return f"{last_part(context.matched_ids.common_id(kind, port))}."
+
+
+def read_stored(input_timing: InputTiming, _context: ReadContext) -> str | None:
+    """Return whether no callback stores the messages of an input, in the word of the language."""
+    return "at_once" if input_timing.stored_at_once else None
 
 
 def read_calls(timing: Timing, context: ReadContext) -> Mapping[str, object]:
     """Return how often each service or action is called in one activation."""
     return {last_part(context.matched_ids.common_id("input", port)): count for port, count in timing.calls.items()}
-
-
-def read_input_timing(timing: Timing, context: ReadContext) -> Mapping[str, object]:
-    """Return what is said of the callbacks that store inputs, by `input.key`."""
-    return {
-        f"{last_part(context.matched_ids.common_id('input', port))}.{key}": value
-        for port, input_timing in timing.inputs.items()
-        for key, value in (
-            ("wcet", input_timing.wcet),
-            ("bcet", input_timing.bcet),
-            ("stored", "at_once" if input_timing.stored_at_once else None),
-        )
-    }
 
 
 def read_uses(timing: Timing, context: ReadContext) -> Mapping[str, object]:

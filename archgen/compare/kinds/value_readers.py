@@ -21,15 +21,26 @@ _Default = str | int | tuple[str, ...] | None
 
 
 def make_form_reader(attribute: str, facts: KeyFacts) -> Reader:
-    """Return what reads an attribute of the model in the normal form of its type. Raise KeyError for one without such."""
+    """Return what reads an attribute of the model in the normal form of its type."""
     if "names" in facts:
         return _NAME_READERS[facts.get("form", "value")](attribute, facts["names"])
     return _READERS[facts.get("form", "value")](attribute, facts.get("default"))
 
 
 def _read_value(attribute: str, default: _Default) -> Reader:
+    if default is None:
+        return lambda element, _: getattr(element, attribute)
     # What counts where nothing is written is not told apart from nothing.
     return lambda element, _: None if (value := getattr(element, attribute)) == default else value
+
+
+def _refuse_elements(attribute: str, _default: _Default) -> Reader:
+    def read(_element: object, _context: ReadContext) -> object:
+        # Not before something is read: else `make language` could not mend it.
+        message = f"`{attribute}` holds elements, and no function in READERS reads them"
+        raise LookupError(message)
+
+    return read
 
 
 def _read_flag(attribute: str, _default: _Default) -> Reader:
@@ -86,8 +97,9 @@ _READERS: Mapping[str, Callable[[str, _Default], Reader]] = {
     "data": _read_data,
     "properties": _read_properties,
     "hints": _read_hints,
+    "entries": _refuse_elements,
 }
-"""What reads each form that a single function can read."""
+"""What reads each form of values that name no elements."""
 
 
 def _read_name(attribute: str, kind: str) -> Reader:
