@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -53,14 +52,3 @@ def test_the_rule_judges_and_is_explained(python: Path, tmp_path: Path) -> None:
 def test_the_version_names_the_package(python: Path, tmp_path: Path) -> None:
     done = run_here(python, tmp_path, "-m", "archgen", "--version")
     assert done.stdout.endswith("plug-in archgen-toy 1.0: importers toy, rules toy\n")
-
-
-def test_the_page_shows_the_example_as_it_is() -> None:
-    page = (ROOT / "docs" / "plugins.md").read_text(encoding="utf-8")
-    code = (EXAMPLE / "archgen_toy.py").read_text(encoding="utf-8")
-    blocks = "\n\n\n".join(block.strip("\n") for block in re.findall(r"```python\n(.*?)```", page, re.DOTALL))
-    about, _, rest = code.partition("\n\n")
-    assert about.startswith('"""')
-    for line in rest.splitlines():
-        assert line in blocks.splitlines(), f"docs/plugins.md does not show: {line}"
-    assert f"```toml\n{(EXAMPLE / 'pyproject.toml').read_text(encoding='utf-8')}```" in page

@@ -13,6 +13,7 @@ from tests.running import ROOT
 
 TOOL = runpy.run_path(str(ROOT / "tools" / "make_plugin_page.py"))
 TOLD: dict[str, list[str]] = yaml.safe_load((ROOT / "tests/plugin/told_names.yaml").read_text(encoding="utf-8"))
+EXAMPLE = ROOT / "examples" / "plugin"
 PAGE = (ROOT / "docs" / "plugins.md").read_text(encoding="utf-8")
 
 
@@ -37,3 +38,13 @@ def test_every_plug_in_names_its_page() -> None:
     for name, facts in list_shipped_plugins().items():
         assert facts["api"] == 1, name
         assert (ROOT / facts["page"]).is_file(), name
+
+
+def test_the_page_shows_the_example_as_it_is() -> None:
+    code = (EXAMPLE / "archgen_toy.py").read_text(encoding="utf-8")
+    blocks = "\n\n\n".join(block.strip("\n") for block in re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL))
+    about, _, rest = code.partition("\n\n")
+    assert about.startswith('"""')
+    for line in rest.splitlines():
+        assert line in blocks.splitlines(), f"docs/plugins.md does not show: {line}"
+    assert f"```toml\n{(EXAMPLE / 'pyproject.toml').read_text(encoding='utf-8')}```" in PAGE
