@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 from archgen.analyses import bound_findings
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.diagnostics.rule_options import OptionValues, RuleOption, read_option_values
-from archgen.frozen import dataclass
+from archgen.findings.rule_table import FAILED_RULE
+from archgen.frozen import dataclass, replace
 from archgen.installed_plugins import RULES, PluginEntry, PluginRefusedError, list_entries, load_facts
 
 if TYPE_CHECKING:
@@ -17,26 +18,13 @@ if TYPE_CHECKING:
 
     from archgen.model.architecture import Architecture
 
-FAILED_RULE = Rule(
-    "failed-rule",
-    Severity.ERROR,
-    """\
-A rule of an installed package failed, or found something that is no finding of its own.
-
-Why: What the rule would have found is not known, and a check that was not made must not pass for one that found nothing. The
-message names the package and what went wrong: who wrote it can mend it. `archgen --no-plugins check` leaves out the rules of all
-packages that do not ship with archgen; [Plug-ins](../plugins.md) says how rules of others come in.
-""",
-)
-
 
 @dataclass(frozen=True, slots=True)
 class PluggedRule:
-    """A rule of a package, the function behind it, and who brings it."""
+    """A rule of a package, and the function behind it."""
 
     rule: Rule
     find: Callable[..., Iterable[Any]]
-    origin: str
 
 
 @cache
@@ -61,7 +49,7 @@ def _load_rules(entry: PluginEntry) -> Iterator[PluggedRule]:
             _refuse(entry, f"`{function.__name__}` has no docstring, which is the page of a rule")
         if not all(isinstance(option, RuleOption) for option in options):
             _refuse(entry, f"the options of `{function.__name__}` are not all of the type RuleOption")
-        yield PluggedRule(Rule.from_function(function, severity, options), function, entry.origin)
+        yield PluggedRule(replace(Rule.from_function(function, severity, options), origin=entry.origin), function)
 
 
 def _refuse(entry: PluginEntry, problem: str) -> None:
@@ -74,9 +62,9 @@ def refuse_taken_names(plugged_rules: Iterable[PluggedRule], taken: Iterable[str
     origins = dict.fromkeys(taken, "archgen")
     for plugged in plugged_rules:
         if plugged.rule.name in origins:
-            msg = f"the rule `{plugged.rule.name}` of {plugged.origin} cannot be used: {origins[plugged.rule.name]} has one of this name"
+            msg = f"the rule `{plugged.rule.name}` of {plugged.rule.origin} cannot be used: {origins[plugged.rule.name]} has one of this name"
             raise PluginRefusedError(msg)
-        origins[plugged.rule.name] = plugged.origin
+        origins[plugged.rule.name] = plugged.rule.origin
 
 
 def judge_plugged(architecture: Architecture, rule_options: Mapping[str, OptionValues]) -> Iterator[Diagnostic]:
@@ -101,8 +89,8 @@ def _judge_by(
 
 
 def _report_failure(architecture: Architecture, plugged: PluggedRule, problem: str) -> Diagnostic:
-    message = f"the rule `{plugged.rule.name}` of {plugged.origin} failed: {problem}"
+    message = f"the rule `{plugged.rule.name}` of {plugged.rule.origin} failed: {problem}"
     help_line = (
-        f"tell who wrote {plugged.origin.partition(' ')[0]}; `archgen --no-plugins check` does without its rules"
+        f"tell who wrote {plugged.rule.origin.partition(' ')[0]}; `archgen --no-plugins check` does without its rules"
     )
     return Diagnostic(FAILED_RULE.name, message, architecture.project.at, help=help_line)
