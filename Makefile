@@ -87,6 +87,7 @@ pages: .make/test
 	$(BIN)/python tools/make_ros_interfaces.py
 	$(BIN)/python tools/make_ros_library_page.py
 	$(BIN)/python tools/make_module_pages.py
+	$(BIN)/python tools/make_plugin_page.py
 
 clean:
 	rm -rf .venv .make archgen-out dist tests/judges/node_modules

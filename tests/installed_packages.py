@@ -36,18 +36,24 @@ def write_package(folder: Path, name: str, entries: Mapping[str, Mapping[str, st
 
 
 @contextmanager
-def installed_in(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+def installed_in(folder: Path) -> Iterator[None]:
     """Let archgen find the packages of a folder as if an installer had written them there."""
-    monkeypatch.setattr(installed_plugins, "list_package_folders", lambda: (str(folder),))
-    monkeypatch.syspath_prepend(folder)
-    _forget_packages()
-    try:
-        yield
-    finally:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(installed_plugins, "list_package_folders", lambda: (str(folder),))
+        patch.syspath_prepend(folder)
         _forget_packages()
-        for name, module in list(sys.modules.items()):
-            if (getattr(module, "__file__", None) or "").startswith(f"{folder}/"):
-                del sys.modules[name]
+        try:
+            yield
+        finally:
+            patch.undo()
+            _forget_packages()
+            _forget_modules(folder)
+
+
+def _forget_modules(folder: Path) -> None:
+    for name, module in list(sys.modules.items()):
+        if (getattr(module, "__file__", None) or "").startswith(f"{folder}/"):
+            del sys.modules[name]
 
 
 def _forget_packages() -> None:

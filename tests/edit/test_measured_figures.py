@@ -14,7 +14,7 @@ from archgen.edit.measured_figures import FigureSorter, collect_times
 from archgen.edit.measured_slice import make_measured_slice
 from archgen.model.quantity import Quantity
 from archgen.timing.chains.measured_comparison import Observation
-from tests.plugins.recordings.recorded import PROJECT
+from tests.measured_project import PROJECT
 
 OPEN = PROJECT.replace(", wcet: 5 ms", "")
 

@@ -49,12 +49,10 @@ def install(folder: Path, target: str, code: str = CODE) -> None:
     write_package(folder, "archgen_names", {"archgen.rules": {"names": f"archgen_names:{target}"}}, code)
 
 
-def test_a_rule_of_a_package_is_known_in_settings_comments_and_options(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_rule_of_a_package_is_known_in_settings_comments_and_options(tmp_path: Path) -> None:
     assert judge(settings="rules: {short-name: error}\n") == ["warning unknown-rule: there is no rule `short-name`"]
     install(tmp_path, "RULES")
-    with installed_in(tmp_path, monkeypatch):
+    with installed_in(tmp_path):
         assert judge() == ["warning short-name: `g.ab` is short"]
         assert judge(settings="rules: {short-name: error}\n") == ["error short-name: `g.ab` is short"]
         assert judge(settings="rules: {short-name: off}\n") == []
@@ -66,15 +64,16 @@ def test_a_rule_of_a_package_is_known_in_settings_comments_and_options(
 
 def test_plug_ins_of_others_are_switched_off(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     install(tmp_path, "RULES")
+    # Set here, so that it is taken back.
     monkeypatch.setenv(SWITCH_VARIABLE, "")
-    with installed_in(tmp_path, monkeypatch):
+    with installed_in(tmp_path):
         switch_off_others()
         assert judge() == []
 
 
-def test_a_rule_that_fails_is_a_finding_that_names_the_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_rule_that_fails_is_a_finding_that_names_the_package(tmp_path: Path) -> None:
     install(tmp_path, "BROKEN")
-    with installed_in(tmp_path, monkeypatch):
+    with installed_in(tmp_path):
         failure = (
             "the rule `broken-rule` of archgen-names 1.0 failed: ZeroDivisionError: integer division or modulo by zero"
         )
@@ -93,12 +92,10 @@ def test_a_rule_that_fails_is_a_finding_that_names_the_package(tmp_path: Path, m
         ("raise SystemExit(3)\n    yield", "SystemExit: 3"),
     ],
 )
-def test_what_is_no_finding_of_the_rule_is_refused(
-    body: str, problem: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_is_no_finding_of_the_rule_is_refused(body: str, problem: str, tmp_path: Path) -> None:
     code = f'from archgen.plugin.findings import Diagnostic, Severity\ndef odd(architecture):\n    """Odd."""\n    {body}\nRULES = {{"api": 1, "rules": [(odd, Severity.NOTE)]}}\n'
     install(tmp_path, "RULES", code)
-    with installed_in(tmp_path, monkeypatch):
+    with installed_in(tmp_path):
         (found,) = judge()
         assert found.startswith(f"error failed-rule: the rule `odd` of archgen-names 1.0 failed: {problem}")
 
@@ -116,7 +113,7 @@ ENDLESS = {"api": 1, "rules": [(endless, Severity.NOTE)]}
     )
     install(tmp_path, "ENDLESS", code)
     monkeypatch.setattr(analyses, "MAX_LOOKED_FOR", 5)
-    with installed_in(tmp_path, monkeypatch):
+    with installed_in(tmp_path):
         messages = {
             finding.message for finding in pipeline.check_text(PROJECT.format(comment="")) if finding.rule == "endless"
         }
@@ -144,27 +141,25 @@ ENDLESS = {"api": 1, "rules": [(endless, Severity.NOTE)]}
         ("1 / 0", "cannot be loaded: `archgen_names:RULES`: ZeroDivisionError: division by zero"),
     ],
 )
-def test_what_is_no_set_of_rules_is_said_in_a_sentence(
-    facts: str, problem: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_is_no_set_of_rules_is_said_in_a_sentence(facts: str, problem: str, tmp_path: Path) -> None:
     install(
         tmp_path,
         "RULES",
         f'{CODE}\ndef unread_output(architecture):\n    """It has a name that is taken."""\nRULES = {facts}\n',
     )
-    with installed_in(tmp_path, monkeypatch), pytest.raises(PluginRefusedError) as refused:
+    with installed_in(tmp_path), pytest.raises(PluginRefusedError) as refused:
         judge()
     assert problem in str(refused.value)
     assert "archgen-names 1.0" in str(refused.value)
 
 
-def test_packages_are_part_of_the_keys_of_caches(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_packages_are_part_of_the_keys_of_caches(tmp_path: Path) -> None:
     before = stamp_program()
     install(tmp_path, "RULES")
-    with installed_in(tmp_path, monkeypatch):
+    with installed_in(tmp_path):
         with_rules = stamp_program()
         assert "archgen-names 1.0" in with_rules
     install(tmp_path, "RULES", f"{CODE}\n# changed, under the same version\n")
-    with installed_in(tmp_path, monkeypatch):
+    with installed_in(tmp_path):
         assert stamp_program() not in {before, with_rules}
     assert stamp_program() != with_rules

@@ -1,4 +1,4 @@
-"""A small robot, and recordings of it as text: each test writes the lines that it is about."""
+"""Recordings of a small robot as text: each test writes the lines that it is about."""
 
 from __future__ import annotations
 
@@ -10,29 +10,8 @@ from archgen.plugins.recordings.recorded_names import RecordedNames
 from archgen.plugins.recordings.recording_import import read_recordings
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.run_analysis import analyse_architecture
+from tests.measured_project import PROJECT
 
-PROJECT = """\
-archgen: 1
-project: {id: p, title: P}
-groups:
-  g:
-    components:
-      scanner: {outputs: {scan: T}, timing: {period: 50 ms, wcet: 5 ms}}
-      planner: {inputs: {scan: scanner.scan, map: mapper.map}, outputs: {path: T}}
-      base: {inputs: {path: planner.path}, timing: {period: 20 ms, wcet: 2 ms}}
-      mapper: {inputs: {scan: scanner.scan}, outputs: {map: T}, timing: {period: 1 s, wcet: 90 ms}}
-      checker: {outputs: {state: T}, timing: {period: 100 ms}}
-nodes:
-  scan: {implements: scanner, namespace: /front, publishes: {scan: {topic: /scan, message: a_msgs/msg/T}}}
-  plan:
-    implements: planner
-    publishes: {path: {topic: /path, message: a_msgs/msg/T}}
-    timing: {trigger: [scan], wcet: 20 ms}
-  drive: {implements: base}
-  maps: {implements: [mapper, checker], publishes: {map: {topic: /map, message: a_msgs/msg/T}}}
-chains:
-  avoid: {through: [scan, plan, drive], deadline: 90 ms}
-"""
 _NAMES = {"1": "/front scan", "2": "/ plan", "3": "/ drive", "4": "/ maps"}
 
 

@@ -11,7 +11,8 @@ import pytest
 
 from archgen import resources
 from tests.cli.conftest import Run
-from tests.plugins.recordings.recorded import PROJECT, begin, node, subscription, timer
+from tests.measured_project import PROJECT
+from tests.plugins.recordings.recorded import begin, node, subscription, timer
 from tests.plugins.recordings.recorded import run as record_run
 
 TRACE = (

@@ -1,0 +1,59 @@
+"""Write into docs/plugins.md what the plug-ins that ship say of themselves, and the names of archgen.plugin."""
+
+from __future__ import annotations
+
+import importlib
+import re
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from archgen.installed_plugins import SHIPPED_PACKAGE, list_shipped_plugins
+
+ROOT = Path(__file__).resolve().parents[1]
+PAGE = ROOT / "docs" / "plugins.md"
+_NO_PARTS = frozenset({"api", "page"})
+
+
+def renew_page(page: str) -> str:
+    """Return the page with both tables as they are now."""
+    for mark, lines in (("shipped", _list_plugins()), ("names", _list_names())):
+        table = "\n".join(lines)
+        page = re.sub(rf"(?s)(<!-- {mark} -->\n).*?(<!-- end of {mark} -->)", rf"\g<1>{table}\n\g<2>", page)
+    return page
+
+
+def _list_plugins() -> Iterator[str]:
+    yield "| plug-in | what it is for | what it brings | page |"
+    yield "|---|---|---|---|"
+    for name, facts in list_shipped_plugins().items():
+        module = importlib.import_module(f"{SHIPPED_PACKAGE}.{name}")
+        parts = "; ".join(
+            f"{kind}: {', '.join(f'`{each}`' for each in facts[kind])}" for kind in facts if kind not in _NO_PARTS
+        )
+        page = facts["page"].removeprefix("docs/")
+        yield f"| `{name}` | {(module.__doc__ or '').strip()} | {parts} | [{page}]({page}) |"
+
+
+def _list_names() -> Iterator[str]:
+    yield "| module | what it is for | names |"
+    yield "|---|---|---|"
+    for subject in list_subjects():
+        module = importlib.import_module(f"archgen.plugin.{subject}")
+        names = ", ".join(f"`{name}`" for name in module.__all__)
+        yield f"| `archgen.plugin.{subject}` | {(module.__doc__ or '').strip()} | {names} |"
+
+
+def list_subjects() -> list[str]:
+    """Return the modules of archgen.plugin."""
+    return sorted(file.stem for file in (ROOT / "archgen" / "plugin").glob("*.py") if file.stem != "__init__")
+
+
+def main() -> int:
+    """Write the page."""
+    PAGE.write_text(renew_page(PAGE.read_text(encoding="utf-8")), encoding="utf-8", newline="\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
