@@ -237,7 +237,8 @@ def _scan_folder(folder: str) -> Iterator[PluginEntry]:
     for name in names:
         if name.endswith(".dist-info"):
             try:
-                with open(os.path.join(folder, name, "entry_points.txt"), "rb") as stream:  # noqa: PTH118, PTH123
+                # Unbuffered: there are as many of these files as there are packages.
+                with open(f"{folder}/{name}/entry_points.txt", "rb", buffering=0) as stream:  # noqa: PTH123
                     data = stream.read()
             except OSError:
                 continue

@@ -11,8 +11,7 @@ from generator_table import PAGE, renew_table
 from archgen.findings import rule_pages
 from archgen.findings.comparison_rules import COMPARISON_RULES
 from archgen.findings.generation_rules import GENERATION_RULES
-from archgen.findings.plugged_rules import FAILED_RULE
-from archgen.findings.rule_table import index_rules
+from archgen.findings.rule_table import FAILED_RULE, index_rules
 from archgen.pipeline import SHIPPED_RULES
 
 FOLDER = Path(__file__).resolve().parent.parent / "docs" / "rules"

@@ -8,7 +8,8 @@ from functools import cache
 from archgen import analyses, compose, findings, link, project, schema
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.findings import rule_table
-from archgen.findings.plugged_rules import FAILED_RULE, load_plugged_rules, refuse_taken_names
+from archgen.findings.rule_table import FAILED_RULE
+from archgen.installed_plugins import RULES, list_entries
 from archgen.syntax import interface_definitions as interface_files
 
 SHIPPED_RULES: tuple[Rule, ...] = (
@@ -28,6 +29,10 @@ READING_RULES = frozenset(rule.name for rule in (*interface_files.RULES, *schema
 def index_all_rules() -> Mapping[str, Rule]:
     """Return all rules by name: those that ship, and those of installed packages. Raise PluginRefusedError."""
     shipped_rules = (*SHIPPED_RULES, FAILED_RULE)
+    if not list_entries(RULES):
+        return rule_table.index_rules(shipped_rules)
+    from archgen.findings.plugged_rules import load_plugged_rules, refuse_taken_names
+
     plugged_rules = load_plugged_rules()
     refuse_taken_names(plugged_rules, (rule.name for rule in shipped_rules))
     return rule_table.index_rules((*shipped_rules, *(plugged.rule for plugged in plugged_rules)))

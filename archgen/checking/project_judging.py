@@ -11,16 +11,18 @@ from archgen.checking.linked_project import LinkedProject, PartMemory, link_merg
 from archgen.checking.merged_project import MergedProject
 from archgen.checking.named_contents import read_named_contents
 from archgen.diagnostics.diagnostic import Diagnostic, Severity, settle_diagnostics
+from archgen.diagnostics.rule_options import OptionValues
 from archgen.findings import (
     error_aftermath,
     finding_limit,
     ignore_comments,
     instance_findings,
     option_settings,
-    plugged_rules,
     rule_table,
 )
+from archgen.installed_plugins import RULES, list_entries
 from archgen.link import title_guesses
+from archgen.model.architecture import Architecture
 from archgen.timing.run_analysis import AnalysisMemory
 
 
@@ -53,7 +55,7 @@ def judge_merged_project(
         *error_aftermath.drop_aftermath(
             (
                 *analyses.check_architecture(architecture, analysis, rule_options),
-                *plugged_rules.judge_plugged(architecture, rule_options),
+                *_judge_by_packages(architecture, rule_options),
             ),
             merged_project.reading_errors,
             waiting_rules,
@@ -77,6 +79,15 @@ def judge_merged_project(
         read_parameters.texts,
         read_parameters.packed_texts,
     )
+
+
+def _judge_by_packages(architecture: Architecture, rule_options: Mapping[str, OptionValues]) -> Iterable[Diagnostic]:
+    """Return what the rules of installed packages find. Where no package has any, nothing is loaded for them."""
+    if not list_entries(RULES):
+        return ()
+    from archgen.findings.plugged_rules import judge_plugged
+
+    return judge_plugged(architecture, rule_options)
 
 
 def _settle_findings(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from archgen.analyses import bound_findings
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.diagnostics.rule_options import OptionValues, RuleOption, read_option_values
+from archgen.findings.rule_table import FAILED_RULE
 from archgen.frozen import dataclass
 from archgen.installed_plugins import RULES, PluginEntry, PluginRefusedError, list_entries, load_facts
 
@@ -16,18 +17,6 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from archgen.model.architecture import Architecture
-
-FAILED_RULE = Rule(
-    "failed-rule",
-    Severity.ERROR,
-    """\
-A rule of an installed package failed, or found something that is no finding of its own.
-
-Why: What the rule would have found is not known, and a check that was not made must not pass for one that found nothing. The
-message names the package and what went wrong: who wrote it can mend it. `archgen --no-plugins check` leaves out the rules of all
-packages that do not ship with archgen; [Plug-ins](../plugins.md) says how rules of others come in.
-""",
-)
 
 
 @dataclass(frozen=True, slots=True)
