@@ -18,6 +18,7 @@ from archgen import installed_plugins
 from archgen.installed_backends import list_installed_backends
 from archgen.resources import SWITCH_VARIABLE
 from archgen.views.generation import find_view_maker
+from tests.installed_packages import installed_in
 from tests.running import ROOT, archgen_here, contents
 
 PROJECT = """\
@@ -81,17 +82,10 @@ def test_the_example_of_the_page_in_a_python_where_it_is_installed(robot: Path, 
 
 
 @pytest.fixture
-def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """Give a folder of installed packages that this process has, too."""
-    folder = tmp_path / "site-packages"
-    folder.mkdir()
-    monkeypatch.syspath_prepend(str(folder))
-    monkeypatch.setattr(installed_plugins, "list_package_folders", lambda: (str(folder),))
-    installed_plugins._scan_folders.cache_clear()  # noqa: SLF001 - what is installed changes only here while a process runs
-    monkeypatch.delitem(sys.modules, "archgen_roster", raising=False)
-    yield folder
-    sys.modules.pop("archgen_roster", None)
-    installed_plugins._scan_folders.cache_clear()  # noqa: SLF001 - as above
+def site(tmp_path: Path) -> Iterator[Path]:
+    """Give a folder of installed packages that this process has, too; a package is put there before archgen looks."""
+    with installed_in(tmp_path / "site-packages"):
+        yield tmp_path / "site-packages"
 
 
 def test_its_backends_are_listed_behind_those_that_ship(site: Path, robot: Path) -> None:

@@ -28,8 +28,11 @@ def _list_plugins() -> Iterator[str]:
     yield "|---|---|---|---|"
     for name, facts in list_shipped_plugins().items():
         module = importlib.import_module(f"{SHIPPED_PACKAGE}.{name}")
+        brought = {kind: list(facts[kind]) for kind in facts if kind not in _NO_PARTS}
+        folder = ROOT / "archgen" / "plugins" / name / "backends"
+        brought["backends"] = sorted(file.parent.name for file in folder.glob("*/backend.yaml"))
         parts = "; ".join(
-            f"{kind}: {', '.join(f'`{each}`' for each in facts[kind])}" for kind in facts if kind not in _NO_PARTS
+            f"{kind}: {', '.join(f'`{each}`' for each in names)}" for kind, names in brought.items() if names
         )
         page = facts["page"].removeprefix("docs/")
         yield f"| `{name}` | {(module.__doc__ or '').strip()} | {parts} | [{page}]({page}) |"

@@ -1,4 +1,4 @@
-"""Orca Robotics: definition files of components."""
+"""Orca Robotics: definition files of components, and configurations to write."""
 
 PLUGIN = {
     "api": 1,
