@@ -21,8 +21,8 @@ from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import is_known_bound, is_unfound, list_assumptions, multiply_value
 from archgen.timing.load.host_loads import activity_share
-from archgen.timing.load.response_workings import ResponseWorkings
-from archgen.timing.rates.link_workings import work_out_link
+from archgen.timing.load.response_terms import ResponseTerms
+from archgen.timing.rates.link_terms import work_out_link
 from archgen.timing.system.timing_system import Activity, Arc
 
 _FIGURE_FORMATS: Mapping[str, Callable[[Fraction], str]] = {
@@ -212,7 +212,7 @@ def _activity_lines(analysis: Analysis, name: str, depth: int, *, rate_only: boo
         )
         yield ReasonLine(depth, f"{name}: {response_text}")
         yield from _reason_lines(response.reasons, depth + 1)
-        workings = ResponseWorkings(analysis.state) if analysis.state else None
+        workings = ResponseTerms(analysis.state) if analysis.state else None
         if workings:
             yield from list_working_lines(analysis, workings, name, depth + 1)
         for formula, words in list_lateness_formulas(analysis, name):

@@ -7,10 +7,10 @@ from collections.abc import Iterator
 from archgen.timing.analysis import Analysis
 from archgen.timing.chains.working_lines import ReasonLine, WorkingLines
 from archgen.timing.figures import figure_wording
-from archgen.timing.load.response_workings import ResponseWorkings
+from archgen.timing.load.response_terms import ResponseTerms
 
 
-def list_working_lines(analysis: Analysis, workings: ResponseWorkings, name: str, depth: int) -> Iterator[ReasonLine]:
+def list_working_lines(analysis: Analysis, workings: ResponseTerms, name: str, depth: int) -> Iterator[ReasonLine]:
     """Explain what a response is made of, and the time of the longest run that ends with the activity."""
     lines = WorkingLines(analysis.system.tick)
     working = workings.find_response(name)
@@ -32,7 +32,7 @@ def list_working_lines(analysis: Analysis, workings: ResponseWorkings, name: str
             yield ReasonLine(depth, "the same work as above, and nothing is taken off")
 
 
-def list_storing_lines(analysis: Analysis, workings: ResponseWorkings, name: str, depth: int) -> Iterator[ReasonLine]:
+def list_storing_lines(analysis: Analysis, workings: ResponseTerms, name: str, depth: int) -> Iterator[ReasonLine]:
     """Explain how long a message that an activity only reads may wait to be stored."""
     wait = analysis.storing_waits.get(name)
     if wait is None or not wait.value:

@@ -27,6 +27,19 @@ class LaneSums(NamedTuple):
     held_work: int
 
 
+class CoreBlock(NamedTuple):
+    """For how long (`time`) all cores may be busy beside a path: with `lane_works`, and with what was `pending`.
+
+    Where it `is_cut`, no thread's work counts for longer than that; it may have what was pending in it (`has_pending`).
+    """
+
+    time: int
+    lane_works: Sequence[int]
+    pending: int = 0
+    is_cut: bool = False
+    has_pending: bool = False
+
+
 class PathWork:
     """The work that comes in the way of paths, for given event models; `delays` are how long ways take at most."""
 
@@ -77,13 +90,19 @@ class PathWork:
                 origin: count if window <= calm_windows[origin] else max_arrivals(self.streams[origin], window)
                 for origin, count in self.calm_arrivals.items()
             }
-            return self._path_work(path, window, arrivals) + self.find_time_blocked(path, window, arrivals)
+            return self._path_work(path, window, arrivals) + self._find_block(path, window, arrivals).time
         # In such a window nothing comes twice, and nothing is pending: its length does not matter.
         time = self.calm_times.get(id(path))
         if time is None:
             time = self._path_work(path, window, self.calm_arrivals) + self._find_calm_block(path)
             self.calm_times[id(path)] = time
         return time
+
+    def find_block(self, path: CorePath, window: int) -> CoreBlock:
+        """Return how all cores may be busy with other threads in a window."""
+        return self._find_block(
+            path, window, {origin: max_arrivals(model, window) for origin, model in self.streams.items()}
+        )
 
     def _find_calm_block(self, path: CorePath) -> int:
         """Return how long all cores may be busy with other threads where nothing comes twice and nothing is pending."""
@@ -93,7 +112,7 @@ class PathWork:
             return -(-sum(lane_works) // self.cores.core_count)
         return divide_among_cores(split_lanes(path, lane_works), 0, self.cores.core_count)
 
-    def count_pending(self, origin: EventOrigin, window: int, delay: int, arrivals: Mapping[EventOrigin, int]) -> int:
+    def _count_pending(self, origin: EventOrigin, window: int, delay: int, arrivals: Mapping[EventOrigin, int]) -> int:
         """Return how many events more there are in a window and up to `delay` before it than in a window."""
         if not delay or window + delay <= self.calm_windows[origin]:
             return 0
@@ -106,16 +125,16 @@ class PathWork:
             _, origin, work, _, _ = jobs[number]
             # At t0 nothing waits in the threads of the path themselves.
             delay = self.delays.get(way_before, 0) if way_before else 0
-            total += work * (arrivals[origin] + self.count_pending(origin, window, delay, arrivals))
+            total += work * (arrivals[origin] + self._count_pending(origin, window, delay, arrivals))
         for numbers, threads in path.crowds:
             crowd_work = 0
             for key, origin, work, _, _ in (jobs[number] for number in numbers):
-                pending = self.count_pending(origin, window, self.delays.get(key, 0), arrivals)
+                pending = self._count_pending(origin, window, self.delays.get(key, 0), arrivals)
                 crowd_work += work * (arrivals[origin] + pending)
             total -= -crowd_work // threads
         return total
 
-    def find_time_blocked(self, path: CorePath, window: int, arrivals: Mapping[EventOrigin, int]) -> int:
+    def _find_block(self, path: CorePath, window: int, arrivals: Mapping[EventOrigin, int]) -> CoreBlock:
         """Return how long all cores may be busy with other threads: with what arrives, and with what was pending.
 
         Pending at t0 is what waits for m - 1 threads, and all that is foreign, for that may have waited for a core of its
@@ -124,20 +143,23 @@ class PathWork:
         core_count = self.cores.core_count
         lane_works, pending_works, pending_by_origin, held_work = self._sum_lanes(path, window, arrivals)
         if not any(pending_works) and not path.crowds:
-            return divide_among_cores(split_lanes(path, lane_works), 0, core_count)
-        most_pending = held_work + self.find_most_waiting(path, pending_by_origin)
-        blocked_time = -(-(sum(lane_works) + most_pending) // core_count)
+            time = divide_among_cores(split_lanes(path, lane_works), 0, core_count)
+            return CoreBlock(time, lane_works, is_cut=True)
+        most_pending = held_work + self._find_most_waiting(path, pending_by_origin)
+        block = CoreBlock(-(-(sum(lane_works) + most_pending) // core_count), lane_works, most_pending)
         if path.crowds:
-            return blocked_time
+            return block
         # All that each thread may have in the end: less, where a single one has most of it.
         all_works = [work + pending for work, pending in zip(lane_works, pending_works, strict=True)]
-        blocked_time = min(blocked_time, divide_among_cores(split_lanes(path, all_works), 0, core_count))
-        if max(lane_works) > blocked_time:
-            most_pending = self.find_most_pending(path)
-            blocked_time = min(
-                blocked_time, divide_among_cores(split_lanes(path, lane_works), most_pending, core_count)
-            )
-        return blocked_time
+        time = divide_among_cores(split_lanes(path, all_works), 0, core_count)
+        if time < block.time:
+            block = CoreBlock(time, all_works, is_cut=True, has_pending=True)
+        if max(lane_works) > block.time:
+            most_pending = self._find_most_pending(path)
+            time = divide_among_cores(split_lanes(path, lane_works), most_pending, core_count)
+            if time < block.time:
+                block = CoreBlock(time, lane_works, most_pending, is_cut=True)
+        return block
 
     def _sum_lanes(self, path: CorePath, window: int, arrivals: Mapping[EventOrigin, int]) -> LaneSums:
         """Add up what comes for each of the other threads, and what was pending."""
@@ -145,7 +167,7 @@ class PathWork:
         pending_works: list[int] = []
         pending_by_origin: dict[EventOrigin, int] = {}
         held_work = 0
-        # As in `count_pending`, but written out: this is the innermost loop of all that is found on several cores.
+        # As in `_count_pending`, but written out: this is the innermost loop of all that is found on several cores.
         for lane_terms in self._look_up_terms(path):
             lane_work = pending_work = 0
             for origin, work, delay, calm_window, streams, is_held in lane_terms:
@@ -185,7 +207,7 @@ class PathWork:
         calm_window = self.calm_windows[origin] - delay if delay else _ENDLESS
         return (origin, work, delay, calm_window, self.streams[origin], is_held)
 
-    def find_most_pending(self, path: CorePath) -> int:
+    def _find_most_pending(self, path: CorePath) -> int:
         """Return the most work that can be pending at t0 at all.
 
         The more came before t0, the fewer come after it: but those may be of a thread that cannot do them in time.
@@ -206,9 +228,9 @@ class PathWork:
                     held_work += pending_work
                 else:
                     pending_by_origin[origin] = pending_by_origin.get(origin, 0) + pending_work
-        return held_work + self.find_most_waiting(path, pending_by_origin)
+        return held_work + self._find_most_waiting(path, pending_by_origin)
 
-    def find_most_waiting(self, path: CorePath, work_by_origin: Mapping[EventOrigin, int]) -> int:
+    def _find_most_waiting(self, path: CorePath, work_by_origin: Mapping[EventOrigin, int]) -> int:
         """Return the most work that may have waited for m - 1 threads."""
         waiting_works = [0] * len(path.waiting_lanes)
         lanes_of_origin = self._look_up_lanes(path)
