@@ -12,6 +12,7 @@ import sys
 import textwrap
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import partial
 from importlib import import_module
 from pathlib import Path
@@ -26,6 +27,7 @@ from archgen.model.architecture import Architecture  # noqa: E402
 from archgen.timing.analysis import Analysis  # noqa: E402
 from archgen.timing.chains.chain_bounds import bound_all_chains  # noqa: E402
 from archgen.timing.run_analysis import analyse_architecture, analyse_system  # noqa: E402
+from archgen.timing.system.system_builder import build_system  # noqa: E402
 from tests.timing.exceeded import bounded  # noqa: E402
 from tests.timing.random_styles import random_style_text  # noqa: E402
 from tests.timing.random_systems import architecture, random_text  # noqa: E402
@@ -360,10 +362,21 @@ def list_systems(last: int) -> dict[str, Callable[[], Bounds]]:
         for kind, make in makers:
             name = f"{kind} {seed}"
             systems[name] = partial(_bound_model, name, architecture(make(seed)))
+        systems[f"loaded {seed}"] = partial(_bound_loaded, f"loaded {seed}", architecture(random_style_text(seed)))
         for kind, make_system in (("uses", random_use_system), ("crowded", random_crowded_system)):
             name = f"{kind} {seed}"
             systems[name] = partial(lambda key, of: _list_bounds(key, analyse_system(of)), name, make_system(seed))
     return systems
+
+
+def _bound_loaded(name: str, model: Architecture) -> Bounds:
+    """Bound a system in which everything takes twice as long: some threads and hosts have too much to do."""
+    system, _ = build_system(model)
+    activities = {
+        key: replace(activity, wcet=None if activity.wcet is None else 2 * activity.wcet)
+        for key, activity in system.activities.items()
+    }
+    return _list_bounds(name, analyse_system(replace(system, activities=activities)))
 
 
 def _bound_model(name: str, model: Architecture) -> Bounds:

@@ -255,7 +255,7 @@ def find_worst_activation(
             if work.cost
             else _find_fixed_point(1, interference, spend, start=start) - 1  # as in `longest_wait_for_turn`
         )
-        if finish - arrival > worst.response:
+        if finish - arrival > worst.finish - worst.arrival:
             worst = WorstActivation(count, arrival, finish)
         if next_arrival is None or finish <= next_arrival:
             return worst

@@ -132,17 +132,17 @@ class IdleBacklog:
     def _find_worst_event(self, way_work: WayWork) -> WorstActivation:
         """Return the event of a way that takes longest, of all that may come in a busy window."""
         whole_window = self.find_busy_window(way_work)
-        window, worst = 0, WorstActivation(1, 0, 0)
+        window, delay, worst = 0, 0, WorstActivation(1, 0, 0)
         arrivals = self._list_arrivals(way_work, whole_window)
         for count, arrival in enumerate(arrivals):
-            if whole_window - arrival <= worst.response:
+            if whole_window - arrival <= delay:
                 break
             if count == len(arrivals) - 1 and not way_work.behind:
                 window = whole_window  # nothing of this event, nor of another one, comes after it
             else:
                 window = self._find_window(way_work, count, max(window, arrival))
-            if window - arrival > worst.response:
-                worst = WorstActivation(count + 1, arrival, window)
+            if window - arrival > delay:
+                delay, worst = window - arrival, WorstActivation(count + 1, arrival, window)
         return worst
 
     def _list_arrivals(self, way_work: WayWork, window: int) -> list[int]:

@@ -333,7 +333,8 @@ class SharedCoreSolver:
         if path.last_step is None:
             return WorstActivation(0, 0, self._find_window(path, 0, max(path.cost, 1), spend, limit))
         arrival_times = earliest_arrivals(self.find_activation_streams(path.last_step))
-        arrival, worst, count, window = next(arrival_times, 0), WorstActivation(0, 0, 0), 0, max(path.cost, 1)
+        arrival, longest, count, window = next(arrival_times, 0), 0, 0, max(path.cost, 1)
+        worst = WorstActivation(0, 0, 0)
         while True:
             spend(1)
             count += 1
@@ -341,9 +342,9 @@ class SharedCoreSolver:
             if next_arrival == arrival:  # the last of those that come at once ends last
                 continue
             window = self._find_window(path, count, window, spend, None if limit is None else arrival + limit)
-            if window - arrival > worst.response:
-                worst = WorstActivation(count, arrival, window)
-            if next_arrival is None or window <= next_arrival or (limit is not None and worst.response >= limit):
+            if window - arrival > longest:
+                longest, worst = window - arrival, WorstActivation(count, arrival, window)
+            if next_arrival is None or window <= next_arrival or (limit is not None and longest >= limit):
                 return worst
             arrival = next_arrival
 

@@ -201,7 +201,7 @@ def test_how_long_messages_wait_to_be_stored_follows_from_the_work_that_is_liste
 
 
 @pytest.mark.parametrize(
-    "text", [random_text(seed) for seed in range(60)] + [random_style_text(seed) for seed in range(28)]
+    "text", [random_text(seed) for seed in range(10)] + [random_style_text(seed) for seed in range(14)]
 )
 def test_each_response_that_has_a_bound_has_terms_that_give_it(text: str) -> None:
     analysis = analyse_architecture(architecture(text))
