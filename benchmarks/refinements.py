@@ -131,7 +131,7 @@ REFINEMENTS = (
     ),
     Refinement(
         "of them: the thread that is nearly full",
-        "load.core_shares:CoreShares.choose_full_units",
+        "load.full_threads:CoreShares.choose_full_units",
         "return [unit] if",
         "return [unit] if False and",
     ),

@@ -26,7 +26,6 @@ from archgen.timing.load.busy_windows import DivergedError, SearchBudget, WorstA
 from archgen.timing.load.cascade_demand import CascadeDemand
 from archgen.timing.load.core_paths import CorePath, CorePaths, LastStep
 from archgen.timing.load.core_responses import CoreResponses
-from archgen.timing.load.core_shares import CoreShares
 from archgen.timing.load.event_streams import (
     EventStream,
     EventStreams,
@@ -34,7 +33,7 @@ from archgen.timing.load.event_streams import (
     earliest_arrivals,
     streams_of_calls,
 )
-from archgen.timing.load.full_threads import find_demand_left, find_full_ids, leave_out_threads
+from archgen.timing.load.full_threads import CoreShares, find_demand_left, find_full_ids, leave_out_threads
 from archgen.timing.load.idle_backlogs import find_idle_backlog
 from archgen.timing.load.inner_triggers import FiringArc
 from archgen.timing.load.level_cascades import EventOrigin

@@ -9,9 +9,9 @@ from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.load import busy_windows, search_budgets
 from archgen.timing.load.cascade_demand import CascadeDemand
 from archgen.timing.load.core_paths import CorePaths
-from archgen.timing.load.core_shares import CoreShares
 from archgen.timing.load.event_propagation import propagate_events
 from archgen.timing.load.event_streams import EventStream
+from archgen.timing.load.full_threads import CoreShares
 from archgen.timing.load.inner_triggers import find_inner_triggers
 from archgen.timing.load.path_work import PathWork
 from archgen.timing.load.shared_core_responses import open_shared_solver
