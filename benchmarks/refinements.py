@@ -51,9 +51,9 @@ REFINEMENTS = (
     # One core.
     Refinement(
         "each activation of a busy time by itself (one core)",
-        "load.busy_windows:worst_response",
-        "return finish - arrival",
-        "return finish - arrival if not busy_period else busy_period",
+        "load.response_times:_bound_by_priority",
+        "if len(thread.works) == 1 and thread.in_order:",
+        "if False:",
     ),
     Refinement(
         "the same where activities fire one another",
@@ -69,8 +69,8 @@ REFINEMENTS = (
     ),
     Refinement(
         "the time to the step before, and the response of the last",
-        "load.core_responses:CoreSolver.solve",
-        "candidates.append(None if before is None else before + response.value)",
+        "load.core_responses:CoreSolver._find_delay",
+        "candidates.append(before + response)",
         "pass",
     ),
     Refinement(
@@ -138,7 +138,7 @@ REFINEMENTS = (
     Refinement(
         "a run as a whole, not step by step",
         "load.shared_core_responses:SharedCoreSolver._find_way_delays",
-        "delay = self._find_delay(self.paths.look_up(way.steps), spend, delay)",
+        "delay = self.find_worst(self.paths.look_up(way.steps), spend, delay).response",
         "pass",
     ),
     Refinement(
@@ -173,21 +173,15 @@ REFINEMENTS = (
     ),
     Refinement(
         "at most m - 1 threads had work before",
-        "load.path_work:PathWork.find_most_waiting",
+        "load.path_work:PathWork._find_most_waiting",
         "sum(waiting_works[: self.cores.core_count - 1])",
         "sum(waiting_works)",
     ),
     Refinement(
         "no thread works longer than B, pending work included",
-        "load.path_work:PathWork.find_time_blocked",
-        "blocked_time = min(blocked_time, divide_among_cores(split_lanes(path, all_works), 0, core_count))",
-        "pass",
-    ),
-    Refinement(
-        "no thread works longer than B, pending work aside",
-        "load.path_work:PathWork.find_time_blocked",
-        "if max(lane_works) > blocked_time:",
-        "if False:",
+        "load.path_work:PathWork._find_block",
+        "if time < block.time else block",
+        "if False else block",
     ),
     # Orders.
     *(
@@ -202,7 +196,7 @@ REFINEMENTS = (
     Refinement(
         "ways through a queue",
         "load.ordered_cores:OrderedCore.limit",
-        "delay = min(delay, before + bounds[name])",
+        "delay = min(delay, before + bound)",
         "pass",
     ),
     # What is stored.
@@ -307,7 +301,8 @@ REFINEMENTS = (
 )
 
 
-def _find_function(place: str) -> FunctionType:
+def find_function(place: str) -> FunctionType:
+    """Return the function that computes with a refinement."""
     module_name, _, name = place.partition(":")
     found: object = import_module(f"archgen.timing.{module_name}")
     for part in name.split("."):
@@ -320,7 +315,7 @@ def _find_function(place: str) -> FunctionType:
 @contextmanager
 def without(refinement: Refinement) -> Iterator[None]:
     """Switch a refinement off for a while, wherever the function that computes with it has been imported."""
-    function = _find_function(refinement.place)
+    function = find_function(refinement.place)
     source = textwrap.dedent(inspect.getsource(function))
     if source.count(refinement.line) != 1:
         raise ValueError(refinement)
@@ -404,7 +399,7 @@ def _list_bounds(name: str, analysis: Analysis) -> Bounds:
 
 def bound_systems(systems: dict[str, Callable[[], Bounds]]) -> tuple[Bounds, dict[str, set[CodeType]]]:
     """Return the bounds of all systems, and which functions that refine bounds each of them needs."""
-    codes = {_find_function(refinement.place).__code__ for refinement in REFINEMENTS}
+    codes = {find_function(refinement.place).__code__ for refinement in REFINEMENTS}
     bounds: Bounds = {}
     needed: dict[str, set[CodeType]] = {}
     for name, bound_system in systems.items():
@@ -447,7 +442,7 @@ def main() -> None:
     print("| refinement | module | none without | larger without | median | most | smaller without |")
     print("|---|---|---|---|---|---|---|")
     for refinement in REFINEMENTS:
-        code = _find_function(refinement.place).__code__
+        code = find_function(refinement.place).__code__
         names = {name for name, codes in needed.items() if code in codes}
         bounds = bound_without(refinement, systems, names)
         gains = describe_gains({key: bound for key, bound in whole.items() if key[0] in names}, bounds)

@@ -63,7 +63,6 @@ class PathWork:
         """The longest window of which somebody said that it was looked at."""
         self._lanes_of_path: dict[int, dict[EventOrigin, list[int]]] = {}
         # By the path's identity; they rest on no window, only on the delays.
-        self._most_pending: dict[int, int] = {}
         self._terms_of_path: dict[int, list[list[PendingTerm]]] = {}
 
     def note_delay(self, key: WayKey, delay: int) -> bool:
@@ -72,7 +71,6 @@ class PathWork:
             self.delays.setdefault(key, delay)
             return False
         self.delays[key] = delay
-        self._most_pending.clear()
         self._terms_of_path.clear()
         self.longest_delay = max(self.longest_delay, delay)
         return True
@@ -152,14 +150,7 @@ class PathWork:
         # All that each thread may have in the end: less, where a single one has most of it.
         all_works = [work + pending for work, pending in zip(lane_works, pending_works, strict=True)]
         time = divide_among_cores(split_lanes(path, all_works), 0, core_count)
-        if time < block.time:
-            block = CoreBlock(time, all_works, is_cut=True, has_pending=True)
-        if max(lane_works) > block.time:
-            most_pending = self._find_most_pending(path)
-            time = divide_among_cores(split_lanes(path, lane_works), most_pending, core_count)
-            if time < block.time:
-                block = CoreBlock(time, lane_works, most_pending, is_cut=True)
-        return block
+        return CoreBlock(time, all_works, is_cut=True, has_pending=True) if time < block.time else block
 
     def _sum_lanes(self, path: CorePath, window: int, arrivals: Mapping[EventOrigin, int]) -> LaneSums:
         """Add up what comes for each of the other threads, and what was pending."""
@@ -206,29 +197,6 @@ class PathWork:
         delay = self.delays.get(key, 0)
         calm_window = self.calm_windows[origin] - delay if delay else _ENDLESS
         return (origin, work, delay, calm_window, self.streams[origin], is_held)
-
-    def _find_most_pending(self, path: CorePath) -> int:
-        """Return the most work that can be pending at t0 at all.
-
-        The more came before t0, the fewer come after it: but those may be of a thread that cannot do them in time.
-        """
-        if id(path) not in self._most_pending:
-            self._most_pending[id(path)] = self._sum_most_pending(path)
-        return self._most_pending[id(path)]
-
-    def _sum_most_pending(self, path: CorePath) -> int:
-        pending_by_origin: dict[EventOrigin, int] = {}
-        held_work = 0
-        for lane in path.other_lanes:
-            for number in lane:
-                key, origin, work, _, _ = self.cores.jobs[number]
-                delay = self.delays.get(key, 0)
-                pending_work = work * max_arrivals(self.streams[origin], delay) if delay else 0
-                if number in path.held_jobs:
-                    held_work += pending_work
-                else:
-                    pending_by_origin[origin] = pending_by_origin.get(origin, 0) + pending_work
-        return held_work + self._find_most_waiting(path, pending_by_origin)
 
     def _find_most_waiting(self, path: CorePath, work_by_origin: Mapping[EventOrigin, int]) -> int:
         """Return the most work that may have waited for m - 1 threads."""

@@ -199,7 +199,7 @@ class SharedCoreTerms:
         lane_parts = split_lanes(path, works) if block.is_cut else ()
         # As in `divide_among_cores`: where none has more to do than that, all of it counts.
         if max(lane_parts, default=0) > block.time:
-            limit = Fraction(*find_blocked_time(lane_parts, block.pending, self.solver.cores.core_count))
+            limit = Fraction(*find_blocked_time(lane_parts, 0, self.solver.cores.core_count))
         for lane, work, width in zip(path.other_lanes, works, path.lane_widths, strict=True):
             counted = Fraction(work) if limit is None else min(Fraction(work), limit * width)
             if work:
