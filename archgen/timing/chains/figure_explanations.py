@@ -13,7 +13,6 @@ from archgen.timing.chains.gap_formulas import (
     list_wait_formulas,
     multiply_rate,
 )
-from archgen.timing.chains.response_lines import list_storing_lines, list_working_lines
 from archgen.timing.chains.trigger_arrivals import TriggerArrivals
 from archgen.timing.chains.unfound_bounds import describe_unfound_places, group_by_host
 from archgen.timing.chains.working_lines import ReasonLine, WorkingLines
@@ -21,8 +20,8 @@ from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import is_known_bound, is_unfound, list_assumptions, multiply_value
 from archgen.timing.load.host_loads import activity_share
-from archgen.timing.load.response_workings import ResponseWorkings
-from archgen.timing.rates.link_workings import work_out_link
+from archgen.timing.load.response_terms import ResponseTerms
+from archgen.timing.rates.link_terms import work_out_link
 from archgen.timing.system.timing_system import Activity, Arc
 
 _FIGURE_FORMATS: Mapping[str, Callable[[Fraction], str]] = {
@@ -212,13 +211,52 @@ def _activity_lines(analysis: Analysis, name: str, depth: int, *, rate_only: boo
         )
         yield ReasonLine(depth, f"{name}: {response_text}")
         yield from _reason_lines(response.reasons, depth + 1)
-        workings = ResponseWorkings(analysis.state) if analysis.state else None
+        workings = ResponseTerms(analysis.state) if analysis.state else None
         if workings:
-            yield from list_working_lines(analysis, workings, name, depth + 1)
+            yield from _list_working_lines(analysis, workings, name, depth + 1)
         for formula, words in list_lateness_formulas(analysis, name):
             yield ReasonLine(depth + 1, f"late {formula}: {words}")
         if workings:
-            yield from list_storing_lines(analysis, workings, name, depth)
+            yield from _list_storing_lines(analysis, workings, name, depth)
+
+
+def _list_working_lines(analysis: Analysis, workings: ResponseTerms, name: str, depth: int) -> Iterator[ReasonLine]:
+    """Explain what a response is made of, and the time of the longest run that ends with the activity."""
+    lines = WorkingLines(analysis.system.tick)
+    working = workings.find_response(name)
+    if working is not None:
+        yield from lines.explain_response(working, depth)
+    run = workings.find_run(name)
+    if run is not None:
+        way, run_working = run
+        time = figure_wording.format_duration((way.delay or 0) * analysis.system.tick)
+        yield ReasonLine(
+            depth - 1,
+            f"{name}: at most {time} from the event on that enters the core, for the run {' > '.join(way.steps)}",
+        )
+        if run_working.window != (working.window if working else None) or run_working.terms != (
+            working.terms if working else ()
+        ):
+            yield from lines.explain_response(run_working, depth)
+        else:
+            yield ReasonLine(depth, "the same work as above, and nothing is taken off")
+
+
+def _list_storing_lines(analysis: Analysis, workings: ResponseTerms, name: str, depth: int) -> Iterator[ReasonLine]:
+    """Explain how long a message that an activity only reads may wait to be stored."""
+    wait = analysis.storing_waits.get(name)
+    if wait is None or not wait.value:
+        return
+    time = figure_wording.format_duration(wait.value)
+    yield ReasonLine(
+        depth,
+        f"{name}: what it only reads may wait {time} to be stored, and is missed by an activation until then",
+    )
+    working = workings.find_storing_wait(name)
+    if working is not None:
+        yield from WorkingLines(analysis.system.tick).explain_response(working, depth + 1)
+    else:
+        yield ReasonLine(depth + 1, "as long as its thread or its cores may be busy with other work")
 
 
 def _describe_unfound_response(analysis: Analysis, name: str) -> str:

@@ -13,7 +13,6 @@ from fractions import Fraction
 from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass
 from archgen.timing.analysis import Analysis
-from archgen.timing.chains.delay_texts import write_gap, write_overtaking, write_storing, write_thinning
 from archgen.timing.chains.trigger_arrivals import TriggerArrivals
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, TimingValue
@@ -62,11 +61,11 @@ class StepDelays:
         activity = self.analysis.system.activities[name]
         if activity.behaviour == "periodic":
             gap = self.arrivals.activation_gap(name)
-            return StepDelay(gap, f"samples the world{write_gap(gap)}", _span_of_keys(activity, "period", "rate"))
+            return StepDelay(gap, f"samples the world{_write_gap(gap)}", _span_of_keys(activity, "period", "rate"))
         if activity.behaviour in {"event", "on_demand"}:
             # An event that `every` or `throttle` lets wait is a stimulus all the same: it waits for others to come.
             thinning_wait = self.arrivals.thinning_wait(activity)
-            return StepDelay(thinning_wait, f"its event is the stimulus{write_thinning(activity)}", activity.at)
+            return StepDelay(thinning_wait, f"its event is the stimulus{_write_thinning(activity)}", activity.at)
         return _undefined_delay(activity)
 
     def sampling_wait(self, arc: Arc) -> TimingValue:
@@ -93,17 +92,17 @@ class StepDelays:
             )
             return StepDelay(
                 value,
-                f"triggered by {arc.topic}{waiting_text}{write_thinning(reader)}{write_overtaking(self.overtaking_wait(arc))}",
+                f"triggered by {arc.topic}{waiting_text}{_write_thinning(reader)}{_write_overtaking(self.overtaking_wait(arc))}",
                 _span_of_keys(reader, "trigger"),
             )
         if reader.behaviour is None or reader.behaviour == "once":
             return _undefined_delay(reader)
         verb_text = "takes the answer of" if arc.role == "answer" else "reads"
         gap_text, storing_text = (
-            write_gap(self.arrivals.activation_gap(reader.id)),
-            write_storing(self.storing_wait(arc)),
+            _write_gap(self.arrivals.activation_gap(reader.id)),
+            _write_storing(self.storing_wait(arc)),
         )
-        why = f"{verb_text} {arc.topic}{gap_text}{storing_text}{write_overtaking(self.overtaking_wait(arc))}"
+        why = f"{verb_text} {arc.topic}{gap_text}{storing_text}{_write_overtaking(self.overtaking_wait(arc))}"
         return StepDelay(value, why, _span_of_keys(reader, "period", "rate"))
 
     def holding_age(self, arc: Arc) -> TimingValue:
@@ -298,3 +297,36 @@ def _unsure_use(reader: Activity) -> TimingValue:
 def _span_of_keys(activity: Activity, *keys: str) -> Span:
     """Return where the first of some keys is written, else the activity's place."""
     return next((activity.places[key] for key in keys if key in activity.places), activity.at)
+
+
+def _write_gap(gap: TimingValue) -> str:
+    """Return the words for a reader's gap, where it is a bound."""
+    return (
+        f" every {figure_wording.format_duration(gap.value)} at the latest"
+        if gap.value is not None and is_known_bound(gap)
+        else ""
+    )
+
+
+def _write_overtaking(wait: TimingValue) -> str:
+    """Return the words for the time for which an older message may stand in a newer one's place."""
+    if not wait.value or not is_known_bound(wait):
+        return ""
+    return f", which an older one may replace for {figure_wording.format_duration(wait.value)}"
+
+
+def _write_storing(wait: TimingValue) -> str:
+    """Return the words for the time that a message may wait to be stored."""
+    if wait.value is None or not wait.value:
+        return ""
+    return f", which may wait {figure_wording.format_duration(wait.value)} to be stored"
+
+
+def _write_thinning(activity: Activity) -> str:
+    """Return the words for what lets a trigger wait."""
+    phrases = [f"fires only once for {activity.every} triggers"] if activity.every > 1 else []
+    if activity.throttle:
+        phrases.append("keeps a smallest gap")
+    if activity.jitter:
+        phrases.append("starts late by its jitter")
+    return f"; {', '.join(phrases)}" if phrases else ""

@@ -208,17 +208,24 @@ def longest_wait_for_turn(demand: DemandFunction, budget: SearchBudget, lower_bo
 
 
 class WorstActivation(NamedTuple):
-    """The activation of a busy period that takes longest: the `ordinal`-th, which comes and ends so long after the start."""
+    """The activation of a busy period that takes longest: the `ordinal`-th, which comes and ends so long after the start.
+
+    Where no single activation is looked at it stands for the whole busy period: `ordinal` and `arrival` are 0.
+    """
 
     ordinal: int
     arrival: int
     finish: int
 
+    @property
+    def response(self) -> int:
+        """Return how long it takes."""
+        return self.finish - self.arrival
+
 
 def worst_response(work: ActivityWork, interference: DemandFunction, budget: SearchBudget, busy_period: int = 0) -> int:
     """Return the worst response over all activations of the busy period."""
-    _, arrival, finish = find_worst_activation(work, interference, budget, busy_period)
-    return finish - arrival
+    return find_worst_activation(work, interference, budget, busy_period).response
 
 
 def find_worst_activation(

@@ -19,11 +19,12 @@ from archgen.timing.load.busy_windows import (
     DivergedError,
     GrowingLoad,
     SearchBudget,
+    WorstActivation,
     add_demands,
+    find_worst_activation,
     longest_busy_period,
     longest_wait_for_turn,
     subtract_demand,
-    worst_response,
 )
 from archgen.timing.load.cascade_demand import CascadeDemand
 from archgen.timing.load.event_streams import EventStreams, settles_at_full_load, streams_of_calls
@@ -31,6 +32,7 @@ from archgen.timing.load.inner_core import InnerCore, urgency_of
 from archgen.timing.load.inner_triggers import FiringArc
 from archgen.timing.load.level_cascades import EventOrigin, LevelCascades
 from archgen.timing.load.ordered_cores import OrderedCore
+from archgen.timing.load.queue_orders import QueueBound
 from archgen.timing.load.run_ways import EntryWay, Priority
 from archgen.timing.load.storing_waits import hold_before_activation
 from archgen.timing.load.thread_work import (
@@ -58,21 +60,56 @@ class LevelBound(NamedTuple):
     demand: CascadeDemand
 
 
-def solve_inner_core(
+class LevelWindow(NamedTuple):
+    """A window of the busy period of a level that bounds a response, or the delay of a way.
+
+    It is that of an activation of `name`, where `worst` says which; else the whole busy period, with what is done once at
+    the start of it (`start_costs`), and with what comes in the `closing_tick` after it. What it bounds begins `lead` after
+    the window at the earliest.
+    """
+
+    level: Priority
+    worst: WorstActivation
+    name: str = ""
+    lead: int = 0
+    start_costs: tuple[tuple[str, int], ...] = ()
+    closing_tick: int = 0
+
+
+class WaySum(NamedTuple):
+    """A delay that is the sum of that of the way before, and of the response of the last step."""
+
+    delay_before: int
+    response: int
+
+
+WayKey = tuple[str, ...]
+"""The entry of a way, and its steps."""
+
+
+def name_way(way: EntryWay) -> WayKey:
+    """Return the key of a way."""
+    return (*map(str, way.entry), *way.steps)
+
+
+def open_core_solver(
     inner_core: InnerCore,
     model_of: Callable[[EventOrigin, FiringArc | None], EventStreams | UnknownCause],
     budget: SearchBudget,
-) -> CoreResponses:
-    """Return the responses on a core, for the event models of what enters it (`model_of`)."""
+) -> CoreSolver:
+    """Return what finds the responses on a core, for the event models of what enters it (`model_of`)."""
 
     def find_model(origin: EventOrigin) -> EventStreams | UnknownCause:
         return model_of(origin, inner_core.entering_arcs[int(origin.key)] if origin.kind == "arc" else None)
 
-    return CoreSolver(inner_core, find_model, budget).solve()
+    return CoreSolver(inner_core, find_model, budget)
 
 
 class CoreSolver:
-    """Finds the responses on one core from the busy periods of its levels (`bounds`)."""
+    """Finds the responses on one core from the busy periods of its levels (`bounds`).
+
+    `windows` then has what bounds each response, and `way_windows` each way, the smaller one first where they are equal.
+    """
 
     def __init__(
         self,
@@ -85,6 +122,9 @@ class CoreSolver:
         self.find_model = find_model
         self.budget = budget
         self.bounds: dict[Priority, LevelBound] = {}
+        self.windows: dict[str, list[LevelWindow]] = {}
+        self.way_windows: dict[WayKey, list[LevelWindow | WaySum]] = {}
+        self.queue_bounds: dict[str, QueueBound] = {}
         self._waits_for_turn: dict[Priority, int | None] = {}
 
     def solve(self) -> CoreResponses:
@@ -93,7 +133,7 @@ class CoreSolver:
             self.bounds[level] = self._bound_level(level, cascades)
         responses: dict[str, WorstResponse] = {}
         ways_to: dict[str, tuple[EntryWay, ...]] = {}
-        delays: dict[tuple[str, ...], int | None] = {}
+        delays: dict[WayKey, int | None] = {}
         for name in self.core.inner_triggers.order:
             activity = self.core.system.activities[name]
             response = self._find_response(name)
@@ -111,12 +151,7 @@ class CoreSolver:
                 continue
             ways: list[EntryWay] = []
             for way in self.core.ways_to[name]:
-                candidates = [whole_delay, self._period_of_level(name, self._level_of_steps(way.steps))]
-                if response.value is not None:
-                    before = delays.get((*map(str, way.entry), *way.steps[:-1])) if len(way.steps) > 1 else 0
-                    candidates.append(None if before is None else before + response.value)
-                delay = min((each for each in candidates if each is not None), default=None)
-                delays[(*map(str, way.entry), *way.steps)] = delay
+                delay = delays[name_way(way)] = self._find_delay(name, way, whole_delay, response.value, delays)
                 ways.append(way._replace(delay=delay))
             if ways and all(way.delay is not None for way in ways) and response.tier != "declared":
                 # The delay of a way begins at its event, the response at the activation, `best_before` later or more.
@@ -133,13 +168,43 @@ class CoreSolver:
         }
         return CoreResponses(responses, ways_to, waits)
 
+    def _find_delay(
+        self,
+        name: str,
+        way: EntryWay,
+        whole_delay: int | None,
+        response: int | None,
+        delays: Mapping[WayKey, int | None],
+    ) -> int | None:
+        """Return the longest time of a way: as a whole, at its level, or to the step before and the last response."""
+        key, level = name_way(way), self._level_of_steps(way.steps)
+        period = self._period_of_level(name, level)
+        if period is not None:
+            self._note_way(key, self._whole_period(name, level, period))
+        before = delays.get(key[:-1]) if len(way.steps) > 1 else 0
+        candidates = [whole_delay, period]
+        if response is not None and before is not None:
+            candidates.append(before + response)
+            if len(way.steps) > 1:
+                self._note_way(key, WaySum(before, response))
+        return min((each for each in candidates if each is not None), default=None)
+
     def _limit_to_order(self, responses: dict[str, WorstResponse], ways_to: dict[str, tuple[EntryWay, ...]]) -> None:
         """Limit responses and delays to what an order that is written makes of them."""
         busy_periods = [bound.busy_period for bound in self.bounds.values()]
         if self.core.queue is not None and None not in busy_periods:
             longest = max((each or 0 for each in busy_periods), default=0)
             ordered_core = OrderedCore(self.core.queue, self.core.inner_triggers, self.find_model, ways_to)
-            ordered_core.limit(responses, longest, self.budget)
+            self.queue_bounds = ordered_core.limit(responses, longest, self.budget)
+
+    def _note_way(self, key: WayKey, window: LevelWindow | WaySum) -> None:
+        """Note what bounds a way."""
+        self.way_windows.setdefault(key, []).append(window)
+
+    def _whole_period(self, name: str, level: Priority, period: int) -> LevelWindow:
+        """Return the whole busy period of a level, as it bounds an activity."""
+        closing_tick = int(not self.core.system.activities[name].wcet)
+        return LevelWindow(level, WorstActivation(0, 0, period), closing_tick=closing_tick)
 
     def _find_storing_wait(self, name: str) -> WorstResponse:
         """Return how long a message that an activity only stores may wait until an activation that does not read it."""
@@ -196,10 +261,18 @@ class CoreSolver:
         busy_period = self._period_of_level(name, level)
         if bound.busy_period is None or busy_period is None:
             return WorstResponse(None, tier, DIVERGED_CAUSE if bound.cause == UnknownCause() else bound.cause)
-        start_work = sum(self.core.system.activities[each].wcet or 0 for each in thread.unit if self._is_idle(each))
-        if start_work:
-            extended_period = self._extend_busy_period(name, bound, start_work)
-            return WorstResponse(extended_period, tier, DIVERGED_CAUSE if extended_period is None else UnknownCause())
+        windows = self.windows[name] = [self._whole_period(name, level, busy_period)]
+        start_costs = tuple(
+            (each, cost)
+            for each in thread.unit
+            if self._is_idle(each) and (cost := self.core.system.activities[each].wcet)
+        )
+        if start_costs:
+            extended_period = self._extend_busy_period(name, bound, sum(cost for _, cost in start_costs))
+            if extended_period is None:
+                return WorstResponse(None, tier, DIVERGED_CAUSE)
+            windows[0] = self._whole_period(name, level, extended_period)._replace(start_costs=start_costs)
+            return WorstResponse(extended_period, tier)
         # Only a thread of one activity, whose activations run in their order, can be followed activation by activation.
         if level is None or len(thread.unit) > 1 or not thread.in_order or not activity.wcet:
             return WorstResponse(busy_period, tier)
@@ -235,8 +308,13 @@ class CoreSolver:
             for way in ways
             for stream in streams_of_calls(bound.demand.streams_of(way.entry), Fraction(way.multiplicity))
         )
-        finish = self._last_finish(name, streams, bound)
-        return min(busy_period, finish - min((way.best_before for way in ways), default=0))
+        worst = self._find_worst_activation(name, streams, bound)
+        if worst is None:
+            return busy_period
+        lead = min((way.best_before for way in ways), default=0)
+        level = self.core.thread_of[name].lowest_priority
+        self.windows[name].insert(0, LevelWindow(level, worst, name, lead))
+        return min(busy_period, worst.response - lead)
 
     def _enters(self, name: str) -> bool:
         return name in self.core.inner_triggers.entry_ids
@@ -249,15 +327,15 @@ class CoreSolver:
         """Return the activities that count at the level of one."""
         return self.bounds[self.core.thread_of[name].lowest_priority].demand.level.activations
 
-    def _last_finish(self, name: str, streams: EventStreams, bound: LevelBound) -> int:
-        """Return the longest time from an event to the end of the activation that it makes of `name`."""
+    def _find_worst_activation(self, name: str, streams: EventStreams, bound: LevelBound) -> WorstActivation | None:
+        """Return what takes longest from an event to the end of the activation that it makes of `name`."""
         cost = self.core.system.activities[name].wcet or 0
         own_work = ActivityWork(cost, streams)
         interference = subtract_demand(bound.demand.demand_function(), GrowingLoad((own_work,)).demand_function())
         try:
-            return worst_response(own_work, interference, self.budget, bound.busy_period or 0)
+            return find_worst_activation(own_work, interference, self.budget, bound.busy_period or 0)
         except DivergedError:
-            return bound.busy_period or 0
+            return None
 
     def _delay_of_only_way(self, name: str, ways: Sequence[EntryWay]) -> int | None:
         """Return the delay of a way, activation by activation, where no other leads to its last step."""
@@ -272,7 +350,11 @@ class CoreSolver:
             return None
         if not self.core.system.activities[name].wcet:
             return None
-        return min(bound.busy_period, self._last_finish(name, bound.demand.streams_of(ways[0].entry), bound))
+        worst = self._find_worst_activation(name, bound.demand.streams_of(ways[0].entry), bound)
+        if worst is None:
+            return bound.busy_period
+        self._note_way(name_way(ways[0]), LevelWindow(level, worst, name))
+        return min(bound.busy_period, worst.response)
 
     def _level_of_steps(self, steps: Iterable[str]) -> Priority:
         """Return the level of the least urgent of some steps."""

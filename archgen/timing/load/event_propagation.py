@@ -103,7 +103,7 @@ class _Propagation(StepUpdates):
             elif queue is not None and queue.stores_in_time:
                 state.storing_waits |= dict.fromkeys(names, WorstResponse(0, "fifo"))
             elif names and step not in self.inner_triggers:
-                models = self._models_of(step)
+                models = self.models_of(step)
                 waits = find_core_waits(state.system, resource, models, names, self.budget_of[step])
                 state.storing_waits |= limit_responses(
                     CoreResponses({}, {}, waits), self._limits_of(step)

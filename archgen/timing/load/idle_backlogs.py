@@ -31,7 +31,7 @@ from heapq import nlargest
 from itertools import islice
 from typing import NamedTuple
 
-from archgen.timing.load.busy_windows import DivergedError, SearchBudget
+from archgen.timing.load.busy_windows import DivergedError, SearchBudget, WorstActivation
 from archgen.timing.load.cascade_demand import CascadeDemand
 from archgen.timing.load.event_streams import EventStreams, earliest_arrivals, max_arrivals
 from archgen.timing.load.level_cascades import EventOrigin
@@ -76,7 +76,9 @@ def find_idle_backlog(
 
 
 class IdleBacklog:
-    """The most that can be pending just after a core was idle (`pending_shares`), and how long each way takes (`delays`)."""
+    """The most that can be pending just after a core was idle (`pending_shares`), and how long each way takes (`delays`):
+    its `worst_events`.
+    """
 
     def __init__(
         self,
@@ -104,6 +106,7 @@ class IdleBacklog:
         # With as many threads as cores, none waits for a thread while a core is idle.
         self.small_crowds = {crowd for crowd in cores.crowd_of.values() if crowd[1] < cores.core_count}
         self.delays: dict[WayKey, int] = dict.fromkeys(way_works, 0)
+        self.worst_events: dict[WayKey, WorstActivation] = {}
         self.growths: dict[WayKey, int] = {}
         self.pending_shares: tuple[PendingShare, ...] = ()
         self.pending_work = 0
@@ -118,24 +121,18 @@ class IdleBacklog:
         for _ in range(_MAX_ROUNDS):
             self.pending_shares = self._find_pending()
             self.pending_work = _sum_works(self.pending_shares)
-            delays = {key: max(self.delays[key], self.find_delay(way_work)) for key, way_work in self.way_works.items()}
+            self.worst_events = {key: self._find_worst_event(way_work) for key, way_work in self.way_works.items()}
+            delays = {key: max(self.delays[key], worst.response) for key, worst in self.worst_events.items()}
             is_settled = not is_shared or delays == self.delays
             self.delays = delays
             if is_settled:
                 return
         raise DivergedError
 
-    def find_delay(self, way_work: WayWork) -> int:
-        """Return how long an event of a way takes at most, over all that may come in a busy window."""
-        return max((window - arrival for _, arrival, window in self.list_windows(way_work)), default=0)
-
-    def list_windows(self, way_work: WayWork) -> Iterator[tuple[int, int, int]]:
-        """Yield events of a way: how many are before each, its earliest time, and the window in which it is through.
-
-        Those that cannot take longer than others are left out.
-        """
+    def _find_worst_event(self, way_work: WayWork) -> WorstActivation:
+        """Return the event of a way that takes longest, of all that may come in a busy window."""
         whole_window = self.find_busy_window(way_work)
-        delay = window = 0
+        window, delay, worst = 0, 0, WorstActivation(1, 0, 0)
         arrivals = self._list_arrivals(way_work, whole_window)
         for count, arrival in enumerate(arrivals):
             if whole_window - arrival <= delay:
@@ -143,9 +140,10 @@ class IdleBacklog:
             if count == len(arrivals) - 1 and not way_work.behind:
                 window = whole_window  # nothing of this event, nor of another one, comes after it
             else:
-                window = self.find_window(way_work, count, max(window, arrival))
-            delay = max(delay, window - arrival)
-            yield count, arrival, window
+                window = self._find_window(way_work, count, max(window, arrival))
+            if window - arrival > delay:
+                delay, worst = window - arrival, WorstActivation(count + 1, arrival, window)
+        return worst
 
     def _list_arrivals(self, way_work: WayWork, window: int) -> list[int]:
         """Return the earliest times of the events of a way in a window."""
@@ -167,7 +165,7 @@ class IdleBacklog:
                 return window
             window = needed
 
-    def find_window(self, way_work: WayWork, count: int, window: int) -> int:
+    def _find_window(self, way_work: WayWork, count: int, window: int) -> int:
         """Return the least window, from `window` on, in which an event behind `count` others is through its way."""
         model, pending_work = self.streams.get(way_work.origin, ()), self.pending_work
         while True:

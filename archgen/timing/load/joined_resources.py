@@ -19,7 +19,7 @@ from archgen.frozen import dataclass
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.busy_windows import SearchBudget
-from archgen.timing.load.core_responses import solve_inner_core
+from archgen.timing.load.core_responses import open_core_solver
 from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.load.inner_core import InnerCore, prepare_inner_core
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers, find_inner_triggers
@@ -52,7 +52,7 @@ class JoinedResources:
         responses = (
             find_responses(self.system, self.processor, event_models, AnalysisEffort(budget))
             if self.core is None
-            else solve_inner_core(self.core, model_of, budget).response_of
+            else open_core_solver(self.core, model_of, budget).solve().response_of
         )
         return {name: response.value for name, response in responses.items() if response.value is not None}
 

@@ -14,9 +14,10 @@ from archgen.timing.load.busy_windows import (
     DivergedError,
     GrowingLoad,
     SearchBudget,
+    WorstActivation,
+    find_worst_activation,
     longest_busy_period,
     longest_wait_for_turn,
-    worst_response,
 )
 from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.load.storing_waits import find_core_waits, hold_before_activation
@@ -28,6 +29,13 @@ _MAX_TERMS = 10_000
 """Searches that look at more are not remembered: their budget decides whether they end."""
 
 
+class _FoundActivation(NamedTuple):
+    """What takes longest, and how many terms its searches looked at."""
+
+    worst: WorstActivation
+    terms: int
+
+
 class _FoundTime(NamedTuple):
     """A time in ticks, and how many terms its searches looked at."""
 
@@ -35,14 +43,14 @@ class _FoundTime(NamedTuple):
     terms: int
 
 
-def find_lone_response(work: ActivityWork, budget: SearchBudget, *, in_order: bool) -> int:
-    """Return the worst response in ticks; `in_order` where activations begin in the order in which they come.
+def find_lone_response(work: ActivityWork, budget: SearchBudget, *, in_order: bool) -> WorstActivation:
+    """Return what takes longest; `in_order` where activations begin in the order in which they come.
 
     Raises DivergedError where the budget does not suffice.
     """
     found = _find_response(work.cost, work.streams, in_order)
     if found is not None and budget.repeat_searches(found.terms):
-        return found.ticks
+        return found.worst
     return _search_response(work, budget, in_order=in_order)
 
 
@@ -62,18 +70,20 @@ def find_lone_wait(system: TimingSystem, name: str, event_models: EventModels, b
 
 
 @lru_cache(1 << 14)
-def _find_response(cost: int, streams: EventStreams, in_order: bool) -> _FoundTime | None:  # noqa: FBT001 - a key of the cache
+def _find_response(cost: int, streams: EventStreams, in_order: bool) -> _FoundActivation | None:  # noqa: FBT001 - a key of the cache
     budget = SearchBudget(_MAX_TERMS)
     try:
-        return _FoundTime(_search_response(ActivityWork(cost, streams), budget, in_order=in_order), budget.spent_terms)
+        return _FoundActivation(
+            _search_response(ActivityWork(cost, streams), budget, in_order=in_order), budget.spent_terms
+        )
     except DivergedError:
         return None
 
 
-def _search_response(work: ActivityWork, budget: SearchBudget, *, in_order: bool) -> int:
+def _search_response(work: ActivityWork, budget: SearchBudget, *, in_order: bool) -> WorstActivation:
     if in_order:
-        return worst_response(work, NO_DEMAND, budget)
-    return longest_busy_period(GrowingLoad((work,)).demand_function(), budget)
+        return find_worst_activation(work, NO_DEMAND, budget)
+    return WorstActivation(0, 0, longest_busy_period(GrowingLoad((work,)).demand_function(), budget))
 
 
 @lru_cache(1 << 14)

@@ -11,6 +11,7 @@ from archgen.timing.load.busy_windows import SearchBudget
 from archgen.timing.load.event_streams import EventStream, EventStreams, delay_streams, streams_of_calls
 from archgen.timing.load.inner_triggers import InnerTriggers
 from archgen.timing.load.level_cascades import EventOrigin
+from archgen.timing.load.queue_orders import QueueBound
 from archgen.timing.load.queue_responses import CoreQueue
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.thread_work import WorstResponse
@@ -25,21 +26,25 @@ class OrderedCore:
     find_model: Callable[[EventOrigin], EventStreams | UnknownCause]
     ways_to: dict[str, tuple[EntryWay, ...]]
 
-    def limit(self, responses: dict[str, WorstResponse], busy_period: int, budget: SearchBudget) -> None:
-        """Limit responses, and the delays of ways, to what the order makes of them."""
+    def limit(
+        self, responses: dict[str, WorstResponse], busy_period: int, budget: SearchBudget
+    ) -> dict[str, QueueBound]:
+        """Limit responses, and the delays of ways, to what the order makes of them; return the bounds that it gives."""
         bounds = self.queue.bound_responses(self.find_activation_model, busy_period, budget)
         limited_delays: dict[tuple[str, ...], int | None] = {}
         for name in self.inner_triggers.order:
-            responses[name] = responses[name].limit_to(bounds.get(name), self.queue.order)
+            bound = bounds[name].response if name in bounds else None
+            responses[name] = responses[name].limit_to(bound, self.queue.order)
             ways: list[EntryWay] = []
             for way in self.ways_to[name]:
                 before = limited_delays.get((*map(str, way.entry), *way.steps[:-1])) if len(way.steps) > 1 else 0
                 delay = way.delay
-                if delay is not None and before is not None and name in bounds:
-                    delay = min(delay, before + bounds[name])
+                if delay is not None and before is not None and bound is not None:
+                    delay = min(delay, before + bound)
                 limited_delays[(*map(str, way.entry), *way.steps)] = delay
                 ways.append(way._replace(delay=delay))
             self.ways_to[name] = tuple(ways)
+        return bounds
 
     def find_activation_model(self, name: str) -> EventStreams | UnknownCause:
         """Return the event model of an activity's activations: what enters, behind the steps before it."""

@@ -27,6 +27,19 @@ class LaneSums(NamedTuple):
     held_work: int
 
 
+class CoreBlock(NamedTuple):
+    """For how long (`time`) all cores may be busy beside a path: with `lane_works`, and with what was `pending`.
+
+    Where it `is_cut`, no thread's work counts for longer than that; it may have what was pending in it (`has_pending`).
+    """
+
+    time: int
+    lane_works: Sequence[int]
+    pending: int = 0
+    is_cut: bool = False
+    has_pending: bool = False
+
+
 class PathWork:
     """The work that comes in the way of paths, for given event models; `delays` are how long ways take at most."""
 
@@ -50,7 +63,6 @@ class PathWork:
         """The longest window of which somebody said that it was looked at."""
         self._lanes_of_path: dict[int, dict[EventOrigin, list[int]]] = {}
         # By the path's identity; they rest on no window, only on the delays.
-        self._most_pending: dict[int, int] = {}
         self._terms_of_path: dict[int, list[list[PendingTerm]]] = {}
 
     def note_delay(self, key: WayKey, delay: int) -> bool:
@@ -59,7 +71,6 @@ class PathWork:
             self.delays.setdefault(key, delay)
             return False
         self.delays[key] = delay
-        self._most_pending.clear()
         self._terms_of_path.clear()
         self.longest_delay = max(self.longest_delay, delay)
         return True
@@ -77,13 +88,19 @@ class PathWork:
                 origin: count if window <= calm_windows[origin] else max_arrivals(self.streams[origin], window)
                 for origin, count in self.calm_arrivals.items()
             }
-            return self._path_work(path, window, arrivals) + self.find_time_blocked(path, window, arrivals)
+            return self._path_work(path, window, arrivals) + self._find_block(path, window, arrivals).time
         # In such a window nothing comes twice, and nothing is pending: its length does not matter.
         time = self.calm_times.get(id(path))
         if time is None:
             time = self._path_work(path, window, self.calm_arrivals) + self._find_calm_block(path)
             self.calm_times[id(path)] = time
         return time
+
+    def find_block(self, path: CorePath, window: int) -> CoreBlock:
+        """Return how all cores may be busy with other threads in a window."""
+        return self._find_block(
+            path, window, {origin: max_arrivals(model, window) for origin, model in self.streams.items()}
+        )
 
     def _find_calm_block(self, path: CorePath) -> int:
         """Return how long all cores may be busy with other threads where nothing comes twice and nothing is pending."""
@@ -93,7 +110,7 @@ class PathWork:
             return -(-sum(lane_works) // self.cores.core_count)
         return divide_among_cores(split_lanes(path, lane_works), 0, self.cores.core_count)
 
-    def count_pending(self, origin: EventOrigin, window: int, delay: int, arrivals: Mapping[EventOrigin, int]) -> int:
+    def _count_pending(self, origin: EventOrigin, window: int, delay: int, arrivals: Mapping[EventOrigin, int]) -> int:
         """Return how many events more there are in a window and up to `delay` before it than in a window."""
         if not delay or window + delay <= self.calm_windows[origin]:
             return 0
@@ -106,16 +123,16 @@ class PathWork:
             _, origin, work, _, _ = jobs[number]
             # At t0 nothing waits in the threads of the path themselves.
             delay = self.delays.get(way_before, 0) if way_before else 0
-            total += work * (arrivals[origin] + self.count_pending(origin, window, delay, arrivals))
+            total += work * (arrivals[origin] + self._count_pending(origin, window, delay, arrivals))
         for numbers, threads in path.crowds:
             crowd_work = 0
             for key, origin, work, _, _ in (jobs[number] for number in numbers):
-                pending = self.count_pending(origin, window, self.delays.get(key, 0), arrivals)
+                pending = self._count_pending(origin, window, self.delays.get(key, 0), arrivals)
                 crowd_work += work * (arrivals[origin] + pending)
             total -= -crowd_work // threads
         return total
 
-    def find_time_blocked(self, path: CorePath, window: int, arrivals: Mapping[EventOrigin, int]) -> int:
+    def _find_block(self, path: CorePath, window: int, arrivals: Mapping[EventOrigin, int]) -> CoreBlock:
         """Return how long all cores may be busy with other threads: with what arrives, and with what was pending.
 
         Pending at t0 is what waits for m - 1 threads, and all that is foreign, for that may have waited for a core of its
@@ -124,20 +141,16 @@ class PathWork:
         core_count = self.cores.core_count
         lane_works, pending_works, pending_by_origin, held_work = self._sum_lanes(path, window, arrivals)
         if not any(pending_works) and not path.crowds:
-            return divide_among_cores(split_lanes(path, lane_works), 0, core_count)
-        most_pending = held_work + self.find_most_waiting(path, pending_by_origin)
-        blocked_time = -(-(sum(lane_works) + most_pending) // core_count)
+            time = divide_among_cores(split_lanes(path, lane_works), 0, core_count)
+            return CoreBlock(time, lane_works, is_cut=True)
+        most_pending = held_work + self._find_most_waiting(path, pending_by_origin)
+        block = CoreBlock(-(-(sum(lane_works) + most_pending) // core_count), lane_works, most_pending)
         if path.crowds:
-            return blocked_time
+            return block
         # All that each thread may have in the end: less, where a single one has most of it.
         all_works = [work + pending for work, pending in zip(lane_works, pending_works, strict=True)]
-        blocked_time = min(blocked_time, divide_among_cores(split_lanes(path, all_works), 0, core_count))
-        if max(lane_works) > blocked_time:
-            most_pending = self.find_most_pending(path)
-            blocked_time = min(
-                blocked_time, divide_among_cores(split_lanes(path, lane_works), most_pending, core_count)
-            )
-        return blocked_time
+        time = divide_among_cores(split_lanes(path, all_works), 0, core_count)
+        return CoreBlock(time, all_works, is_cut=True, has_pending=True) if time < block.time else block
 
     def _sum_lanes(self, path: CorePath, window: int, arrivals: Mapping[EventOrigin, int]) -> LaneSums:
         """Add up what comes for each of the other threads, and what was pending."""
@@ -145,7 +158,7 @@ class PathWork:
         pending_works: list[int] = []
         pending_by_origin: dict[EventOrigin, int] = {}
         held_work = 0
-        # As in `count_pending`, but written out: this is the innermost loop of all that is found on several cores.
+        # As in `_count_pending`, but written out: this is the innermost loop of all that is found on several cores.
         for lane_terms in self._look_up_terms(path):
             lane_work = pending_work = 0
             for origin, work, delay, calm_window, streams, is_held in lane_terms:
@@ -185,30 +198,7 @@ class PathWork:
         calm_window = self.calm_windows[origin] - delay if delay else _ENDLESS
         return (origin, work, delay, calm_window, self.streams[origin], is_held)
 
-    def find_most_pending(self, path: CorePath) -> int:
-        """Return the most work that can be pending at t0 at all.
-
-        The more came before t0, the fewer come after it: but those may be of a thread that cannot do them in time.
-        """
-        if id(path) not in self._most_pending:
-            self._most_pending[id(path)] = self._sum_most_pending(path)
-        return self._most_pending[id(path)]
-
-    def _sum_most_pending(self, path: CorePath) -> int:
-        pending_by_origin: dict[EventOrigin, int] = {}
-        held_work = 0
-        for lane in path.other_lanes:
-            for number in lane:
-                key, origin, work, _, _ = self.cores.jobs[number]
-                delay = self.delays.get(key, 0)
-                pending_work = work * max_arrivals(self.streams[origin], delay) if delay else 0
-                if number in path.held_jobs:
-                    held_work += pending_work
-                else:
-                    pending_by_origin[origin] = pending_by_origin.get(origin, 0) + pending_work
-        return held_work + self.find_most_waiting(path, pending_by_origin)
-
-    def find_most_waiting(self, path: CorePath, work_by_origin: Mapping[EventOrigin, int]) -> int:
+    def _find_most_waiting(self, path: CorePath, work_by_origin: Mapping[EventOrigin, int]) -> int:
         """Return the most work that may have waited for m - 1 threads."""
         waiting_works = [0] * len(path.waiting_lanes)
         lanes_of_origin = self._look_up_lanes(path)

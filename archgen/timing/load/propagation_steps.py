@@ -129,7 +129,7 @@ class PropagationSteps:
         shared_steps = [step for step in self.shared_cores if not any(self.inner_triggers[step].inner_arcs.values())]
         return find_single_cores(self.state.system, self.resources, shared_steps, self.waiting_ids)
 
-    def _models_of(self, step: str) -> Mapping[str, EventStreams | UnknownCause]:
+    def models_of(self, step: str) -> Mapping[str, EventStreams | UnknownCause]:
         """Return the event models as a resource sees them."""
         roaming_ids = self.roaming_ids.get(step)
         if not roaming_ids:

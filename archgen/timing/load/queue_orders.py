@@ -49,19 +49,48 @@ class QueuedTask(NamedTuple):
         return self.streams[0].min_spacing if len(self.streams) == 1 else 0
 
 
-def bound_fifo(tasks: Sequence[QueuedTask], busy_period: int, budget: SearchBudget) -> int:
+class QueueShare(NamedTuple):
+    """What a task does before the end of an activation: `work` so often (`number`) for a reason, or at all that comes `until` then."""
+
+    task: QueuedTask
+    work: int
+    number: int = 0
+    reason: str = ""
+    until: int | None = None
+
+
+class QueueBound(NamedTuple):
+    """The longest response in a queue: of an activation that comes at `arrival` and ends at `finish`, behind some work."""
+
+    finish: int
+    arrival: int
+    shares: tuple[QueueShare, ...]
+
+    @property
+    def response(self) -> int:
+        """Return how long it takes."""
+        return self.finish - self.arrival
+
+
+def bound_fifo(tasks: Sequence[QueuedTask], busy_period: int, budget: SearchBudget) -> QueueBound:
     """Return the response of each task where what came first is first."""
-    spend, longest = budget.start_search(), 0
+    spend, worst_finish, worst_arrival = budget.start_search(), 0, 0
     for arrival in list_arrivals(busy_period, ((each, 0) for each in tasks)):
         spend(len(tasks))
-        longest = max(longest, sum(each.cost * each.count_until(arrival) for each in tasks) - arrival)
-    return longest
+        finish = sum(each.cost * each.count_until(arrival) for each in tasks)
+        if finish - arrival > worst_finish - worst_arrival:
+            worst_finish, worst_arrival = finish, arrival
+    return QueueBound(
+        worst_finish, worst_arrival, tuple(QueueShare(each, each.cost, until=worst_arrival) for each in tasks)
+    )
 
 
-def bound_round(task: QueuedTask, tasks: Sequence[QueuedTask], busy_period: int, budget: SearchBudget) -> int | None:
+def bound_round(
+    task: QueuedTask, tasks: Sequence[QueuedTask], busy_period: int, budget: SearchBudget
+) -> QueueBound | None:
     """Return the response in rclcpp's executor of one thread, None where it is above the busy period."""
-    spend, round_work = budget.start_search(), work_of_round(tasks)
-    last_round = sum(each.cost * each.entities for each in tasks if each.rank <= task.rank)
+    spend, last_tasks = budget.start_search(), [each for each in tasks if each.rank <= task.rank]
+    round_work, last_round = _work_of_round(tasks), _work_of_round(last_tasks)
     waiting = 1
     while True:
         spend(2)
@@ -71,59 +100,79 @@ def bound_round(task: QueuedTask, tasks: Sequence[QueuedTask], busy_period: int,
         if response >= busy_period:
             return None
         if count <= waiting:
-            return response
+            rounds = [QueueShare(each, each.cost * each.entities, waiting, "in the rounds before") for each in tasks]
+            rounds += [QueueShare(each, each.cost * each.entities, 1, "in its own round") for each in last_tasks]
+            return QueueBound(response, 0, tuple(rounds))
         waiting = count
 
 
-def work_of_round(tasks: Iterable[QueuedTask]) -> int:
+def _work_of_round(tasks: Iterable[QueuedTask]) -> int:
     """Return the work of a round of rclcpp's executor in which everything is ready."""
     return sum(each.cost * each.entities for each in tasks)
 
 
 def bound_non_preemptive(
     task: QueuedTask, tasks: Sequence[QueuedTask], busy_period: int, budget: SearchBudget
-) -> int | None:
+) -> QueueBound | None:
     """Return the response by priorities where what has begun is not preempted; None without a priority."""
     if task.priority is None:
         return None
     spend = budget.start_search()
     others = [each for each in tasks if each is not task]
     urgent = [each for each in others if each.priority is not None and each.priority >= task.priority]
-    blocking = max((each.cost for each in others if each.priority is None or each.priority < task.priority), default=0)
-    longest = 0
+    begun = _choose_begun(each for each in others if each not in urgent)
+    worst = QueueBound(0, 0, ())
     for count, arrival in enumerate(earliest_arrivals(task.streams)):
         if arrival and arrival >= busy_period:
             break
-        own_work = blocking + count * task.cost
+        own_work = sum(each.work for each in begun) + count * task.cost
         start = find_start(own_work, [(each, None) for each in urgent], spend)
-        longest = max(longest, start + task.cost - arrival)
-    return longest
+        if start + task.cost - arrival > worst.response or not worst.shares:
+            own = QueueShare(task, task.cost, count + 1, "its own")
+            come = (QueueShare(each, each.cost, until=start) for each in urgent)
+            worst = QueueBound(start + task.cost, arrival, (*begun, own, *come))
+    return worst
+
+
+def _choose_begun(less_urgent: Iterable[QueuedTask]) -> tuple[QueueShare, ...]:
+    """Return the longest of some tasks, of which one may have begun."""
+    longest = max(less_urgent, key=lambda each: each.cost, default=None)
+    return (QueueShare(longest, longest.cost, 1, "which may just have begun"),) if longest else ()
 
 
 def bound_edf(
     task: QueuedTask, tasks: Sequence[QueuedTask], busy_period: int, budget: SearchBudget, *, preemptive: bool
-) -> int | None:
+) -> QueueBound | None:
     """Return the response where the earliest deadline is first; None where the task's own is not known."""
     if task.deadline is None:
         return None
-    spend, longest = budget.start_search(), task.cost
+    spend, worst = budget.start_search(), QueueBound(0, 0, ())
     others = [each for each in tasks if each is not task]
     own_deadline = task.deadline
     # A deadline that nobody knows may always be the earlier one: as if it were long ago.
     leads = [(each, find_lead(each, own_deadline)) for each in others]
     jumps = [(task, 0), *((each, lead) for each, lead in leads if lead is not None)]
     for arrival in list_arrivals(busy_period, jumps):
-        own_work = task.cost * max(task.count_until(arrival), 1)
+        own_count = max(task.count_until(arrival), 1)
         limits = [(each, None if lead is None else arrival + lead) for each, lead in leads]
+        begun: tuple[QueueShare, ...] = ()
         if preemptive and task.cost:
-            end = find_end(own_work, limits, spend)
+            end = find_end(task.cost * own_count, limits, spend)
+            until = end - 1
         elif preemptive:  # what takes no time ends when it begins
-            end = find_start(own_work, limits, spend)
+            end = until = find_start(0, limits, spend)
         else:
-            later = [each.cost for each, limit in limits if limit is not None and limit < 0]
-            end = find_start(own_work - task.cost + max(later, default=0), limits, spend) + task.cost
-        longest = max(longest, end - arrival)
-    return longest
+            begun = _choose_begun(each for each, limit in limits if limit is not None and limit < 0)
+            until = find_start(task.cost * (own_count - 1) + sum(each.work for each in begun), limits, spend)
+            end = until + task.cost
+        if end - arrival > worst.response or not worst.shares:
+            own = QueueShare(task, task.cost, own_count, "its own")
+            come = (
+                QueueShare(each, each.cost, until=until if limit is None else min(until, limit))
+                for each, limit in limits
+            )
+            worst = QueueBound(end, arrival, (own, *begun, *come))
+    return worst
 
 
 def find_lead(other: QueuedTask, own_deadline: int) -> int | None:

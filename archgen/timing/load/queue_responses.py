@@ -13,6 +13,7 @@ from archgen.timing.load.busy_windows import DivergedError, SearchBudget
 from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.load.load_system import order_of_core
 from archgen.timing.load.queue_orders import (
+    QueueBound,
     QueuedTask,
     bound_edf,
     bound_fifo,
@@ -53,8 +54,8 @@ class CoreQueue:
 
     def bound_responses(
         self, model_of: Callable[[str], EventStreams | UnknownCause], busy_period: int, budget: SearchBudget
-    ) -> dict[str, int]:
-        """Return the responses that the order bounds, for the event models of all that waits; none where one is unknown."""
+    ) -> dict[str, QueueBound]:
+        """Return the bounds that the order gives, for the event models of all that waits; none where one is unknown."""
         tasks: list[QueuedTask] = []
         for task in self.tasks:
             model = model_of(task.name)
@@ -64,32 +65,32 @@ class CoreQueue:
         working_tasks = [task for task in tasks if task.streams]
         if len(working_tasks) == 1:
             return {}  # what is alone waits for itself only
-        responses: dict[str, int] = {}
+        bounds: dict[str, QueueBound] = {}
         for task in working_tasks:
             try:
-                response = self._bound_response(task, working_tasks, busy_period, budget)
+                bound = self._bound_response(task, working_tasks, busy_period, budget)
             except DivergedError:
                 break
-            if response is not None:
-                responses[task.name] = response
-        return responses
+            if bound is not None:
+                bounds[task.name] = bound
+        return bounds
 
     def _bound_response(
         self, task: QueuedTask, tasks: Sequence[QueuedTask], busy_period: int, budget: SearchBudget
-    ) -> int | None:
+    ) -> QueueBound | None:
         if self.order == "ros2_executor":
             return bound_round(task, tasks, busy_period, budget)
         if self.order == "fifo":
-            response: int | None = bound_fifo(tasks, busy_period, budget)
+            bound: QueueBound | None = bound_fifo(tasks, busy_period, budget)
             if not self.is_core:
-                return response
+                return bound
         elif self.order == "non_preemptive":
-            response = bound_non_preemptive(task, tasks, busy_period, budget)
+            bound = bound_non_preemptive(task, tasks, busy_period, budget)
         else:
-            response = bound_edf(task, tasks, busy_period, budget, preemptive=self.is_core)
+            bound = bound_edf(task, tasks, busy_period, budget, preemptive=self.is_core)
         # Own jobs are taken to be done in the order in which they come, which a thread that waits for a core decides.
-        is_ordered = task.entities == 1 or (response is not None and response <= task.min_spacing)
-        return response if is_ordered else None
+        is_ordered = task.entities == 1 or (bound is not None and bound.response <= task.min_spacing)
+        return bound if is_ordered else None
 
 
 def find_core_queue(

@@ -17,11 +17,12 @@ from archgen.timing.load.busy_windows import (
     DivergedError,
     GrowingLoad,
     SearchBudget,
+    WorstActivation,
     add_demands,
+    find_worst_activation,
     longest_busy_period,
     longest_wait_for_turn,
     subtract_demand,
-    worst_response,
 )
 from archgen.timing.load.event_streams import settles_at_full_load
 from archgen.timing.load.lone_work import find_lone_response
@@ -29,12 +30,12 @@ from archgen.timing.load.ranked_threads import RankedThreads
 from archgen.timing.load.thread_work import (
     DIVERGED_CAUSE,
     OVERLOAD_CAUSE,
+    CoreWindow,
     EventModels,
     ThreadWork,
     WorstResponse,
-    build_thread,
+    build_core_threads,
     find_work,
-    lower_crowded_threads,
     work_utilisation,
 )
 from archgen.timing.system.core_placement import ProcessingResource
@@ -43,10 +44,21 @@ from archgen.timing.system.timing_system import TimingSystem
 
 
 class AnalysisEffort(NamedTuple):
-    """How much may still be computed, and for whom: `stale_ids` have other event models than before, None at first."""
+    """How much may still be computed, and for whom: `stale_ids` have other event models than before, None at first.
+
+    The windows that bound responses are put into `windows`, where somebody asks for them.
+    """
 
     budget: SearchBudget
     stale_ids: frozenset[str] | None = None
+    windows: dict[str, CoreWindow] | None = None
+
+
+class _ThreadBound(NamedTuple):
+    """The response of a thread, and the window in which it ends, None where there is none."""
+
+    response: WorstResponse
+    worst: WorstActivation | None = None
 
 
 def find_dedicated_response(
@@ -63,7 +75,7 @@ def find_dedicated_response(
         return WorstResponse(None, "dedicated", OVERLOAD_CAUSE)
     try:
         in_order = works_in_order(system, activity)
-        return WorstResponse(find_lone_response(work, budget, in_order=in_order), "dedicated")
+        return WorstResponse(find_lone_response(work, budget, in_order=in_order).response, "dedicated")
     except DivergedError:
         return WorstResponse(None, "dedicated", DIVERGED_CAUSE)
 
@@ -72,12 +84,8 @@ def find_responses(
     system: TimingSystem, resource: ProcessingResource, event_models: EventModels, effort: AnalysisEffort
 ) -> dict[str, WorstResponse]:
     """Return the responses on one core, or on cores that are joined; without those that cannot have changed."""
-    budget, stale_ids = effort
-    all_threads = lower_crowded_threads(
-        system,
-        [build_thread(system, unit, event_models) for unit in (*resource.units, *resource.foreign_units)],
-        event_models,
-    )
+    budget, stale_ids, windows = effort
+    all_threads = build_core_threads(system, resource, event_models)
     wanted_threads = all_threads[: len(resource.units)]
     # Only what is as urgent or more can interfere: threads above the most urgent stale one keep their response. Threads
     # without a priority (low None) always wait for everything.
@@ -92,12 +100,14 @@ def find_responses(
         ]
     # Joined cores: while one of their threads waits, one of the cores works. That is one core with all the work.
     response_of: dict[str, WorstResponse] = {}
-    thread_responses = (
+    thread_bounds = (
         _leave_open(resource, wanted_threads)
         if resource.missing
         else _solve_one_core(all_threads, wanted_threads, budget)
     )
-    for thread, response in map(_soften_overload, thread_responses) if resource.joined else thread_responses:
+    for thread, (response, worst) in map(_soften_overload, thread_bounds) if resource.joined else thread_bounds:
+        if windows is not None and worst is not None:
+            windows |= dict.fromkeys(thread.unit, CoreWindow(thread, all_threads, worst))
         for name in thread.unit:
             # A declared response is taken as it is, whatever the rest of the thread does; its work still interferes
             # with others.
@@ -110,10 +120,12 @@ def find_responses(
     return response_of
 
 
-def _soften_overload(thread_response: tuple[ThreadWork, WorstResponse]) -> tuple[ThreadWork, WorstResponse]:
+def _soften_overload(thread_bound: tuple[ThreadWork, _ThreadBound]) -> tuple[ThreadWork, _ThreadBound]:
     """Replace overload: all of the joined cores may bear what is too much for one, only no bound was found."""
-    thread, response = thread_response
-    return thread, response._replace(cause=DIVERGED_CAUSE) if response.cause == OVERLOAD_CAUSE else response
+    thread, (response, worst) = thread_bound
+    if response.cause == OVERLOAD_CAUSE:
+        response = response._replace(cause=DIVERGED_CAUSE)
+    return thread, _ThreadBound(response, worst)
 
 
 def _highest_priority(thread: ThreadWork) -> int:
@@ -123,47 +135,49 @@ def _highest_priority(thread: ThreadWork) -> int:
 
 def _leave_open(
     resource: ProcessingResource, wanted_threads: Iterable[ThreadWork]
-) -> Iterable[tuple[ThreadWork, WorstResponse]]:
+) -> Iterable[tuple[ThreadWork, _ThreadBound]]:
     """Yield no bound for threads of which nobody knows how many cores they have, but what is too much for any core."""
     for thread in wanted_threads:
         causes = (*((thread.cause,) if thread.cause else ()), UnknownCause(resource.missing))
-        yield thread, WorstResponse(None, "unknown", OVERLOAD_CAUSE if thread.share > 1 else unite_causes(causes))
+        cause = OVERLOAD_CAUSE if thread.share > 1 else unite_causes(causes)
+        yield thread, _ThreadBound(WorstResponse(None, "unknown", cause))
 
 
 def _solve_one_core(
     all_threads: Sequence[ThreadWork], wanted_threads: Sequence[ThreadWork], budget: SearchBudget
-) -> Iterable[tuple[ThreadWork, WorstResponse]]:
-    """Yield the responses of the wanted threads on one core."""
+) -> Iterable[tuple[ThreadWork, _ThreadBound]]:
+    """Yield the bounds of the wanted threads on one core."""
     ranked = RankedThreads(all_threads)
-    any_order_response = (
+    any_order_bound = (
         _bound_any_order(all_threads, budget)
         if any(thread.lowest_priority is None for thread in wanted_threads)
         else None
     )
     for thread in wanted_threads:
-        if any_order_response is not None and thread.lowest_priority is None:
+        if any_order_bound is not None and thread.lowest_priority is None:
             is_only = len(all_threads) == 1 and len(thread.unit) > 1
             # What works only once, at the start, has no events and interferes with nobody, but still takes its own
             # time.
             once_cost = sum(work.cost for work in thread.works if not work.streams)
-            response = (
+            response, worst = (
                 _bound_any_order(all_threads, budget, once_cost, waits_on=thread.takes_no_time)
-                if (once_cost or thread.takes_no_time) and any_order_response.value is not None
-                else any_order_response
+                if (once_cost or thread.takes_no_time) and any_order_bound.worst is not None
+                else any_order_bound
             )
-            yield thread, response._replace(tier="executor") if is_only else response
+            yield thread, _ThreadBound(response._replace(tier="executor") if is_only else response, worst)
     previous_response: WorstResponse | None = None
     # By falling priority: the busy period of each level is where the search of the next begins.
     for thread in sorted(
         (t for t in wanted_threads if t.lowest_priority is not None), key=lambda t: -(t.lowest_priority or 0)
     ):
-        previous_response = _bound_by_priority(thread, ranked, budget, previous_response)
-        yield thread, previous_response
+        bound = _bound_by_priority(thread, ranked, budget, previous_response)
+        previous_response = bound.response
+        yield thread, bound
 
 
 def _bound_any_order(
     threads: Sequence[ThreadWork], budget: SearchBudget, once_cost: int = 0, *, waits_on: bool = False
-) -> WorstResponse:
+) -> _ThreadBound:
     """Bound the response under any work-conserving scheduler: the longest busy period, with `once_cost` on top.
 
     What is alone on a core works in the order in which it is activated. What takes no time waits on (`waits_on`) where
@@ -171,24 +185,25 @@ def _bound_any_order(
     """
     search = longest_wait_for_turn if waits_on else longest_busy_period
     if sum_fractions(thread.share for thread in threads) >= 1:
-        return WorstResponse(None, "host", OVERLOAD_CAUSE)
+        return _ThreadBound(WorstResponse(None, "host", OVERLOAD_CAUSE))
     causes = [thread.cause for thread in threads if thread.cause]
     if causes:
-        return WorstResponse(None, "host", unite_causes(causes))
+        return _ThreadBound(WorstResponse(None, "host", unite_causes(causes)))
     works = [work for thread in threads for work in thread.works]
     try:
         if len(works) == 1 and works[0].streams and threads[0].in_order:
-            return WorstResponse(worst_response(works[0], NO_DEMAND, budget), "host")
-        load = GrowingLoad(works)
-        demand = add_demands(load.demand_function(), DemandFunction(lambda _: once_cost))
-        return WorstResponse(search(demand, budget, once_cost), "host")
+            worst = find_worst_activation(works[0], NO_DEMAND, budget)
+        else:
+            demand = add_demands(GrowingLoad(works).demand_function(), DemandFunction(lambda _: once_cost))
+            worst = WorstActivation(0, 0, search(demand, budget, once_cost))
     except DivergedError:
-        return WorstResponse(None, "host", DIVERGED_CAUSE)
+        return _ThreadBound(WorstResponse(None, "host", DIVERGED_CAUSE))
+    return _ThreadBound(WorstResponse(worst.response, "host"), worst)
 
 
 def _bound_by_priority(
     thread: ThreadWork, ranked: RankedThreads, budget: SearchBudget, previous_response: WorstResponse | None
-) -> WorstResponse:
+) -> _ThreadBound:
     """Bound the response of a thread below all that may have its priority or a higher one.
 
     Where the search for the previous, more urgent one did not end, this one, with more work in it, is not begun.
@@ -199,24 +214,26 @@ def _bound_by_priority(
     tier: ResponseTier = "priorities" if len(thread.unit) == 1 else "executor"
     share = ranked.share_of_first(count)
     if share > 1 or (share == 1 and not _settles_at_full_load(ranked.threads[:count])):
-        return WorstResponse(None, tier, OVERLOAD_CAUSE)
+        return _ThreadBound(WorstResponse(None, tier, OVERLOAD_CAUSE))
     cause = ranked.cause_of_first(count)
     if cause is not None:
-        return WorstResponse(None, tier, cause)
+        return _ThreadBound(WorstResponse(None, tier, cause))
     if previous_response is not None and previous_response.cause == DIVERGED_CAUSE:
-        return WorstResponse(None, tier, DIVERGED_CAUSE)
+        return _ThreadBound(WorstResponse(None, tier, DIVERGED_CAUSE))
     try:
         busy_period = ranked.busy_period_of_first(count, budget)
         # Activation by activation, only for a single activity; for an executor the whole busy period is the bound,
         # since its callbacks may run in any order.
         if len(thread.works) == 1 and thread.in_order:
             interference = subtract_demand(ranked.demand_of_first(count), GrowingLoad(thread.works).demand_function())
-            busy_period = worst_response(thread.works[0], interference, budget, busy_period)
-        elif thread.takes_no_time:
-            busy_period = longest_wait_for_turn(ranked.demand_of_first(count), budget, busy_period)
-        return WorstResponse(busy_period, tier)
+            worst = find_worst_activation(thread.works[0], interference, budget, busy_period)
+        else:
+            if thread.takes_no_time:
+                busy_period = longest_wait_for_turn(ranked.demand_of_first(count), budget, busy_period)
+            worst = WorstActivation(0, 0, busy_period)
     except DivergedError:
-        return WorstResponse(None, tier, DIVERGED_CAUSE)
+        return _ThreadBound(WorstResponse(None, tier, DIVERGED_CAUSE))
+    return _ThreadBound(WorstResponse(worst.response, tier), worst)
 
 
 def _settles_at_full_load(threads: Iterable[ThreadWork]) -> bool:

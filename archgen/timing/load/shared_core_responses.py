@@ -22,11 +22,10 @@ from functools import cache
 
 from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import UnknownCause, unite_causes
-from archgen.timing.load.busy_windows import DivergedError, SearchBudget
+from archgen.timing.load.busy_windows import DivergedError, SearchBudget, WorstActivation
 from archgen.timing.load.cascade_demand import CascadeDemand
 from archgen.timing.load.core_paths import CorePath, CorePaths, LastStep
 from archgen.timing.load.core_responses import CoreResponses
-from archgen.timing.load.core_shares import CoreShares
 from archgen.timing.load.event_streams import (
     EventStream,
     EventStreams,
@@ -34,7 +33,7 @@ from archgen.timing.load.event_streams import (
     earliest_arrivals,
     streams_of_calls,
 )
-from archgen.timing.load.full_threads import find_demand_left, find_full_ids, leave_out_threads
+from archgen.timing.load.full_threads import CoreShares, find_demand_left, find_full_ids, leave_out_threads
 from archgen.timing.load.idle_backlogs import find_idle_backlog
 from archgen.timing.load.inner_triggers import FiringArc
 from archgen.timing.load.level_cascades import EventOrigin
@@ -55,13 +54,13 @@ _MAX_WAITING_EVENTS = 50
 """Events of one origin that may come within a delay, before it is said to have run away."""
 
 
-def solve_shared_cores(
+def open_shared_solver(
     paths: CorePaths,
     model_of: Callable[[EventOrigin, FiringArc | None], EventStreams | UnknownCause],
     known_bounds: tuple[Mapping[str, WorstResponse], Mapping[str, HostLimit]],
     budget: SearchBudget,
-) -> CoreResponses:
-    """Return the responses on some cores, for the event models of what enters them (`model_of`).
+) -> SharedCoreSolver:
+    """Return what finds the responses on some cores, for the event models of what enters them (`model_of`).
 
     `known_bounds` have the responses of the foreign units, which are found elsewhere, and what bounds each activity on
     its host as a whole.
@@ -71,8 +70,7 @@ def solve_shared_cores(
     def find_model(origin: EventOrigin) -> EventStreams | UnknownCause:
         return model_of(origin, cores.entering_arcs[int(origin.key)] if origin.kind == "arc" else None)
 
-    demand = CascadeDemand(cores.cascades, find_model)
-    return SharedCoreSolver(paths, demand, known_bounds, budget).solve()
+    return SharedCoreSolver(paths, CascadeDemand(cores.cascades, find_model), known_bounds, budget)
 
 
 class SharedCoreSolver:
@@ -312,7 +310,7 @@ class SharedCoreSolver:
             for number in range(len(self.cores.ways_to[name])):
                 delays[name, number] = self.limits.limit_delay((name, number)) or 0
             return
-        response = self._find_delay(self.paths.look_up((name,)), spend, response_limit)
+        response = self.find_worst(self.paths.look_up((name,)), spend, response_limit).response
         # What a declared response says may be more than is computed: so long it may be pending.
         response = max(response, self.cores.system.activities[name].response or 0)
         self.step_responses[name] = response
@@ -322,29 +320,31 @@ class SharedCoreSolver:
                 delay += delays[self.way_before[name, number]]
             delay = delay if limit is None else min(delay, limit)
             if len(way.steps) > 1:
-                delay = self._find_delay(self.paths.look_up(way.steps), spend, delay)
+                delay = self.find_worst(self.paths.look_up(way.steps), spend, delay).response
             delays[name, number] = delay
 
-    def _find_delay(self, path: CorePath, spend: Callable[[int], None], limit: int | None = None) -> int:
-        """Return how long a path takes at most from the event on, or `limit` where that is not less.
+    def find_worst(self, path: CorePath, spend: Callable[[int], None], limit: int | None = None) -> WorstActivation:
+        """Return what of a path takes longest from the event on; something of `limit` where nothing is known to take less.
 
         Where the last step has a thread of its own, each activation of it since t0 is looked at. None waited then, so
         that the n-th comes no sooner than the n-th of all that fires it.
         """
         if path.last_step is None:
-            return self.find_window(path, 0, max(path.cost, 1), spend, limit)
+            return WorstActivation(0, 0, self._find_window(path, 0, max(path.cost, 1), spend, limit))
         arrival_times = earliest_arrivals(self.find_activation_streams(path.last_step))
         arrival, longest, count, window = next(arrival_times, 0), 0, 0, max(path.cost, 1)
+        worst = WorstActivation(0, 0, 0)
         while True:
             spend(1)
             count += 1
             next_arrival = next(arrival_times, None)
             if next_arrival == arrival:  # the last of those that come at once ends last
                 continue
-            window = self.find_window(path, count, window, spend, None if limit is None else arrival + limit)
-            longest = max(longest, window - arrival)
+            window = self._find_window(path, count, window, spend, None if limit is None else arrival + limit)
+            if window - arrival > longest:
+                longest, worst = window - arrival, WorstActivation(count, arrival, window)
             if next_arrival is None or window <= next_arrival or (limit is not None and longest >= limit):
-                return longest
+                return worst
             arrival = next_arrival
 
     def find_activation_streams(self, last_step: LastStep) -> EventStreams:
@@ -358,7 +358,7 @@ class SharedCoreSolver:
             streams += delay_streams(model, jitter)
         return tuple(streams)
 
-    def find_window(
+    def _find_window(
         self, path: CorePath, count: int, window: int, spend: Callable[[int], None], limit: int | None
     ) -> int:
         """Return the least window in which a path is sure to be done, or `limit` where it is not less.
@@ -430,7 +430,7 @@ class SharedCoreSolver:
         path, spend = self.paths.look_up((name,)), self.budget.start_search()
         last_step = path.last_step
         if last_step is None:
-            return self.find_window(path, 0, max(path.cost, 1), spend, None)
+            return self._find_window(path, 0, max(path.cost, 1), spend, None)
         return hold_beside_others(
             cache(lambda window: self.work.find_time_beside(path, window, spend)),
             last_step.cost,

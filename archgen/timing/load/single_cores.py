@@ -54,16 +54,16 @@ class SingleCores:
         """Return when the work of the resource's activities is done, for the responses of all that may run there."""
         bounds: dict[str, int] = {}
         for unit in self.resource.units:
-            for core, units in self.units_by_core.items():
-                for name, bound in self._bound_on_core(unit, units, core, event_models, responses, budget).items():
-                    bounds[name] = min(bound, bounds.get(name, bound))
+            for core, models in self.list_placements(unit, event_models, responses):
+                for name, response in find_responses(self.system, core, models, AnalysisEffort(budget)).items():
+                    if response.value is not None:
+                        bounds[name] = min(response.value, bounds.get(name, response.value))
         return bounds
 
     def list_placements(
-        self, name: str, event_models: EventModels, responses: Mapping[str, WorstResponse]
+        self, unit: ThreadUnit, event_models: EventModels, responses: Mapping[str, WorstResponse]
     ) -> Iterator[tuple[ProcessingResource, dict[str, EventStreams | UnknownCause]]]:
-        """Yield each core with an activity's thread and all that may run there, and the event models seen from it."""
-        unit = next(each for each in self.resource.units if name in each)
+        """Yield each core with a thread and all that may run there, and the event models seen from it."""
         for core, core_units in self.units_by_core.items():
             yield self._place_on_core(unit, core_units, core, event_models, responses)
 
@@ -90,19 +90,6 @@ class SingleCores:
             for name in each
         }
         return resource, models
-
-    def _bound_on_core(  # noqa: PLR0913, PLR0917 - all of it is looked at on one core
-        self,
-        unit: ThreadUnit,
-        core_units: tuple[ThreadUnit, ...],
-        core: int,
-        event_models: EventModels,
-        responses: Mapping[str, WorstResponse],
-        budget: SearchBudget,
-    ) -> dict[str, int]:
-        resource, models = self._place_on_core(unit, core_units, core, event_models, responses)
-        found_responses = find_responses(self.system, resource, models, AnalysisEffort(budget))
-        return {name: response.value for name, response in found_responses.items() if response.value is not None}
 
 
 def find_single_cores(

@@ -1,19 +1,22 @@
 """One step of a propagation at a time: the event model of an activity, or the responses of what a resource runs."""
 
 from collections import ChainMap
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from archgen.timing.figures.timing_values import UnknownCause, is_same_cause
-from archgen.timing.load.core_responses import CoreResponses, solve_inner_core
+from archgen.timing.load.busy_windows import SearchBudget
+from archgen.timing.load.core_responses import CoreResponses, CoreSolver, open_core_solver
 from archgen.timing.load.event_models import activation_model, arriving_model
 from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.load.inner_triggers import FiringArc
 from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.propagation_steps import PropagationSteps
+from archgen.timing.load.queue_orders import QueueBound
+from archgen.timing.load.queue_responses import CoreQueue
 from archgen.timing.load.response_times import AnalysisEffort, find_dedicated_response, find_responses
 from archgen.timing.load.run_ways import EntryWay
-from archgen.timing.load.shared_core_responses import solve_shared_cores
-from archgen.timing.load.thread_work import WorstResponse
+from archgen.timing.load.shared_core_responses import SharedCoreSolver, open_shared_solver
+from archgen.timing.load.thread_work import EventModels, WorstResponse
 from archgen.timing.load.waiting_threads import find_waiting_responses
 from archgen.timing.load.whole_hosts import HostLimit, limit_responses, list_host_limits
 from archgen.timing.system.core_placement import (
@@ -101,16 +104,23 @@ class StepUpdates(PropagationSteps):
         state, resource, budget = self.state, self.resources[step], self.budget_of[step]
         if resource.waits:
             return find_waiting_responses(state, resource, self.waiting_ids, budget)
-        models = self._models_of(step) if step in self.roaming_ids else state.event_models
+        models = self.models_of(step)
         queue, stale_ids = self.queues.get(step), self._stale_activities(step)
         # In a queue each response rests on all that waits there.
         effort = AnalysisEffort(budget, stale_ids if queue is None else None)
         responses = find_responses(state.system, resource, models, effort)
         if queue is not None:
-            busy_period = max((each.value or 0 for each in responses.values() if each.tier != "declared"), default=0)
-            bounds = queue.bound_responses(models.__getitem__, busy_period, budget)
-            responses = {name: response.limit_to(bounds.get(name), queue.order) for name, response in responses.items()}
+            for name, bound in self.bound_queue(queue, models, responses, budget).items():
+                responses[name] = responses[name].limit_to(bound.response, queue.order)
         return limit_responses(CoreResponses(responses, {}, {}), self._limits_of(step)).response_of
+
+    @staticmethod
+    def bound_queue(
+        queue: CoreQueue, models: EventModels, responses: Mapping[str, WorstResponse], budget: SearchBudget
+    ) -> dict[str, QueueBound]:
+        """Return what the order of a queue makes of the responses in any order."""
+        busy_period = max((each.value or 0 for each in responses.values() if each.tier != "declared"), default=0)
+        return queue.bound_responses(models.__getitem__, busy_period, budget)
 
     def _limits_of(self, step: str) -> dict[str, HostLimit]:
         """Return what bounds the activities of a resource on its host as a whole."""
@@ -135,25 +145,32 @@ class StepUpdates(PropagationSteps):
 
     def _update_whole_host(self, step: str) -> bool:
         """Find how long a host taken as one core is busy, and return whether anything changed."""
-        find_model = self._model_finder(step, {})
-        core_responses = solve_inner_core(self.whole_hosts[step], find_model, self.budget_of[step])
+        core_responses = self.open_solver(step, {}).solve()
         limits = list_host_limits(core_responses)
         changed = self.host_limits.get(step) != limits
         self.host_limits[step] = limits
         self.state.host_ways_to.update({name: core_responses.ways_to[name] for name in limits})
         return changed
 
+    def open_solver(
+        self, step: str, entering_models: dict[int, EventStreams | UnknownCause]
+    ) -> CoreSolver | SharedCoreSolver:
+        """Return what finds the responses of a core, or several, on which activities fire one another, or of a host."""
+        find_model, budget = self._model_finder(step, entering_models), self.budget_of[step]
+        if step in self.shared_cores:
+            known_bounds = ChainMap(self.state.work_ends, self.state.responses)
+            return open_shared_solver(
+                self.shared_cores[step], find_model, (known_bounds, self._limits_of(step)), budget
+            )
+        return open_core_solver(self.whole_hosts.get(step) or self.inner_cores[step], find_model, budget)
+
     def _update_inner_core(self, step: str) -> bool:
         """Find the responses of a core on which activities fire one another, and return whether anything changed."""
-        state, limits, budget = self.state, self._limits_of(step), self.budget_of[step]
+        state = self.state
         entering_models: dict[int, EventStreams | UnknownCause] = {}
-        find_model = self._model_finder(step, entering_models)
+        solved = self.open_solver(step, entering_models).solve()
         new_responses, new_ways, new_waits = (
-            limit_responses(solve_inner_core(self.inner_cores[step], find_model, budget), limits)
-            if step in self.inner_cores
-            else solve_shared_cores(
-                self.shared_cores[step], find_model, (ChainMap(state.work_ends, state.responses), limits), budget
-            )
+            limit_responses(solved, self._limits_of(step)) if step in self.inner_cores else solved
         )
         old_ends = dict(self.state.single_ends)
         if step in self.single_cores:
@@ -197,7 +214,7 @@ class StepUpdates(PropagationSteps):
 
     def _stale_activities(self, step: str) -> frozenset[str] | None:
         """Return what has another event model than when a resource was last looked at; None the first time."""
-        resource, event_models = self.resources[step], self._models_of(step)
+        resource, event_models = self.resources[step], self.models_of(step)
         current_models = {
             name: event_models[name] for unit in (*resource.units, *resource.foreign_units) for name in unit
         }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache
@@ -12,8 +12,9 @@ from typing import NamedTuple
 from archgen.frozen import dataclass
 from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, sum_ratios, unite_causes
-from archgen.timing.load.busy_windows import ActivityWork
+from archgen.timing.load.busy_windows import ActivityWork, WorstActivation
 from archgen.timing.load.event_streams import EventStreams
+from archgen.timing.system.core_placement import ProcessingResource
 from archgen.timing.system.core_sets import ThreadUnit
 from archgen.timing.system.thread_pools import ThreadPool, find_crowded_pools, name_lane, works_in_order
 from archgen.timing.system.timing_system import TimingSystem
@@ -76,6 +77,23 @@ class ThreadWork:
         return any(not work.cost and work.streams for work in self.works)
 
 
+class CoreWindow(NamedTuple):
+    """The window that bounds the activities of a `thread` on a core: in it `threads` do all that may hold them up."""
+
+    thread: ThreadWork
+    threads: Sequence[ThreadWork]
+    worst: WorstActivation
+
+    def list_others(self) -> Iterator[ThreadWork]:
+        """Yield the other threads for which the thread may have to wait."""
+        level = self.thread.lowest_priority
+        for each in self.threads:
+            if each is not self.thread and (
+                level is None or (each.highest_priority is not None and each.highest_priority >= level)
+            ):
+                yield each
+
+
 def build_thread(system: TimingSystem, unit: ThreadUnit, event_models: EventModels) -> ThreadWork:
     """Build a unit's thread from the work of its members."""
     # What never fires, or only at the start, interferes with nobody, even if its execution time is unknown.
@@ -95,6 +113,14 @@ def build_thread(system: TimingSystem, unit: ThreadUnit, event_models: EventMode
         sum_fractions(work_utilisation(work.cost, work.streams) for work in works),
         works_in_order(system, system.activities[unit[0]]),
     )
+
+
+def build_core_threads(
+    system: TimingSystem, resource: ProcessingResource, event_models: EventModels
+) -> list[ThreadWork]:
+    """Build the threads of a core, those of its own units first, with the priorities that they have to wait for."""
+    units = (*resource.units, *resource.foreign_units)
+    return lower_crowded_threads(system, [build_thread(system, unit, event_models) for unit in units], event_models)
 
 
 def lower_crowded_threads(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import NamedTuple
@@ -11,7 +11,8 @@ from archgen.frozen import dataclass
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
 from archgen.timing.load.event_streams import EventStream, EventStreams, max_arrivals
-from archgen.timing.load.level_cascades import GateRule
+from archgen.timing.load.inner_triggers import FiringArc
+from archgen.timing.load.level_cascades import EventOrigin, GateRule
 
 
 class EventCount(NamedTuple):
@@ -205,6 +206,22 @@ def shorten_working(working: FigureWorking, lead: int) -> FigureWorking:
         return working
     value = max(working.value - lead, 0)
     return replace(working, value=value, lead=working.lead + lead)
+
+
+def describe_origin(origin: EventOrigin, entering_arcs: Sequence[FiringArc]) -> str:
+    """Say of which events work comes."""
+    if origin.kind == "arc":
+        arc = entering_arcs[int(origin.key)].arc
+        return f"events of {arc.topic} from {arc.source}"
+    return f"events of {origin.key}"
+
+
+def add_last_step(
+    steps: tuple[str, ...], first: FigureWorking | None, last: FigureWorking | None
+) -> Iterator[FigureWorking]:
+    """Yield how the time of a run comes about as a sum: of the time to the step before the last one, and its response."""
+    if first and last:
+        yield FigureWorking(first.value + last.value, 0, (), steps=steps, addends=(first, last))
 
 
 def choose_working(workings: Iterable[FigureWorking], value: int) -> FigureWorking | None:

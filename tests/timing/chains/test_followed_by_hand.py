@@ -16,7 +16,7 @@ from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.chains.figure_explanations import explain_word
 from archgen.timing.load.queue_responses import QUEUE_TIERS
-from archgen.timing.load.response_workings import ResponseWorkings
+from archgen.timing.load.response_terms import ResponseTerms
 from archgen.timing.run_analysis import analyse_architecture
 from tests.property_sizes import list_seeds
 from tests.running import RAMCIP
@@ -201,12 +201,12 @@ def test_how_long_messages_wait_to_be_stored_follows_from_the_work_that_is_liste
 
 
 @pytest.mark.parametrize(
-    "text", [random_text(seed) for seed in range(60)] + [random_style_text(seed) for seed in range(28)]
+    "text", [random_text(seed) for seed in range(10)] + [random_style_text(seed) for seed in range(14)]
 )
 def test_each_response_that_has_a_bound_has_terms_that_give_it(text: str) -> None:
     analysis = analyse_architecture(architecture(text))
     assert analysis.state is not None
-    workings = ResponseWorkings(analysis.state)
+    workings = ResponseTerms(analysis.state)
     for name, response in analysis.state.responses.items():
         working = workings.find_response(name)
         if response.value is None or response.tier in {"declared", "unknown"}:

@@ -23,7 +23,8 @@ MODELS: dict[str, EventStreams | UnknownCause] = {"a": (EventStream(100),), "b":
 
 def bound(queue: CoreQueue, models: dict[str, EventStreams | UnknownCause], budget: int = 1000) -> dict[str, int]:
     """Return the responses in a busy period of 20 ticks."""
-    return queue.bound_responses(models.__getitem__, 20, SearchBudget(budget))
+    bounds = queue.bound_responses(models.__getitem__, 20, SearchBudget(budget))
+    return {name: each.response for name, each in bounds.items()}
 
 
 @pytest.mark.parametrize(

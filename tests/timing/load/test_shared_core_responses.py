@@ -9,12 +9,12 @@ from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.load import busy_windows, search_budgets
 from archgen.timing.load.cascade_demand import CascadeDemand
 from archgen.timing.load.core_paths import CorePaths
-from archgen.timing.load.core_shares import CoreShares
 from archgen.timing.load.event_propagation import propagate_events
 from archgen.timing.load.event_streams import EventStream
+from archgen.timing.load.full_threads import CoreShares
 from archgen.timing.load.inner_triggers import find_inner_triggers
 from archgen.timing.load.path_work import PathWork
-from archgen.timing.load.shared_core_responses import solve_shared_cores
+from archgen.timing.load.shared_core_responses import open_shared_solver
 from archgen.timing.load.shared_cores import SharedCores, prepare_shared_cores
 from archgen.timing.run_analysis import analyse_architecture
 from archgen.timing.system.core_placement import find_resources
@@ -201,8 +201,10 @@ def test_work_beside_a_path_is_what_comes_and_what_was_pending() -> None:
     assert not shares.fills_core(("b",), paths.look_up(("b",)))
     # Every 100: 4 + 3; 6 + B, where 2 B = min(4, B) + 3; 3 + B, where 2 B = min(6, B) + 4.
     rare_streams = (EventStream(100 * tick),)
-    found = solve_shared_cores(paths, lambda _, __: rare_streams, ({}, {}), busy_windows.SearchBudget())
-    assert {name: response.value and response.value // tick for name, response in found.response_of.items()} == {
+    solver = open_shared_solver(paths, lambda _, __: rare_streams, ({}, {}), busy_windows.SearchBudget())
+    assert {
+        name: response.value and response.value // tick for name, response in solver.solve().response_of.items()
+    } == {
         "a": 7,
         "b": 9,
         "c": 7,

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from archgen.timing.analysis import Analysis
 from archgen.timing.chains.figure_explanations import explain_word
-from archgen.timing.load.response_workings import ResponseWorkings
+from archgen.timing.load.response_terms import ResponseTerms
 from tests.timing.sketches import analyse_sketch
 
 
@@ -51,5 +51,5 @@ def test_a_run_of_which_one_part_cannot_be_explained_has_no_working() -> None:
         responses={**state.responses, "b": response._replace(value=(response.value or 0) + 1)},
         ways_to={**state.ways_to, "b": (longest._replace(delay=(longest.delay or 0) + 1), rest)},
     )
-    assert ResponseWorkings(state).find_run("b") is not None
-    assert ResponseWorkings(tampered).find_run("b") is None
+    assert ResponseTerms(state).find_run("b") is not None
+    assert ResponseTerms(tampered).find_run("b") is None

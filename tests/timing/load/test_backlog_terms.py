@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from archgen.timing.chains.working_lines import WorkingLines
-from archgen.timing.load.backlog_workings import BacklogWorkings
+from archgen.timing.load.backlog_terms import BacklogTerms
 from archgen.timing.load.way_works import build_thread_work
 from archgen.timing.load.work_terms import CountFormulas
 from tests.timing.hand_reader import read_equations
@@ -23,7 +23,7 @@ def test_a_delay_is_what_is_printed() -> None:
     cores = prepare(nodes, "s>a", "hosts: {pc: {cores: 2}}")
     backlog = find_backlog(cores)
     assert backlog is not None
-    workings = BacklogWorkings(backlog, CountFormulas(cores.system.tick))
+    workings = BacklogTerms(backlog, CountFormulas(cores.system.tick))
     (working,) = workings.list_delays(cores.ways_to["a"][0])
     assert (in_ms(cores, working.value), working.is_consistent) == (70, True)
     lines = [line.text for line in WorkingLines(cores.system.tick).explain_response(working, 0)]
@@ -40,7 +40,7 @@ def test_a_wait_for_threads_is_part_of_a_but_no_work_that_is_taken_off_b() -> No
     cores = prepare_box(3, 2)
     backlog = find_backlog(cores)
     assert backlog is not None
-    workings = BacklogWorkings(backlog, CountFormulas(cores.system.tick))
+    workings = BacklogTerms(backlog, CountFormulas(cores.system.tick))
     (working,) = workings.list_delays(cores.ways_to["c"][0])
     assert (in_ms(cores, working.value), working.activation, working.steps) == (Fraction(175, 3), 1, ("s", "b", "c"))
     lines = [line.text for line in WorkingLines(cores.system.tick).explain_response(working, 0)]
@@ -74,5 +74,5 @@ def test_a_way_of_one_step_is_not_named() -> None:
     cores = prepare_box(3, 2)
     backlog = find_backlog(cores)
     assert backlog is not None
-    (working,) = BacklogWorkings(backlog, CountFormulas(cores.system.tick)).list_delays(cores.ways_to["s"][0])
+    (working,) = BacklogTerms(backlog, CountFormulas(cores.system.tick)).list_delays(cores.ways_to["s"][0])
     assert working.steps == ()

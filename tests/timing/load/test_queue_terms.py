@@ -8,10 +8,10 @@ import pytest
 
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.busy_windows import SearchBudget
+from archgen.timing.load.core_terms import explain_queue_bound
 from archgen.timing.load.event_streams import EventStream, EventStreams
 from archgen.timing.load.queue_orders import QueuedTask
 from archgen.timing.load.queue_responses import CoreQueue, QueueOrder
-from archgen.timing.load.queue_workings import list_queue_workings
 from archgen.timing.load.work_terms import CountFormulas
 
 A = QueuedTask("a", 3, (), priority=2, deadline=20, rank=0)
@@ -30,16 +30,16 @@ MODELS: dict[str, EventStreams | UnknownCause] = {
 
 
 def explain(queue: CoreQueue, name: str, models: dict[str, EventStreams | UnknownCause]) -> list[str]:
-    """Return the response that the analysis finds, and the work that gives it; empty where nothing does."""
-    response = queue.bound_responses(models.__getitem__, 1000, SearchBudget())[name]
-    (working,) = list_queue_workings(queue, models.__getitem__, name, response, CountFormulas(Fraction(10**6)))
-    assert (working.is_consistent, working.is_queue) == (True, True)
+    """Return the response that the analysis finds, and the work that gives it."""
+    bound = queue.bound_responses(models.__getitem__, 1000, SearchBudget())[name]
+    working = explain_queue_bound(bound, CountFormulas(Fraction(10**6)))
+    assert (working.is_consistent, working.is_queue, working.value) == (True, True, bound.response)
     assert all(term.events.formula == str(term.events.number) for term in working.terms if term.reason == "its own")
     terms = [
         f"{term.events.number} x {' + '.join(f'{cost} {part}' for part, cost in term.parts)}, {term.reason}"
         for term in working.terms
     ]
-    return [f"{working.window} - {working.arrival} = {response}", *terms]
+    return [f"{working.window} - {working.arrival} = {bound.response}", *terms]
 
 
 @pytest.mark.parametrize(
@@ -170,12 +170,6 @@ def test_of_one_deadline_each_may_be_first() -> None:
     ]
 
 
-def test_what_comes_in_a_round_that_it_is_part_of_has_no_round_before_it() -> None:
-    queue = CoreQueue("ros2_executor", is_core=False, tasks=(A, B))
-    (working,) = list_queue_workings(queue, MODELS.__getitem__, "a", 3, CountFormulas(Fraction(10**6)))
-    assert [term.reason for term in working.terms] == ["in its own round"]
-
-
 def test_a_round_ends_with_what_has_the_same_rank() -> None:
     """Timers come first in a round: `a` waits for a whole round, and works first in its own."""
     queue = CoreQueue("ros2_executor", is_core=False, tasks=(A._replace(entities=1), LATE))
@@ -184,19 +178,3 @@ def test_a_round_ends_with_what_has_the_same_rank() -> None:
         "1 x 3 a + 4 late, in the rounds before",
         "1 x 3 a, in its own round",
     ]
-
-
-@pytest.mark.parametrize("order", ["fifo", "non_preemptive", "edf", "ros2_executor"])
-def test_what_gives_no_such_response_is_not_listed(order: QueueOrder) -> None:
-    """Nor what is not in the queue, has no events, or has no deadline where these count."""
-    queue, formulas = CoreQueue(order, is_core=True, tasks=(A, B, LATE)), CountFormulas(Fraction(10**6))
-
-    def list_workings(name: str, response: int, models: dict[str, EventStreams | UnknownCause]) -> list[object]:
-        return list(list_queue_workings(queue, models.__getitem__, name, response, formulas))
-
-    assert list_workings("a", 2, MODELS) == list_workings("a", 4, MODELS) == []
-    assert list_workings("c", 10, MODELS) == []
-    assert list_workings("a", 3, MODELS | {"a": UnknownCause(("a",))}) == []
-    assert list_workings("a", 3, MODELS | {"a": ()}) == []
-    if order == "edf":
-        assert list_workings("late", 4, MODELS) == []

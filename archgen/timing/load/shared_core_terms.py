@@ -2,56 +2,52 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from fractions import Fraction
 
 from archgen.frozen import dataclass
-from archgen.timing.load.backlog_workings import BacklogWorkings
+from archgen.timing.load.backlog_terms import BacklogTerms
 from archgen.timing.load.busy_cores import find_blocked_time
-from archgen.timing.load.busy_windows import DivergedError, SearchBudget
+from archgen.timing.load.busy_windows import DivergedError, SearchBudget, WorstActivation
 from archgen.timing.load.core_paths import CorePath
-from archgen.timing.load.event_streams import earliest_arrivals, max_arrivals
-from archgen.timing.load.last_step_workings import add_last_step
-from archgen.timing.load.level_cascades import EventOrigin
+from archgen.timing.load.core_terms import OWN_JOBS
 from archgen.timing.load.load_system import list_storing_ids
-from archgen.timing.load.path_work import split_lanes
-from archgen.timing.load.plain_core_workings import OWN_JOBS
+from archgen.timing.load.path_work import CoreBlock, split_lanes
 from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.shared_core_responses import SharedCoreSolver
-from archgen.timing.load.thread_work import WorstResponse
 from archgen.timing.load.work_terms import (
+    ONCE,
     CountFormulas,
     EventCount,
     FigureWorking,
     ThreadShare,
     WorkTerm,
+    add_last_step,
+    choose_working,
+    describe_origin,
     group_terms,
     shorten_working,
 )
 
 
 @dataclass(frozen=True, slots=True)
-class SharedCoreWorkings:
+class SharedCoreTerms:
     """How figures come about on several cores; their solver has done its work."""
 
     solver: SharedCoreSolver
     state: PropagationState
     formulas: CountFormulas
-    responses: Mapping[str, WorstResponse]
-    """What the solver found, before anything else limits it."""
 
-    def _find_rest(self, name: str) -> SharedCoreWorkings | None:
+    def _find_rest(self, name: str) -> SharedCoreTerms | None:
         """Return how figures come about on the cores that full threads leave, where an activity has its bound there."""
         rest_solver = self.solver.rest_solver
         if rest_solver is None or name not in self.solver.cause_of or name not in rest_solver.cores.unit_of:
             return None
-        return SharedCoreWorkings(rest_solver, self.state, self.formulas, self.responses)
+        return SharedCoreTerms(rest_solver, self.state, self.formulas)
 
-    def _name_full_threads(
-        self, rest: SharedCoreWorkings, workings: Iterable[FigureWorking]
-    ) -> Iterator[FigureWorking]:
+    def _name_full_threads(self, rest: SharedCoreTerms, workings: Iterable[FigureWorking]) -> Iterator[FigureWorking]:
         left_ids = rest.solver.cores.unit_of
         full_ids = tuple(name for name in self.solver.cores.unit_of if name not in left_ids)
         yield from (replace(working, full_ids=(*full_ids, *working.full_ids)) for working in workings)
@@ -94,49 +90,35 @@ class SharedCoreWorkings:
     def _list_backlog(self, way: EntryWay) -> Iterator[FigureWorking]:
         """Yield how what may be pending bounds a way."""
         if self.solver.limits.backlog is not None:
-            yield from BacklogWorkings(self.solver.limits.backlog, self.formulas).list_delays(way)
+            yield from BacklogTerms(self.solver.limits.backlog, self.formulas).list_delays(way)
 
     def _add_last_step(self, name: str, way: EntryWay) -> Iterator[FigureWorking]:
-        before = way.steps[-2]
-        yield from add_last_step(
-            way,
-            self.state.ways_to[before],
-            self.solver.step_responses.get(name),
-            lambda way_before: self.list_delays(before, way_before),
-            lambda response: self._follow_path((name,), response),
-        )
+        """Yield the time of a way as a sum: of that of the way before, and of the response of the last step."""
+        before, response = way.steps[-2], self.solver.step_responses.get(name)
+        ways_before = (each for each in self.state.ways_to[before] if each.entry == way.entry)
+        way_before = next((each for each in ways_before if each.steps == way.steps[:-1]), None)
+        if way_before is None or way_before.delay is None or response is None:
+            return
+        if way_before.delay + response == way.delay:
+            first = choose_working(self.list_delays(before, way_before), way_before.delay)
+            yield from add_last_step(way.steps, first, choose_working(self._follow_path((name,), response), response))
 
     def _follow_path(self, steps: tuple[str, ...], value: int) -> Iterator[FigureWorking]:
         """Yield the window of a path that gives a figure: of each activation of its last step, where these are looked at."""
         path, spend = self.solver.paths.look_up(steps), SearchBudget().start_search()
         try:
-            if path.last_step is None:
-                window = self.solver.find_window(path, 0, max(path.cost, 1), spend, None)
-                if window == value:
-                    yield self._explain_window(path, steps, 0, 0, window)
-                return
-            arrival_times = earliest_arrivals(self.solver.find_activation_streams(path.last_step))
-            arrival, count, window = next(arrival_times, 0), 0, max(path.cost, 1)
-            while True:
-                spend(1)
-                count += 1
-                next_arrival = next(arrival_times, None)
-                if next_arrival == arrival:
-                    continue
-                window = self.solver.find_window(path, count, window, spend, None)
-                if window - arrival == value:
-                    yield self._explain_window(path, steps, count, arrival, window)
-                    return
-                if next_arrival is None or window <= next_arrival:
-                    return
-                arrival = next_arrival
+            worst = self.solver.find_worst(path, spend, max(value, 1) + 1)
         except DivergedError:
             return
+        if worst.response == value:
+            yield self._explain_window(path, steps, worst)
 
     def list_holds(self, name: str, hold: int) -> Iterator[FigureWorking]:
         """Yield what may hold up the storing of an activity's inputs for so long."""
         if rest := self._find_rest(name):
             yield from self._name_full_threads(rest, rest.list_holds(name, hold))
+            return
+        if name in self.solver.cause_of:
             return
         for thread_id in (name, *list_storing_ids(self.solver.cores.system.activities[name])):
             path = self.solver.paths.look_up((thread_id,))
@@ -146,27 +128,23 @@ class SharedCoreWorkings:
             else:
                 streams = self.solver.find_activation_streams(path.last_step)
                 count = self.formulas.count_held_jobs(streams, hold)
-                working = self._explain_window(path, (thread_id,), count.number, 0, hold)
+                working = self._explain_window(path, (thread_id,), WorstActivation(count.number, 0, hold))
                 own_term = WorkTerm(((thread_id, path.last_step.cost),), count, OWN_JOBS)
                 own_terms = group_terms([own_term, *self._list_own_terms(path, hold)])
                 yield replace(working, terms=own_terms, activation=0, is_hold=True)
             if self.solver.limits.backlog is not None:
-                yield from BacklogWorkings(self.solver.limits.backlog, self.formulas).list_holds(thread_id, hold)
+                yield from BacklogTerms(self.solver.limits.backlog, self.formulas).list_holds(thread_id, hold)
 
-    def _explain_window(
-        self, path: CorePath, steps: tuple[str, ...], count: int, arrival: int, window: int
-    ) -> FigureWorking:
+    def _explain_window(self, path: CorePath, steps: tuple[str, ...], worst: WorstActivation) -> FigureWorking:
+        count, arrival, window = worst
         terms = [*self._list_own_terms(path, window)]
         if path.last_step:
             terms.insert(0, WorkTerm(((steps[-1], path.last_step.cost),), EventCount(count, str(count)), "its own"))
         if path.own_cost:
             is_silent = steps[-1] in self.solver.cores.inner_triggers.silent_ids
             reason = "at the start" if is_silent else "its own, beside others of its kind"
-            terms.append(WorkTerm(((steps[-1], path.own_cost),), EventCount(1, "1"), reason))
-        work = self.solver.work
-        arrivals = {origin: max_arrivals(model, window) for origin, model in work.streams.items()}
-        blocked_time = work.find_time_blocked(path, window, arrivals)
-        shares, pending, is_pending_inside = self._share_cores(path, window, arrivals, blocked_time)
+            terms.append(WorkTerm(((steps[-1], path.own_cost),), ONCE, reason))
+        block = self.solver.work.find_block(path, window)
         return FigureWorking(
             max(window - arrival, 0),
             window,
@@ -175,10 +153,10 @@ class SharedCoreWorkings:
             arrival,
             steps=steps if len(steps) > 1 else (),
             core_count=self.solver.cores.core_count,
-            blocked_time=blocked_time,
-            beside_terms=group_terms(self._list_beside_terms(path, window, with_pending=is_pending_inside)),
-            shares=shares,
-            pending=pending,
+            blocked_time=block.time,
+            beside_terms=group_terms(self._list_beside_terms(path, window, with_pending=block.has_pending)),
+            shares=tuple(self._share_cores(path, block)),
+            pending=block.pending,
         )
 
     def _list_own_terms(self, path: CorePath, window: int) -> Iterator[WorkTerm]:
@@ -197,7 +175,7 @@ class SharedCoreWorkings:
             )
             if total:
                 reason = f"others in the container: ({formula}) / {threads}, as {threads} threads work side by side"
-                yield WorkTerm(((names, -(-total // threads)),), EventCount(1, "1"), reason)
+                yield WorkTerm(((names, -(-total // threads)),), ONCE, reason)
 
     def _list_beside_terms(self, path: CorePath, window: int, *, with_pending: bool) -> Iterator[WorkTerm]:
         work, jobs = self.solver.work, self.solver.cores.jobs
@@ -213,62 +191,16 @@ class SharedCoreWorkings:
         before = (
             f", those of {self.formulas.write_duration(delay)} before, which may be pending, included" if delay else ""
         )
-        return WorkTerm(((key[0], work),), count, f"{self._describe_origin(origin)}{before}")
+        return WorkTerm(((key[0], work),), count, f"{describe_origin(origin, self.solver.cores.entering_arcs)}{before}")
 
-    def _describe_origin(self, origin: EventOrigin) -> str:
-        if origin.kind == "arc":
-            arc = self.solver.cores.entering_arcs[int(origin.key)].arc
-            return f"events of {arc.topic} from {arc.source}"
-        return f"events of {origin.key}"
-
-    def _share_cores(
-        self, path: CorePath, window: int, arrivals: dict[EventOrigin, int], blocked_time: int
-    ) -> tuple[tuple[ThreadShare, ...], int, bool]:
-        """Return what the threads beside a path do, the pending work that is counted with it, and whether all pending
-        work is counted in the threads instead.
-        """
-        work, cores = self.solver.work, self.solver.cores
-        units = [cores.jobs[lane[0]].unit for lane in path.other_lanes]
-        lane_works = [
-            sum(cores.jobs[number].work * arrivals[cores.jobs[number].origin] for number in lane)
-            for lane in path.other_lanes
-        ]
-        pending_works: list[int] = []
-        pending_by_origin: dict[EventOrigin, int] = {}
-        held_work = 0
-        for lane in path.other_lanes:
-            pending_works.append(0)
-            for number in lane:
-                job = cores.jobs[number]
-                amount = job.work * work.count_pending(job.origin, window, work.delays.get(job.key, 0), arrivals)
-                pending_works[-1] += amount
-                if number in path.held_jobs:
-                    held_work += amount
-                elif amount:
-                    pending_by_origin[job.origin] = pending_by_origin.get(job.origin, 0) + amount
-        most_waiting = held_work + work.find_most_waiting(path, pending_by_origin)
-        all_works = [own + pending for own, pending in zip(lane_works, pending_works, strict=True)]
-        whole_shares = [
-            (lane_works, most_waiting, False),
-            (all_works, 0, True),
-            (lane_works, work.find_most_pending(path), True),
-        ]
-        for works, pending, is_cut in whole_shares:
-            is_limited = (is_cut or not pending) and not path.crowds
-            lane_works_by_core = split_lanes(path, works)
-            limit = _cut_time([*lane_works_by_core], pending, cores.core_count) if is_limited else None
-            counted = [
-                Fraction(each) if limit is None else min(Fraction(each), limit * width)
-                for each, width in zip(works, path.lane_widths, strict=True)
-            ]
-            if -(-(sum(counted) + pending) // cores.core_count) == blocked_time:
-                shares = zip(units, works, counted, strict=True)
-                thread_shares = tuple(ThreadShare(unit, whole, -(-part // 1)) for unit, whole, part in shares if whole)
-                return thread_shares, pending, works is all_works
-        return (), 0, False
-
-
-def _cut_time(works: list[int], pending: int, core_count: int) -> Fraction:
-    """Return the time for which no thread works longer: that in which all cores may be busy."""
-    numerator, denominator = find_blocked_time(works, pending, core_count) if works else (pending, core_count)
-    return Fraction(numerator, denominator)
+    def _share_cores(self, path: CorePath, block: CoreBlock) -> Iterator[ThreadShare]:
+        """Yield what the threads beside a path do, and how much of it counts."""
+        works, limit = block.lane_works, None
+        lane_parts = split_lanes(path, works) if block.is_cut else ()
+        # As in `divide_among_cores`: where none has more to do than that, all of it counts.
+        if max(lane_parts, default=0) > block.time:
+            limit = Fraction(*find_blocked_time(lane_parts, 0, self.solver.cores.core_count))
+        for lane, work, width in zip(path.other_lanes, works, path.lane_widths, strict=True):
+            counted = Fraction(work) if limit is None else min(Fraction(work), limit * width)
+            if work:
+                yield ThreadShare(self.solver.cores.jobs[lane[0]].unit, work, -(-counted // 1))

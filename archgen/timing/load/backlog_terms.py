@@ -5,16 +5,24 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from archgen.timing.load.busy_windows import DivergedError
+from archgen.timing.load.busy_windows import DivergedError, WorstActivation
 from archgen.timing.load.event_streams import max_arrivals
 from archgen.timing.load.idle_backlogs import IdleBacklog
 from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.way_works import SharedWork, WayWork, build_thread_work
-from archgen.timing.load.work_terms import ONCE, CountFormulas, EventCount, FigureWorking, WorkTerm, group_terms
+from archgen.timing.load.work_terms import (
+    ONCE,
+    CountFormulas,
+    EventCount,
+    FigureWorking,
+    WorkTerm,
+    describe_origin,
+    group_terms,
+)
 
 
-class BacklogWorkings(NamedTuple):
+class BacklogTerms(NamedTuple):
     """Explains the delays that a backlog gives."""
 
     backlog: IdleBacklog
@@ -27,13 +35,8 @@ class BacklogWorkings(NamedTuple):
         if key is None:
             return
         way_work = backlog.way_works[key]
-        try:
-            for count, arrival, window in backlog.list_windows(way_work):
-                if window - arrival == backlog.delays[key]:
-                    yield self._explain_window(way_work, way.steps, (count, arrival, window))
-                    return
-        except DivergedError:
-            return
+        if backlog.worst_events[key].response == backlog.delays[key]:
+            yield self._explain_window(way_work, way.steps, backlog.worst_events[key])
 
     def list_holds(self, name: str, hold: int) -> Iterator[FigureWorking]:
         """Yield how long the thread of an activity may have work all the time, if that is so long."""
@@ -43,15 +46,15 @@ class BacklogWorkings(NamedTuple):
         except DivergedError:
             return
         if window == hold:
-            yield self._explain_window(thread_work, (), (0, 0, window))
+            yield self._explain_window(thread_work, (), WorstActivation(1, 0, window))
 
     def _is_way(self, key: tuple[str, int], way: EntryWay) -> bool:
         ways = self.backlog.cores.ways_to[key[0]]
         return ways[key[1]].steps == way.steps and ways[key[1]].entry == way.entry
 
-    def _explain_window(self, way_work: WayWork, steps: tuple[str, ...], event: tuple[int, int, int]) -> FigureWorking:
-        count, arrival, window = event
-        backlog = self.backlog
+    def _explain_window(self, way_work: WayWork, steps: tuple[str, ...], event: WorstActivation) -> FigureWorking:
+        backlog, (ordinal, arrival, window) = self.backlog, event
+        count = ordinal - 1
         own_terms = group_terms(self._list_own_terms(way_work, count, window))
         crowd_terms = group_terms(self._list_crowd_terms(way_work, window))
         own_work, thread_wait = (sum(term.total for term in terms) for terms in (own_terms, crowd_terms))
@@ -60,7 +63,7 @@ class BacklogWorkings(NamedTuple):
             window - arrival,
             window,
             (*own_terms, *crowd_terms),
-            count + 1,
+            ordinal,
             arrival,
             steps=steps if len(steps) > 1 else (),
             core_count=backlog.core_count,
@@ -106,26 +109,22 @@ class BacklogWorkings(NamedTuple):
         name = next(job.key[0] for job in self.backlog.cores.jobs if job.origin == origin and job.work == work)
         count = self.formulas.count_events(self.backlog.streams[origin], window + delay)
         before = f", those of {self.formulas.write_duration(delay)} before included" if delay else ""
-        return WorkTerm(((name, work),), count, f"{self.describe_origin(origin)}{before}")
+        return WorkTerm(((name, work),), count, f"{self._describe_origin(origin)}{before}")
 
     def _list_arriving(self, window: int) -> Iterator[WorkTerm]:
         for origin, streams in self.backlog.streams.items():
             parts = tuple((job.key[0], job.work) for job in self.backlog.cores.jobs if job.origin == origin)
-            yield WorkTerm(parts, self.formulas.count_events(streams, window), self.describe_origin(origin))
+            yield WorkTerm(parts, self.formulas.count_events(streams, window), self._describe_origin(origin))
 
     def _list_pending(self) -> Iterator[WorkTerm]:
         for share in self.backlog.pending_shares:
             if share.work:
                 age = self.formulas.write_duration(share.age)
-                reason = f"{self.describe_origin(share.origin)} that may be {age} old"
+                reason = f"{self._describe_origin(share.origin)} that may be {age} old"
                 if share.work == share.events * share.rest:
                     yield WorkTerm(((share.name, share.rest),), EventCount(share.events, str(share.events)), reason)
                 else:
                     yield WorkTerm(((share.name, share.work),), ONCE, f"the rest of all {reason}")
 
-    def describe_origin(self, origin: EventOrigin) -> str:
-        """Say what comes of an origin."""
-        if origin.kind == "arc":
-            arc = self.backlog.cores.entering_arcs[int(origin.key)].arc
-            return f"events of {arc.topic} from {arc.source}"
-        return f"events of {origin.key}"
+    def _describe_origin(self, origin: EventOrigin) -> str:
+        return describe_origin(origin, self.backlog.cores.entering_arcs)

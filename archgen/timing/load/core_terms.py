@@ -1,0 +1,193 @@
+"""How figures on one core come about: the windows that its solvers found, term by term."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from types import MappingProxyType
+
+from archgen.frozen import dataclass
+from archgen.timing.load.core_responses import CoreSolver, LevelBound, LevelWindow, WayKey, name_way
+from archgen.timing.load.event_streams import EventStreams
+from archgen.timing.load.level_cascades import EventOrigin
+from archgen.timing.load.queue_orders import QueueBound, QueueShare
+from archgen.timing.load.run_ways import EntryWay
+from archgen.timing.load.thread_work import CoreWindow, ThreadWork
+from archgen.timing.load.work_terms import (
+    ONCE,
+    CountFormulas,
+    EventCount,
+    FigureWorking,
+    WorkTerm,
+    add_counts,
+    add_last_step,
+    choose_working,
+    describe_origin,
+    group_terms,
+    multiply_count,
+    shorten_working,
+)
+
+OWN_JOBS = "its own jobs before the one that comes too soon"
+
+
+def explain_core_window(window: CoreWindow, name: str, formulas: CountFormulas) -> FigureWorking:
+    """Return how a window comes about in which each activity of a core is looked at by itself."""
+    thread, (count, arrival, finish) = window.thread, window.worst
+    own_works = dict(zip(thread.unit, thread.works, strict=True))
+    if count and own_works[name].streams:
+        own_term = WorkTerm(((name, own_works[name].cost),), EventCount(count, str(count)), "its own")
+        # What takes no time waits for what comes at the very end as well: a tick more has it.
+        closing_tick = 0 if own_works[name].cost else 1
+        terms = [own_term, *_count_threads(formulas, window.list_others(), finish + closing_tick)]
+        return FigureWorking(finish - arrival, finish, group_terms(terms), count, arrival)
+    # What works only at the start has no events, but takes its own time.
+    start_costs = [(each, work.cost) for each, work in own_works.items() if not work.streams]
+    terms = [
+        *_count_threads(formulas, (thread, *window.list_others()), finish + int(thread.takes_no_time)),
+        WorkTerm(tuple(start_costs), ONCE, "at the start"),
+    ]
+    return FigureWorking(finish, finish, group_terms(terms))
+
+
+def explain_core_hold(window: CoreWindow, name: str, hold: int, formulas: CountFormulas) -> FigureWorking:
+    """Return what holds up the storing of an activity's inputs for so long, on such a core."""
+    terms = [
+        WorkTerm(((name, work.cost),), formulas.count_held_jobs(work.streams, hold), OWN_JOBS)
+        for each, work in zip(window.thread.unit, window.thread.works, strict=True)
+        if each == name
+    ]
+    terms += [
+        term
+        for term in _count_threads(formulas, (window.thread, *window.list_others()), hold)
+        if all(each != name for each, _ in term.parts)
+    ]
+    return FigureWorking(hold, hold, group_terms(terms), is_hold=True)
+
+
+def _count_threads(formulas: CountFormulas, threads: Iterable[ThreadWork], window: int) -> Iterator[WorkTerm]:
+    for thread in threads:
+        for name, work in zip(thread.unit, thread.works, strict=True):
+            if work.streams and work.cost:
+                yield WorkTerm(((name, work.cost),), formulas.count_events(work.streams, window))
+
+
+def explain_queue_bound(bound: QueueBound, formulas: CountFormulas) -> FigureWorking:
+    """Return how a response comes about in a queue whose order is written."""
+    terms = group_terms(_count_share(share, formulas) for share in bound.shares)
+    return FigureWorking(bound.response, bound.finish, terms, arrival=bound.arrival, is_queue=True)
+
+
+def _count_share(share: QueueShare, formulas: CountFormulas) -> WorkTerm:
+    parts, until = ((share.task.name, share.work),), share.until
+    if until is None:
+        return WorkTerm(parts, EventCount(share.number, str(share.number)), share.reason)
+    if until < 0:  # a closed window that ends before it begins
+        return WorkTerm(parts, EventCount(0, "0"))
+    reason = f"those that come until {formulas.write_duration(until)}"
+    return WorkTerm(parts, formulas.count_until(share.task.streams, until), reason)
+
+
+@dataclass(frozen=True, slots=True)
+class CoreTerms:
+    """How figures come about on a core on which activities fire one another; its solver has done its work."""
+
+    solver: CoreSolver
+    formulas: CountFormulas
+
+    def list_responses(self, name: str, ways: Iterable[EntryWay]) -> Iterator[FigureWorking]:
+        """Yield what bounds the response of an activity, also by the ways to it."""
+        yield from self._list_own(name)
+        for way in ways:
+            yield from (shorten_working(working, way.best_before) for working in self.list_delays(way))
+
+    def list_delays(self, way: EntryWay) -> Iterator[FigureWorking]:
+        """Yield what bounds the longest time of a way, from the event on to the end of an activity."""
+        yield from self._list_way(name_way(way), way.steps)
+
+    def _list_own(self, name: str, steps: tuple[str, ...] = ()) -> Iterator[FigureWorking]:
+        """Yield what bounds the response of an activity, whatever may be known of the steps before it."""
+        yield from (self._explain_window(window, steps) for window in self.solver.windows.get(name, ()))
+
+    def _list_way(self, key: WayKey, steps: tuple[str, ...]) -> Iterator[FigureWorking]:
+        if len(steps) == 1:
+            yield from self._list_own(steps[0], steps)
+        for window in self.solver.way_windows.get(key, ()):
+            if isinstance(window, LevelWindow):
+                yield self._explain_window(window, steps)
+            else:
+                first = choose_working(self._list_way(key[:-1], steps[:-1]), window.delay_before)
+                yield from add_last_step(steps, first, choose_working(self._list_own(steps[-1]), window.response))
+
+    def _explain_window(self, window: LevelWindow, steps: tuple[str, ...]) -> FigureWorking:
+        bound, (count, arrival, finish), lead = self.solver.bounds[window.level], window.worst, window.lead
+        if count:
+            cost = self.solver.core.system.activities[window.name].wcet or 0
+            terms = [WorkTerm(((window.name, cost),), EventCount(count, str(count)), "its own")]
+            terms += self._list_terms(bound, finish, window.name)
+        else:
+            terms = [*self._list_terms(bound, finish + window.closing_tick)]
+            terms.append(WorkTerm(window.start_costs, ONCE, "at the start"))
+        value = max(finish - arrival - lead, 0)
+        return FigureWorking(value, finish, group_terms(terms), count, arrival, lead, steps)
+
+    def list_holds(self, name: str, hold: int) -> Iterator[FigureWorking]:
+        """Yield what may hold up the storing of an activity's inputs for so long."""
+        level = self.solver.core.thread_of[name].lowest_priority
+        bound = self.solver.bounds[level]
+        origin = EventOrigin("activity", name)
+        streams = self._streams_of(bound, origin)
+        if name in self.solver.core.inner_triggers.entry_ids and streams:
+            own_jobs = {origin: self.formulas.count_held_jobs(streams, hold)}
+            terms = group_terms(self._list_terms(bound, hold, own_counts=own_jobs))
+            yield FigureWorking(hold, hold, terms, is_hold=True)
+        window = self.solver.find_wait_for_turn(level) or 0
+        yield FigureWorking(window, window, group_terms(self._list_terms(bound, window + 1)), is_hold=True)
+
+    def _list_terms(
+        self,
+        bound: LevelBound,
+        window: int,
+        but_name: str = "",
+        own_counts: Mapping[EventOrigin, EventCount] = MappingProxyType({}),
+    ) -> Iterator[WorkTerm]:
+        """Yield the work of a level in a window (in ticks), but that of `but_name`; of own jobs so much is counted."""
+        counts = dict(own_counts)
+        for name, activations in bound.demand.level.activations.items():
+            cost = self.solver.core.system.activities[name].wcet
+            for origin, multiplicity in activations.items() if cost and name != but_name else ():
+                if origin not in counts:
+                    counts[origin] = self._count_origin(bound, origin, window)
+                reason = OWN_JOBS if origin in own_counts else self._describe_origin(origin)
+                yield WorkTerm(((name, (cost or 0) * multiplicity),), counts[origin], reason)
+
+    def _count_origin(self, bound: LevelBound, origin: EventOrigin, window: int) -> EventCount:
+        if origin.kind == "once":
+            return ONCE
+        if origin.kind != "gate":
+            return self.formulas.count_events(self._streams_of(bound, origin), window)
+        rule = bound.demand.level.gate_rules[int(origin.key)]
+        inputs = [
+            add_counts(
+                [
+                    multiply_count(self._count_origin(bound, each, window), number)
+                    for each, number in multiplicities.items()
+                ]
+            )
+            for multiplicities in rule.inputs
+        ]
+        return self.formulas.count_gate(rule, inputs, window)
+
+    def _streams_of(self, bound: LevelBound, origin: EventOrigin) -> EventStreams:
+        try:
+            return bound.demand.streams_of(origin)
+        except KeyError:  # what brings no work has not been looked up
+            return ()
+
+    def _describe_origin(self, origin: EventOrigin) -> str:
+        if origin.kind == "once":
+            return "what less urgent work may have fired just before"
+        return (
+            "events that get through"
+            if origin.kind == "gate"
+            else describe_origin(origin, self.solver.core.entering_arcs)
+        )

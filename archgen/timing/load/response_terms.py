@@ -1,0 +1,186 @@
+"""How the figures of an analysis come about, asked one by one: their solvers are asked again, and say what they found."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+
+from archgen.timing.figures.response_tier import ResponseTier
+from archgen.timing.figures.timing_values import UnknownCause
+from archgen.timing.load.busy_windows import DivergedError, SearchBudget, WorstActivation
+from archgen.timing.load.core_responses import CoreSolver
+from archgen.timing.load.core_terms import CoreTerms, explain_core_hold, explain_core_window, explain_queue_bound
+from archgen.timing.load.load_system import list_written_priorities
+from archgen.timing.load.lone_work import find_lone_response
+from archgen.timing.load.propagation_state import PropagationState
+from archgen.timing.load.queue_responses import QUEUE_TIERS
+from archgen.timing.load.response_times import AnalysisEffort, find_responses
+from archgen.timing.load.run_ways import EntryWay
+from archgen.timing.load.search_budgets import GroupBudgets
+from archgen.timing.load.shared_core_terms import SharedCoreTerms
+from archgen.timing.load.step_updates import StepUpdates
+from archgen.timing.load.thread_work import CoreWindow, EventModels, WorstResponse, build_core_threads, find_work
+from archgen.timing.load.whole_hosts import list_host_limits
+from archgen.timing.load.work_terms import (
+    CountFormulas,
+    EventCount,
+    FigureWorking,
+    WorkTerm,
+    choose_working,
+    group_terms,
+)
+from archgen.timing.system.core_placement import ProcessingResource, find_resources
+from archgen.timing.system.thread_pools import works_in_order
+
+
+class ResponseTerms:
+    """The terms of a state in which everything is found; cores are looked at when somebody asks for one of theirs."""
+
+    def __init__(self, written_state: PropagationState) -> None:
+        """Prepare the cores as they were for the analysis."""
+        # As processors see it, callbacks that store inputs included.
+        self.state = state = written_state.load_state or written_state
+        self.formulas = CountFormulas(state.system.tick)
+        self._steps = StepUpdates(
+            replace(state, run_arcs={}),
+            find_resources(state.system),
+            GroupBudgets(),
+            list_written_priorities(written_state.system, state.system),
+        )
+        self._steps.state.single_ends = state.single_ends
+        self._solved: dict[str, tuple[CoreTerms | SharedCoreTerms, dict[str, WorstResponse]]] = {}
+
+    def find_response(self, name: str) -> FigureWorking | None:
+        """Return how the response of an activity comes about, None where there is none or it is declared."""
+        response = self.state.responses[name]
+        if response.value is None or response.tier in {"declared", "unknown"}:
+            return None
+        return choose_working(_until_diverged(self._list_responses(name, response.tier)), response.value)
+
+    def _list_responses(self, name: str, tier: ResponseTier) -> Iterator[FigureWorking]:
+        step = self._find_step(name)
+        if step is None:
+            yield from self._list_lone(name)
+        elif tier == "whole host":
+            terms = self._solve_host(step)
+            if isinstance(terms, CoreTerms):
+                yield from terms.list_responses(name, self.state.host_ways_to.get(name, ()))
+        elif step not in self._steps.inner_triggers:
+            yield from self._list_plain(name, step, tier)
+        else:
+            terms, responses = self._solve(step)
+            if isinstance(terms, SharedCoreTerms):
+                yield from terms.list_responses(name)
+                yield from self._list_single_cores(name, step, responses)
+            elif tier in QUEUE_TIERS:
+                yield explain_queue_bound(terms.solver.queue_bounds[name], self.formulas)
+            else:
+                yield from terms.list_responses(name, self.state.ways_to.get(name, ()))
+
+    def _find_step(self, name: str) -> str | None:
+        """Return the step that finds a response on some cores, None where it has a core of its own."""
+        return next(iter(self._steps.resources_of.get(name, ())), None)
+
+    def _solve(self, step: str) -> tuple[CoreTerms | SharedCoreTerms, dict[str, WorstResponse]]:
+        """Let the solver of some cores, or of a host as a whole, do its work again, for what came out."""
+        if step not in self._solved:
+            if step not in self._steps.whole_hosts:
+                self._solve_host(step)
+            solver = self._steps.open_solver(step, {})
+            responses = solver.solve()
+            if step in self._steps.whole_hosts:
+                self._steps.host_limits[step] = list_host_limits(responses)
+            terms = (
+                CoreTerms(solver, self.formulas)
+                if isinstance(solver, CoreSolver)
+                else SharedCoreTerms(solver, self.state, self.formulas)
+            )
+            self._solved[step] = terms, responses.response_of
+        return self._solved[step]
+
+    def _solve_host(self, step: str) -> CoreTerms | SharedCoreTerms | None:
+        """Return the host of a step as a whole, None where it is not looked at as one."""
+        whole_step = f"whole {self._steps.resources[step].host}"
+        return self._solve(whole_step)[0] if whole_step in self._steps.whole_hosts else None
+
+    def _list_lone(self, name: str) -> Iterator[FigureWorking]:
+        """Yield how the response of an activity on a core of its own was found."""
+        system, work = self.state.system, find_work(self.state.system, name, self.state.event_models)
+        if isinstance(work, UnknownCause):
+            return
+        in_order = works_in_order(system, system.activities[name])
+        count, arrival, finish = find_lone_response(work, SearchBudget(), in_order=in_order)
+        events = EventCount(count, str(count)) if in_order else self.formulas.count_events(work.streams, finish)
+        term = WorkTerm(((name, work.cost),), events, "its own")
+        yield FigureWorking(finish - arrival, finish, group_terms([term]), count, arrival)
+
+    def _list_plain(self, name: str, step: str, tier: ResponseTier) -> Iterator[FigureWorking]:
+        """Yield how a response was found on a core on which nothing fires anything else."""
+        models, windows = self._steps.models_of(step), dict[str, CoreWindow]()
+        effort = AnalysisEffort(SearchBudget(), None, windows)
+        responses = find_responses(self.state.system, self._steps.resources[step], models, effort)
+        if tier in QUEUE_TIERS:
+            queue = self._steps.queues[step]
+            bounds = self._steps.bound_queue(queue, models, responses, SearchBudget())
+            yield explain_queue_bound(bounds[name], self.formulas)
+        elif name in windows:
+            yield explain_core_window(windows[name], name, self.formulas)
+
+    def _list_single_cores(self, name: str, step: str, responses: dict[str, WorstResponse]) -> Iterator[FigureWorking]:
+        """Yield how each core alone bounds what may run on several that others are pinned to."""
+        state, single_cores = self.state, self._steps.single_cores.get(step)
+        if single_cores is None:
+            return
+        unit = next(each for each in single_cores.resource.units if name in each)
+        known_responses = {**state.responses, **responses, **state.work_ends}
+        for core, models in single_cores.list_placements(unit, state.event_models, known_responses):
+            windows: dict[str, CoreWindow] = {}
+            find_responses(single_cores.system, core, models, AnalysisEffort(SearchBudget(), None, windows))
+            if name in windows:
+                working = explain_core_window(windows[name], name, self.formulas)
+                yield replace(working, core=core.core_set[0])
+
+    def find_storing_wait(self, name: str) -> FigureWorking | None:
+        """Return how long what an activity only reads may wait to be stored, as work; None where that is not known."""
+        wait = self.state.storing_waits.get(name)
+        if wait is None or not wait.value:
+            return None
+        return choose_working(_until_diverged(self._list_holds(name, wait.value, wait.tier)), wait.value)
+
+    def _list_holds(self, name: str, hold: int, tier: ResponseTier) -> Iterator[FigureWorking]:
+        step = self._find_step(name)
+        resource = ProcessingResource(name, None, 1, ((name,),)) if step is None else self._steps.resources[step]
+        if resource.waits or self.state.system.activities[name].uses:
+            return
+        terms = None
+        if step is not None and tier == "whole host":
+            terms = self._solve_host(step)
+        elif step in self._steps.inner_triggers:
+            terms = self._solve(step)[0]
+        if terms is not None:
+            yield from terms.list_holds(name, hold)
+        else:
+            models: EventModels = self.state.event_models if step is None else self._steps.models_of(step)
+            threads = build_core_threads(self.state.system, resource, models)
+            thread = next(each for each in threads if name in each.unit)
+            window = CoreWindow(thread, threads, WorstActivation(0, 0, hold))
+            yield explain_core_hold(window, name, hold, self.formulas)
+
+    def find_run(self, name: str) -> tuple[EntryWay, FigureWorking] | None:
+        """Return the run to an activity that takes longest, and how its time comes about."""
+        ways = [way for way in self.state.ways_to.get(name, ()) if way.delay is not None and len(way.steps) > 1]
+        step = self._find_step(name)
+        if not ways or step not in self._steps.inner_triggers:
+            return None
+        way, (terms, _) = max(ways, key=lambda each: each.delay or 0), self._solve(step)
+        workings = terms.list_delays(name, way) if isinstance(terms, SharedCoreTerms) else terms.list_delays(way)
+        working = choose_working(_until_diverged(workings), way.delay or 0)
+        return (way, working) if working else None
+
+
+def _until_diverged(workings: Iterable[FigureWorking]) -> Iterator[FigureWorking]:
+    """Yield workings up to one whose search does not end."""
+    try:
+        yield from workings
+    except DivergedError:
+        return
