@@ -3,8 +3,8 @@
 PYTHON ?= python3
 BIN := .venv/bin
 TESTS ?= tests
-# One more than there are cores: a fifth of the time, tests wait for processes that they started and for browsers.
-WORKERS ?= $(shell expr $$(getconf _NPROCESSORS_ONLN) + 1)
+# A process of tests for each core: to collect the tests costs each of them as much as hundreds of tests.
+WORKERS ?= $(shell getconf _NPROCESSORS_ONLN)
 
 .PHONY: demo test test-all properties check lint format bench mutants golden covered size language pages clean
 .DEFAULT_GOAL := help

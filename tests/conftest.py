@@ -116,10 +116,16 @@ _HIDING = pytest.StashKey[ToolHiding]()
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Mark the tests that ask programs from outside, before pytest selects by marks."""
+    found: dict[tuple[object, ...], frozenset[str]] = {}
     for item in items:
         if isinstance(item, pytest.Function):
-            fixtures = [each for name in item.fixturenames for each in item._fixtureinfo.name2fixturedefs.get(name, ())]  # noqa: SLF001 - pytest has no public way
-            for mark in list_tool_marks([item.function, *(fixture.func for fixture in fixtures)]):
+            # One answer for all samples of a test.
+            key = (item.function, *item.fixturenames)
+            if key not in found:
+                fixtures = item._fixtureinfo.name2fixturedefs  # noqa: SLF001 - pytest has no public way
+                functions = [each.func for name in item.fixturenames for each in fixtures.get(name, ())]
+                found[key] = list_tool_marks([item.function, *functions])
+            for mark in found[key]:
                 item.add_marker(mark)
 
 

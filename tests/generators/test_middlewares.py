@@ -9,7 +9,6 @@ from xml.etree import ElementTree as ET
 import pytest
 import yaml
 
-from archgen.pipeline import check_project
 from archgen.products.output_options import OutputOptions
 from archgen.products.workspace_product import WorkspaceRequest, write_workspace
 from tests.generators.idl_stand_in import write_skeleton
@@ -24,6 +23,7 @@ from tests.generators.middleware_projects import (
 from tests.generators.player_configuration import read_configuration
 from tests.generators.simulation.random_robots import make_robot
 from tests.hostile import TEXTS
+from tests.judged_projects import judge_shipped
 from tests.outside_tools import find_tool, run_judge
 from tests.running import ROOT, contents
 
@@ -114,7 +114,7 @@ def test_the_page_has_no_other_rows() -> None:
 
 def test_the_case_of_the_paper_goes_from_uml_to_code(tmp_path: Path) -> None:
     """`archgen import xmi` made the project; all three make its five components."""
-    project = check_project(ROOT / "examples" / "headlamp")
+    project = judge_shipped(ROOT / "examples" / "headlamp")
     for middleware in MIDDLEWARES:
         assert generate(project, tmp_path, middleware) == []
         own = sorted(each.name for each in (tmp_path / middleware / "src").glob("*_behaviour.cpp"))
@@ -211,7 +211,7 @@ def test_the_headlamp_compiles(middleware: str, headlamp: Path, tmp_path: Path) 
     ["examples/headlamp", "examples/cleaning_robot", "examples/arm", "examples/vehicle/scenario", "example_ramcip"],
 )
 def test_examples_compile(example: str, middleware: str, tmp_path: Path) -> None:
-    generate(check_project(ROOT / example), tmp_path / "w", middleware)
+    generate(judge_shipped(ROOT / example), tmp_path / "w", middleware)
     _read_all(tmp_path / "w")
     assert compile_middleware(tmp_path / "w", middleware, tmp_path) == ""
 

@@ -17,6 +17,7 @@ from archgen.products.workspace_product import write_workspace
 from archgen.views.generation.generation_context import GenerationContext
 from archgen.views.generation.node_programs import make_view
 from tests.generators.test_ros2_python import is_ros_own, list_expected
+from tests.outside_tools import run_judge
 from tests.ros_environment import NEWEST_PYTHON, make_ros_python, ros_environment
 from tests.running import ROOT
 
@@ -102,7 +103,7 @@ def test_all_planned_nodes_run_as_the_model_says(tmp_path: Path) -> None:
         running.stdin.flush()
         assert running.stdout.readline() == "ready\n"
         judge = [python, str(ROOT / "tests" / "generators" / "graph_judge.py"), *expected]
-        done = subprocess.run(judge, env=environment, capture_output=True, text=True, check=False)  # noqa: S603
+        done = run_judge(*judge, env=environment)
         running.stdin.close()
     assert running.returncode == 0
     graph = json.loads(done.stdout.splitlines()[-1])["graph"]

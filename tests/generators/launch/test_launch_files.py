@@ -13,7 +13,6 @@ import yaml
 
 from archgen.bringup.plan_shapes import StartPlan
 from archgen.bringup.start_plan import make_start_plan
-from archgen.pipeline import check_project
 from tests import hostile
 from tests.generators.launch.launch_reading import (
     make_launch_workspace,
@@ -24,6 +23,7 @@ from tests.generators.launch.launch_reading import (
     read_words_1,
 )
 from tests.generators.start_up.started_workspaces import check_by_shellcheck
+from tests.judged_projects import judge_shipped
 from tests.running import RAMCIP, ROOT
 
 EXAMPLES = {
@@ -129,7 +129,7 @@ def list_launched(file: Path, ros: int, names: dict[str, str]) -> list[str]:
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_each_computer_starts_what_the_plan_says_in_its_order(name: str, tmp_path: Path) -> None:
-    architecture = check_project(EXAMPLES[name]).architecture
+    architecture = judge_shipped(EXAMPLES[name]).architecture
     plan: StartPlan = make_start_plan(architecture)
     package, left_out = make_launch_workspace(EXAMPLES[name], tmp_path / "ws", "ros2_launch")
     assert left_out == []
