@@ -119,6 +119,7 @@ def test_nothing_is_wider_than_columns_says(
     _demand_width(run, monkeypatch, broken, verb, columns)
 
 
+@pytest.mark.slow
 def test_what_an_improvement_needs_is_not_wider_than_columns_says(
     run: Run, monkeypatch: pytest.MonkeyPatch, broken: Path
 ) -> None:
