@@ -10,15 +10,7 @@ from typing import TYPE_CHECKING
 from tests.outside_tools import find_judge, find_tool
 
 if TYPE_CHECKING:
-    from playwright.sync_api import (
-        Browser,
-        BrowserContext,
-        Page,
-        Playwright,
-        Request,
-        expect,
-        sync_playwright,
-    )
+    from playwright.sync_api import Browser, BrowserContext, Page, Playwright, Request, expect, sync_playwright
 else:
     # `make test` collects these tests without this package.
     def expect(*arguments):  # noqa: ANN002, ANN201 - as above
@@ -28,6 +20,7 @@ else:
         return importlib.import_module("playwright.sync_api").sync_playwright()
 
 
+__all__ = ["OpenPage", "expect", "judge_with_axe", "launch_chromium", "sync_playwright", "watch_pages"]
 OpenPage = Callable[..., "Page"]
 
 

@@ -31,7 +31,6 @@ from tests.running import RAMCIP, REVISION, archgen, made_once
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
-    from xdist.workermanage import WorkerController
 
 Linked = Callable[[str], tuple[Architecture, tuple[Diagnostic, ...]]]
 SHIPPED = {
@@ -144,7 +143,7 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
 
 
 @pytest.hookimpl(optionalhook=True)
-def pytest_testnodedown(node: WorkerController) -> None:
+def pytest_testnodedown(node: object) -> None:
     # Each worker has left out the same.
     _LEFT_OUT.update(Counter(getattr(node, "workeroutput", {}).get("left_out", {})) - _LEFT_OUT)
 

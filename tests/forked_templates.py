@@ -116,7 +116,7 @@ FORKING = SimpleNamespace(run=_run_forked, TimeoutExpired=subprocess.TimeoutExpi
 
 def fork_templates(config: pytest.Config) -> None:
     """Fork the processes of templates until the end of the run."""
-    text.subprocess = FORKING  # type: ignore[attr-defined]
+    vars(text)["subprocess"] = FORKING
     config.add_cleanup(_end_processes)
 
 

@@ -92,7 +92,7 @@ def run_judge(
     return done
 
 
-def ask_nu_checker(pages: Iterable[Path]) -> list[dict[str, Any]]:
+def ask_nu_checker(pages: Iterable[str | Path]) -> list[dict[str, Any]]:
     """Return what the Nu HTML checker says against pages, of all at once: Java takes longer to begin than to read one."""
     jar = find_judge("vnu-jar/build/dist/vnu.jar")
     # Without the language, which it would guess from ids. It ends with 1 where it found something.

@@ -319,7 +319,7 @@ def test_plantuml_reads_it(all_projects: list[CheckedProject], tmp_path: Path) -
     files = [tmp_path / f"{position}.puml" for position in range(len(all_projects))]
     for file, checked_project in zip(files, all_projects, strict=True):
         file.write_text(export(checked_project, "plantuml"), encoding="utf-8")
-    command = (find_tool("plantuml"), "-checkonly", "-charset", "UTF-8", *files)
+    command: tuple[str | Path, ...] = (find_tool("plantuml"), "-checkonly", "-charset", "UTF-8", *files)
     run_judge(*command)
     # The judge can tell: it refuses what is wrong.
     files[-1].write_text('@startuml\ncomponent "a\n@enduml\n', encoding="utf-8")
