@@ -1,8 +1,8 @@
 """Programs from outside that tests ask: browsers, an office, compilers, judges, ROS. `make test` needs none of them.
 
-A test asks for a program by `find_tool`, its name written out, or `find_judge`, and lets it judge by `run_judge`, which shows its own words where it
-fails. Which tests do so is not marked by hand: it is found in their code, their fixtures' and their helpers', and who runs such a
-program without these words fails, since the program is hidden from it.
+A test asks for a program by `find_tool`, its name written out, or `find_judge`, and lets it judge by `run_judge`, which shows
+its own words where it fails. Which tests do so is not marked by hand: it is found in their code, in that of their fixtures and of
+their helpers. A test that runs such a program in another way fails, since the program is hidden from it.
 """
 
 from __future__ import annotations
@@ -21,6 +21,8 @@ from typing import Any
 
 import pytest
 
+QUICK_START = ("-XX:TieredStopAtLevel=1", "-XX:+UseSerialGC")
+"""Options of Java for judges that run some seconds: optimising their code costs more than it saves (12 s instead of 6 for 170 pages)."""
 JUDGES_FOLDER = Path(__file__).parent / "judges"
 _PACKAGES_OF_NPM = JUDGES_FOLDER / "node_modules"
 TOOL_MARKS = ("browser", "office", "compilers", "judges", "ros")
@@ -55,7 +57,7 @@ _PACKAGES = {
 }
 """Debian's packages that are called otherwise than their program."""
 _BARE_COMMANDS = frozenset(Path(__file__).with_name("bare_commands.txt").read_text("utf-8").split())
-"""What every Debian has (coreutils, findutils, grep, sed, mawk, tar, gzip, diffutils, util-linux, two shells), and git."""
+"""What every Debian has (coreutils, findutils, grep, sed, mawk, tar, gzip, diffutils, util-linux, two shells), git, and Pythons."""
 
 
 def find_tool(*names: str) -> str:
@@ -96,16 +98,7 @@ def ask_nu_checker(pages: Iterable[str | Path]) -> list[dict[str, Any]]:
     """Return what the Nu HTML checker says against pages, of all at once: Java takes longer to begin than to read one."""
     jar = find_judge("vnu-jar/build/dist/vnu.jar")
     # Without the language, which it would guess from ids. It ends with 1 where it found something.
-    words = (
-        "-XX:TieredStopAtLevel=1",
-        "-XX:+UseSerialGC",
-        "-Xss4m",
-        "-jar",
-        jar,
-        "--no-langdetect",
-        "--format",
-        "json",
-    )
+    words = (*QUICK_START, "-Xss4m", "-jar", jar, "--no-langdetect", "--format", "json")
     said = run_judge(find_tool("java"), *words, *pages, statuses=(0, 1)).stderr
     messages: list[dict[str, Any]] = json.loads(said)["messages"]
     return messages

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.outside_tools import find_tool, run_judge
-from tests.running import QUICK_START, ROOT, archgen_here
+from tests.outside_tools import QUICK_START, find_tool, run_judge
+from tests.running import ROOT, archgen_here
 
 pytestmark = pytest.mark.build
 PAGE = (ROOT / "docs" / "program_simulation.md").read_text(encoding="utf-8")

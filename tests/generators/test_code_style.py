@@ -21,10 +21,9 @@ from archgen.products.workspace_product import write_workspace
 from tests.generators.simulation.random_robots import make_robot as make_simulated_robot
 from tests.generators.test_ros2_python import AMENT_FLAKE8
 from tests.hostile import TEXTS
-from tests.outside_tools import find_tool, run_judge
+from tests.outside_tools import QUICK_START, find_tool, run_judge
 from tests.passes.patterns.random_robots import make_robot
 from tests.passes.random_projects import RandomProject
-from tests.running import QUICK_START
 
 ROS_BACKENDS = {"ros2_python": "jazzy", "ros1_python": "noetic"}
 NOT_OF_ROS = "A,I,Q"

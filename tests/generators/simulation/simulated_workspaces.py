@@ -9,8 +9,7 @@ from pathlib import Path
 from archgen.pipeline import check_project
 from archgen.products.output_options import OutputOptions
 from archgen.products.workspace_product import write_workspace
-from tests.outside_tools import find_tool, run_judge
-from tests.running import QUICK_START
+from tests.outside_tools import QUICK_START, find_tool, run_judge
 
 BACKENDS = ("java", "python_simulation")
 DOC_CHECKS = "-Xdoclint:all/protected,-missing"

@@ -10,8 +10,7 @@ import pytest
 from tests.generators.simulation.random_robots import Robot, make_robot, make_scenario
 from tests.generators.simulation.robot_behaviours import write_behaviours
 from tests.generators.simulation.simulated_workspaces import generate, run_python
-from tests.outside_tools import find_tool, run_judge
-from tests.running import QUICK_START
+from tests.outside_tools import QUICK_START, find_tool, run_judge
 
 pytestmark = pytest.mark.build
 SEEDS = range(6)
