@@ -3,8 +3,8 @@
 PYTHON ?= python3
 BIN := .venv/bin
 TESTS ?= tests
-# One more than there are cores: a fifth of the time, tests wait for processes that they started and for browsers.
-WORKERS ?= $(shell expr $$(getconf _NPROCESSORS_ONLN) + 1)
+# A process of tests for each core: to collect the tests costs each of them as much as hundreds of tests.
+WORKERS ?= $(shell getconf _NPROCESSORS_ONLN)
 
 .PHONY: demo test test-all properties check lint format bench mutants golden covered size language pages clean
 .DEFAULT_GOAL := help
@@ -13,11 +13,11 @@ WORKERS ?= $(shell expr $$(getconf _NPROCESSORS_ONLN) + 1)
 help:
 	@echo "make demo      set up, and make report, site, diagrams and packed file of example_ramcip"
 	@echo "make check     ruff, mypy, lint-imports and the tests of make test"
-	@echo "make test      set up, and run the tests that take at most 20 s each"
+	@echo "make test      set up, and run the tests that are quick and need nothing but Python and its packages"
 	@echo "make test CHANGED=1  only the tests of what differs from main, and of what is not committed"
 	@echo "make covered   write tests/covered_by.yaml anew, by what the tests execute"
 	@echo "make size      count the package's lines by what they are for"
-	@echo "make test-all  all tests: also those that take longer, build a wheel or need an installed ROS"
+	@echo "make test-all  all tests: also those that take longer, and those that need browsers, an office, compilers, judges or ROS"
 	@echo "make properties  the property tests again, on new random draws each time"
 	@echo "make mutants   change one condition at a time, and see which changes no test notices"
 	@echo "make bench     measure speed and scale"
@@ -42,8 +42,8 @@ endif
 
 # The rest comes after, not among them: what builds or takes long would push others over their time limits. `-rs` says what was
 # not tried here, such as a Python that is not installed.
-test-all: test .make/ros
-	$(BIN)/python -m pytest -m "slow or build or ros" -rs -n $(WORKERS) --dist worksteal $(TESTS)
+test-all: .make/test-all test .make/ros
+	$(BIN)/python -m pytest -m "slow or build or browser or office or compilers or judges or ros" -rs -n $(WORKERS) --dist worksteal $(TESTS)
 
 covered: .make/test
 	-$(BIN)/python -m pytest -q tests/test_modules_are_tested.py -k has_a_test --update-covered
@@ -52,18 +52,18 @@ covered: .make/test
 size:
 	$(PYTHON) tools/capability_sizes.py
 
-properties: .make/test
+properties: .make/test-all
 	ARCHGEN_DRAW_ANEW=1 $(BIN)/python -m pytest -m hypothesis -n $(WORKERS) --dist worksteal $(TESTS)
 
 check: lint test
 
-lint: .make/test
+lint: .make/check
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-format: .make/test
+format: .make/check
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
 
@@ -99,11 +99,20 @@ clean:
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
 	mkdir -p .make && touch $@
 
-# What the tests need beside: the judges (a browser, an office, the validators) and the tools of the check.
-.make/test: .make/run tests/judges/package.json
-	sh tools/system_packages.sh test
+# What `make test` needs beside: packages of Python, for which nobody must be root.
+.make/test: .make/run
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade "pip>=25.1"
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group test
+	touch $@
+
+# The tools of the check, which are packages of Python, too.
+.make/check: .make/test
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group check
+	touch $@
+
+# What the other tests need: browsers, an office, compilers and the judges.
+.make/test-all: .make/check tests/judges/package.json tools/system_packages.sh
+	sh tools/system_packages.sh test-all
 	npm install --prefix tests/judges --no-package-lock --no-audit --no-fund --loglevel=error
 	touch $@
 

@@ -2,22 +2,31 @@
 
 from __future__ import annotations
 
-import shutil
+import importlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
+from typing import TYPE_CHECKING
 
-from playwright.sync_api import Browser, BrowserContext, Page, Playwright, Request
+from tests.outside_tools import find_judge, find_tool
 
-OpenPage = Callable[..., Page]
-_AXE = Path(__file__).parent / "judges" / "node_modules" / "axe-core" / "axe.min.js"
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, BrowserContext, Page, Playwright, Request, expect, sync_playwright
+else:
+    # `make test` collects these tests without this package.
+    def expect(*arguments):  # noqa: ANN002, ANN201 - as above
+        return importlib.import_module("playwright.sync_api").expect(*arguments)
+
+    def sync_playwright():  # noqa: ANN201 - as above
+        return importlib.import_module("playwright.sync_api").sync_playwright()
+
+
+__all__ = ["OpenPage", "expect", "judge_with_axe", "launch_chromium", "sync_playwright", "watch_pages"]
+OpenPage = Callable[..., "Page"]
 
 
 def launch_chromium(playwright: Playwright) -> Browser:
     """Start Chromium: the one without windows where it is installed, since a page costs a third of the time there."""
-    names = ("chromium-headless-shell", "chromium", "chromium-browser")
-    chromium = next((path for name in names if (path := shutil.which(name))), None)
-    assert chromium is not None, "this test needs Chromium (Debian: `chromium`)"
+    chromium = find_tool("chromium-headless-shell", "chromium", "chromium-browser")
     # Many others may run at the same time, which makes everything late and nothing wrong.
     return playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"], timeout=600_000)
 
@@ -52,6 +61,5 @@ def watch_pages(addresses: tuple[str, ...] = ("file://",)) -> Iterator[Callable[
 
 def judge_with_axe(page: Page) -> object:
     """Return the rules of accessibility that a page breaks, with the elements that do."""
-    assert _AXE.is_file(), "this test needs axe-core (`npm ci` in tests/judges)"
-    page.evaluate(_AXE.read_text())
+    page.evaluate(find_judge("axe-core/axe.min.js").read_text())
     return page.evaluate("axe.run({preload: false}).then(r => r.violations.map(v => [v.id, v.nodes.map(n => n.html)]))")

@@ -5,9 +5,11 @@ from __future__ import annotations
 import gc
 import os
 import shutil
+import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,6 +17,7 @@ import pytest
 
 from archgen.derivation import derive_low_level
 from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.emit import text
 from archgen.emit.graphviz import worker_pool
 from archgen.link.slice_merging import merge_documents
 from archgen.model.architecture import Architecture
@@ -23,6 +26,7 @@ from archgen.schema import normalise_document, validate_document
 from archgen.syntax import yaml_parser
 from tests import property_sizes
 from tests.linking import link_table
+from tests.outside_tools import LATER_MARKS, TOOL_MARKS, ToolHiding, describe_left_out, list_tool_marks
 from tests.running import RAMCIP, REVISION, archgen, made_once
 
 if TYPE_CHECKING:
@@ -96,10 +100,57 @@ def pytest_configure(config: pytest.Config) -> None:
         os.environ["XDG_CACHE_HOME"] = cache_folder
         config.add_cleanup(lambda: shutil.rmtree(cache_folder, ignore_errors=True))
     property_sizes.choose_profile(config)
+    config.stash[_HIDING] = ToolHiding(Path(os.environ["XDG_CACHE_HOME"]) / "bare-commands")
     # It reads where the cache is.
-    from tests import kept_workers
+    from tests import forked_templates, kept_workers
 
     kept_workers.keep_workers(config)
+    forked_templates.fork_templates(config)
+
+
+_LEFT_OUT = Counter[str]()
+_HIDING = pytest.StashKey[ToolHiding]()
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark the tests that ask programs from outside, before pytest selects by marks."""
+    found: dict[tuple[object, ...], frozenset[str]] = {}
+    for item in items:
+        if isinstance(item, pytest.Function):
+            # One answer for all samples of a test.
+            key = (item.function, *item.fixturenames)
+            if key not in found:
+                fixtures = item._fixtureinfo.name2fixturedefs  # noqa: SLF001 - pytest has no public way
+                functions = [each.func for name in item.fixturenames for each in fixtures.get(name, ())]
+                found[key] = list_tool_marks([item.function, *functions])
+            for mark in found[key]:
+                item.add_marker(mark)
+
+
+def pytest_deselected(items: Sequence[pytest.Item]) -> None:
+    _LEFT_OUT.update(mark for item in items for mark in LATER_MARKS if item.get_closest_marker(mark))
+    _LEFT_OUT["all"] += len(items)
+
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    item.config.stash[_HIDING].hide_tools(hides=not any(map(item.get_closest_marker, TOOL_MARKS)))
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    if hasattr(session.config, "workeroutput"):
+        session.config.workeroutput["left_out"] = dict(_LEFT_OUT)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: object) -> None:
+    # Each worker has left out the same.
+    _LEFT_OUT.update(Counter(getattr(node, "workeroutput", {}).get("left_out", {})) - _LEFT_OUT)
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    for line in describe_left_out(_LEFT_OUT):
+        terminalreporter.write_line(line)
 
 
 def pytest_collection_finish() -> None:
@@ -121,9 +172,10 @@ def ramcip(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> Path:
 
 @pytest.fixture
 def fresh_workers(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Draw in processes that start and end with each build, as users have them."""
+    """Draw and render in processes that start and end with each build, as users have them."""
     from tests.kept_workers import KeptWorker
 
+    monkeypatch.setattr(text, "subprocess", subprocess)
     monkeypatch.setattr(worker_pool, "DrawingWorker", KeptWorker.__base__)
 
 

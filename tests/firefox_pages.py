@@ -12,6 +12,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from tests.outside_tools import find_tool
+
 PATIENCE = 180
 """Seconds to wait for what must happen: many other tests may run at the same time."""
 _SETTINGS = {
@@ -78,13 +80,20 @@ class Firefox:
 
 
 @contextmanager
-def run_firefox(command: str, profile: Path) -> Iterator[Firefox]:
+def run_firefox(profile: Path) -> Iterator[Firefox]:
     """Start Firefox with a profile of its own, and stop it at the end."""
     profile.mkdir()
     lines = [f"user_pref({json.dumps(name)}, {json.dumps(value)});" for name, value in _SETTINGS.items()]
     (profile / "user.js").write_text("\n".join(lines))
     log = profile / "log.txt"
-    words = [command, "--headless", "--marionette", "--no-remote", "--profile", str(profile)]
+    words = [
+        find_tool("firefox", "firefox-esr"),
+        "--headless",
+        "--marionette",
+        "--no-remote",
+        "--profile",
+        str(profile),
+    ]
     with log.open("wb") as output:
         process = subprocess.Popen(words, stdout=output, stderr=output, env={**os.environ, "HOME": str(profile)})  # noqa: S603
         try:

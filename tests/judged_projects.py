@@ -20,10 +20,15 @@ _JUDGED: dict[_Key, CheckedProject] = {}
 _check_project = pipeline.check_project
 
 
-@functools.cache
 def judge_ramcip() -> CheckedProject:
     """Judge the case study, once for all tests of this process that read what comes out."""
-    return _check_project(_RAMCIP)
+    return judge_shipped(_RAMCIP)
+
+
+@functools.cache
+def judge_shipped(project: Path) -> CheckedProject:
+    """Judge a project of this repository, once for all tests of this process that read what comes out."""
+    return _check_project(project)
 
 
 @contextmanager

@@ -12,7 +12,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-from tests.ros_environment import ROS_FOLDER, ros_environment, run_program
+from tests.outside_tools import run_judge
+from tests.ros_environment import ROS_FOLDER, ros_environment
 from tests.running import ROOT
 
 FOLDER = ROOT / ".make" / "play_launch"
@@ -36,9 +37,9 @@ def make_play_launch() -> Path:
         # Several workers ask for it at once.
         fcntl.flock(lock, fcntl.LOCK_EX)
         if not done.exists() or done.read_text() != _VERSION:
-            run_program([sys.executable, "-m", "venv", "--clear", str(FOLDER)])
+            run_judge(sys.executable, "-m", "venv", "--clear", str(FOLDER))
             pip = [str(FOLDER / "bin" / "python"), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
-            run_program([*pip, f"play_launch=={_VERSION}"])
+            run_judge(*pip, f"play_launch=={_VERSION}")
             _make_empty_libraries()
             done.write_text(_VERSION)
     return _find_package() / "bin" / "play_launch"
@@ -53,7 +54,7 @@ def _make_empty_libraries() -> None:
     source.write_text("void abort(void);\n" + "".join(f"void {name}(void) {{ abort(); }}\n" for name in names))
     for kind in ("generator_c", "typesupport_c"):
         library = FOLDER / f"libcomposition_interfaces__rosidl_{kind}.so"
-        run_program(["cc", "-shared", "-fPIC", "-o", str(library), str(source)])
+        run_judge("cc", "-shared", "-fPIC", "-o", str(library), str(source))
 
 
 def _find_package() -> Path:

@@ -3,9 +3,15 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
+import tempfile
 from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
+
+_CACHE_FOLDER = os.environ["XDG_CACHE_HOME"]
+"""The cache of this run, which its end removes; some tests have another."""
 
 
 def git(folder: Path, *words: str, stdin: bytes | None = None, day: str | None = None) -> str:
@@ -17,7 +23,8 @@ def git(folder: Path, *words: str, stdin: bytes | None = None, day: str | None =
     if day is not None:
         environment |= {f"GIT_{who}_DATE": f"{day}T12:00:00+0000" for who in ("AUTHOR", "COMMITTER")}
     done = subprocess.run(  # noqa: S603 - a fixed program
-        ["git", *words],  # noqa: S607 - the same that archgen calls
+        # Its own housekeeping would be two more processes for each commit.
+        ["git", "-c", "maintenance.auto=false", "-c", "gc.auto=0", *words],  # noqa: S607 - the same that archgen calls
         cwd=folder,
         env=environment,
         input=stdin,
@@ -32,10 +39,23 @@ def repository(
 ) -> Path:
     """Make a repository on branch `main`, with one commit if there are files."""
     folder.mkdir(parents=True, exist_ok=True)
-    git(folder, "init", "-q", "-b", "main", *options)
+    if options:
+        git(folder, "init", "-q", "-b", "main", *options)
+    else:
+        shutil.copytree(_make_empty_repository(), folder / ".git")
     if files is not None:
         commit(folder, files, day)
     return folder
+
+
+@cache
+def _make_empty_repository() -> Path:
+    """Return what `git init` makes, but for its samples of hooks: it is copied hundreds of times."""
+    folder = Path(tempfile.mkdtemp(dir=_CACHE_FOLDER))
+    git(folder, "init", "-q", "-b", "main")
+    for sample in (folder / ".git").glob("hooks/*.sample"):
+        sample.unlink()
+    return folder / ".git"
 
 
 def commit(folder: Path, files: Mapping[str, str | bytes], day: str | None = None) -> str:
@@ -46,7 +66,15 @@ def commit(folder: Path, files: Mapping[str, str | bytes], day: str | None = Non
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
     git(folder, "add", "-A")
     git(folder, "commit", "-q", "--allow-empty", "-m", "x", day=day)
-    return git(folder, "rev-parse", "HEAD")
+    return _read_head(folder) or git(folder, "rev-parse", "HEAD")
+
+
+def _read_head(folder: Path) -> str:
+    """Return the hash of the last commit where it stands in the repository's own files, as it does after most commits."""
+    head = folder / ".git" / "HEAD"
+    reference = head.read_text("utf-8").removeprefix("ref: ").strip() if head.is_file() else ""
+    branch = folder / ".git" / reference
+    return branch.read_text("utf-8").strip() if reference.startswith("refs/") and branch.is_file() else ""
 
 
 def trap(folder: Path) -> tuple[Path, Path]:

@@ -14,6 +14,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.outside_tools import run_judge
+
 SYSTEM_PYTHON = "/usr/bin/python3"
 """The Python that Debian's packages of ROS are made for."""
 SHARE = Path("/usr/share")
@@ -65,7 +67,7 @@ def build_messages(workspace: Path, folder: Path) -> None:
         files = sorted(str(each) for each in package.glob("msg/*.msg"))
         (target / "msg").mkdir()
         for words in ([*includes, *files], ["--initpy"]):
-            subprocess.run([SYSTEM_PYTHON, *command, *words], check=True, capture_output=True)  # noqa: S603 - ROS
+            run_judge(SYSTEM_PYTHON, *command, *words)
 
 
 @contextlib.contextmanager

@@ -7,7 +7,7 @@ import os
 import sys
 from pathlib import Path
 
-from tests.ros_environment import run_program
+from tests.outside_tools import run_judge
 from tests.running import ROOT
 
 KILTED_FOLDER = ROOT / ".make" / "ros_kilted"
@@ -42,10 +42,10 @@ def make_kilted_python() -> Path:
         fcntl.flock(lock, fcntl.LOCK_EX)
         wanted = "\n".join([*_WHEELS, *_TOOLS])
         if not done.exists() or done.read_text() != wanted:
-            run_program([sys.executable, "-m", "venv", "--clear", str(KILTED_FOLDER)])
+            run_judge(sys.executable, "-m", "venv", "--clear", str(KILTED_FOLDER))
             pip = [str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
-            run_program([*pip, *_WHEELS, *_TOOLS])
-            run_program([str(python), "-c", _MEND_PATHS])
+            run_judge(*pip, *_WHEELS, *_TOOLS)
+            run_judge(str(python), "-c", _MEND_PATHS)
             done.write_text(wanted)
     return python
 
@@ -82,6 +82,6 @@ def build_interfaces(package: Path, folder: Path) -> Path:
     environment = ["env", f"AMENT_PREFIX_PATH={KILTED_FOLDER}", f"PATH={tools}:/usr/bin:/bin"]
     words = [f"-D{name}={value}" for name, value in settings.items()]
     build = str(folder / "build")
-    run_program([*environment, "cmake", "-G", "Ninja", "-S", str(package), "-B", build, *words])
-    run_program([*environment, "cmake", "--build", build, "--target", "install"])
+    run_judge(*environment, "cmake", "-G", "Ninja", "-S", str(package), "-B", build, *words)
+    run_judge(*environment, "cmake", "--build", build, "--target", "install")
     return prefix

@@ -10,6 +10,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+from tests.outside_tools import run_judge
 from tests.running import ROOT
 
 ROS_FOLDER = ROOT / ".make" / "ros_jazzy"
@@ -37,8 +38,8 @@ def make_ros_python() -> Path:
         fcntl.flock(lock, fcntl.LOCK_EX)
         wanted = "\n".join(_WHEELS)
         if not done.exists() or done.read_text() != wanted:
-            run_program([sys.executable, "-m", "venv", "--clear", str(ROS_FOLDER)])
-            run_program([str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check", *_WHEELS])
+            run_judge(sys.executable, "-m", "venv", "--clear", str(ROS_FOLDER))
+            run_judge(str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check", *_WHEELS)
             done.write_text(wanted)
     return python
 
@@ -56,12 +57,6 @@ def ros_environment(domain: int, log_folder: Path) -> dict[str, str]:
         "ROS_DOMAIN_ID": str((domain + os.getpid()) % 102),
         "ROS_LOG_DIR": str(log_folder),
     }
-
-
-def run_program(command: list[str]) -> None:
-    """Run a program; what it says is shown where it fails."""
-    done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - our own commands
-    assert done.returncode == 0, done.stdout + done.stderr
 
 
 def interrupt_node(node: subprocess.Popen[bytes]) -> int:

@@ -20,8 +20,6 @@ ROOT = Path(__file__).resolve().parents[1]
 RAMCIP = ROOT / "example_ramcip"
 REVISION = "1a2b3c4"
 """Printed in documents instead of git's last commit, which is another one in every clone."""
-QUICK_START = ("-XX:TieredStopAtLevel=1", "-XX:+UseSerialGC")
-"""Options of Java for judges that run some seconds: optimising their code costs more than it saves (12 s instead of 6 for 170 pages)."""
 
 
 def archgen(

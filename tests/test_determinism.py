@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests import readable
-from tests.running import RAMCIP, REVISION, archgen, contents
+from tests.running import RAMCIP, REVISION, archgen, archgen_here, contents
 
 ELSEWHERE = {
     "TZ": "Asia/Kathmandu",
@@ -38,7 +38,7 @@ def moved(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def unpacked(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Pack the case study, and return a folder that holds the packed file alone."""
     place = tmp_path_factory.mktemp("packed")
-    archgen("pack", RAMCIP, "-o", place / "ramcip.yaml", cwd=RAMCIP.parent)
+    archgen_here("pack", RAMCIP, "-o", place / "ramcip.yaml", cwd=RAMCIP.parent)
     return place
 
 
@@ -92,7 +92,8 @@ def test_pictures_in_every_format_are_the_same_bytes(moved: Path, tmp_path: Path
 )
 def test_what_is_printed_is_the_same_bytes(words: tuple[str, ...], moved: Path) -> None:
     project = (lambda path: ("-C", path)) if words[0] in {"list", "show"} else lambda path: (path,)
-    first = archgen(*words, *project(RAMCIP), cwd=RAMCIP.parent).stdout
+    # Here and in a process of its own.
+    first = archgen_here(*words, *project(RAMCIP), cwd=RAMCIP.parent).stdout
     second = archgen(
         *words, *project(moved), cwd=moved, env={**ELSEWHERE, "COLUMNS": "", "PYTHONIOENCODING": "utf-8"}
     ).stdout
@@ -100,13 +101,13 @@ def test_what_is_printed_is_the_same_bytes(words: tuple[str, ...], moved: Path) 
 
 
 def test_packing_again_gives_the_same_bytes(unpacked: Path) -> None:
-    archgen("pack", "ramcip.yaml", "-o", "again.yaml", cwd=unpacked)
+    archgen_here("pack", "ramcip.yaml", "-o", "again.yaml", cwd=unpacked)
     assert (unpacked / "again.yaml").read_bytes() == (unpacked / "ramcip.yaml").read_bytes()
 
 
 def test_the_packed_file_has_the_same_size_and_progress(unpacked: Path) -> None:
     folder, packed = (
-        json.loads(archgen("stats", project, "--format", "json", cwd=unpacked).stdout)
+        json.loads(archgen_here("stats", project, "--format", "json", cwd=unpacked).stdout)
         for project in (RAMCIP, "ramcip.yaml")
     )
     assert (folder.pop("files"), packed.pop("files")) == (19, 1)
@@ -117,7 +118,9 @@ def test_the_packed_file_has_the_same_findings(unpacked: Path) -> None:
     folder, packed = (
         [
             (found["rule"], found["severity"], found["element"], found["message"])
-            for found in json.loads(archgen("check", project, "--format", "json", cwd=unpacked).stdout)["diagnostics"]
+            for found in json.loads(archgen_here("check", project, "--format", "json", cwd=unpacked).stdout)[
+                "diagnostics"
+            ]
         ]
         for project in (RAMCIP, "ramcip.yaml")
     )
@@ -150,7 +153,7 @@ def test_the_packed_file_makes_the_same_report(ramcip: Path, built: Path) -> Non
 def test_the_packed_file_makes_the_same_record(unpacked: Path) -> None:
     records = []
     for project in (RAMCIP, "ramcip.yaml"):
-        archgen("pack", "--resolved", project, "-o", "resolved.yaml", cwd=unpacked)
+        archgen_here("pack", "--resolved", project, "-o", "resolved.yaml", cwd=unpacked)
         records.append((unpacked / "resolved.yaml").read_bytes())
     assert placeless(records[0]).splitlines() == placeless(records[1]).splitlines()
 

@@ -12,22 +12,25 @@ import zipfile
 from collections.abc import Callable, Iterator
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 import yaml
 from click.testing import CliRunner
 from lxml import etree
 from markdown_it import MarkdownIt
-from playwright.sync_api import Dialog, sync_playwright
 
 from archgen.cli import main as verbs
 from archgen.cli.list_command import LISTABLE_KINDS
 from tests import hostile
-from tests.browser_pages import launch_chromium
+from tests.browser_pages import launch_chromium, sync_playwright
 from tests.emit.docx import inspection, judges
 from tests.findings import judges as servers
 from tests.property_sizes import mark_further_samples
 from tests.running import archgen_here, contents, made_once
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Dialog
 
 WORDS = tuple(hostile.TEXTS)
 SCHEMES = {"http", "https", "mailto"}

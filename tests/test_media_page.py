@@ -7,10 +7,11 @@ import re
 import pytest
 
 from archgen.diagnostics.diagnostic import Severity
-from archgen.pipeline import check_project, check_text
+from archgen.pipeline import check_text
 from archgen.views.graphs.component_graph import draw_component
 from archgen.views.lookup import make_lookup
 from archgen.views.tables.element_rows import list_element_rows
+from tests.judged_projects import judge_shipped
 from tests.running import ROOT
 
 PAGE = (ROOT / "docs" / "media.md").read_text(encoding="utf-8")
@@ -25,7 +26,7 @@ def test_nothing_is_wrong_in_an_example(example: str) -> None:
 
 
 def test_the_drone_is_clean_and_says_what_is_no_ros() -> None:
-    checked = check_project(ROOT / "examples" / "drone")
+    checked = judge_shipped(ROOT / "examples" / "drone")
     assert [finding.message for finding in checked.findings] == []
     architecture = checked.architecture
     assert sorted(architecture.channels) == [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -34,6 +35,7 @@ nodes:
   script: {kind: program, command: [./launch.sh], start: {phase: simulators}}
 """
 AUDITED = """\
+import json
 import os
 import sys
 started = []
@@ -44,10 +46,11 @@ def note(event, arguments):
         started.append(f"{os.path.basename(os.fsdecode(program))} {words!r}")
 sys.addaudithook(note)
 from archgen.cli import main
-try:
-    main(sys.argv[2:])
-except SystemExit:
-    pass
+for words in json.loads(sys.argv[2]):
+    try:
+        main(words)
+    except SystemExit:
+        pass
 open(sys.argv[1], "a").write("\\n".join(started) + "\\n")
 """
 
@@ -76,7 +79,7 @@ def test_no_verb_runs_a_command_of_a_project(hostile_project: Path, tmp_path: Pa
         "PATH": f"{tmp_path / 'traps'}{os.pathsep}{os.environ['PATH']}",
         "PYTHONPATH": str(ROOT),
     }
-    for words in (
+    verbs = [
         ["check"],
         ["start"],
         ["start", "--format", "json"],
@@ -86,16 +89,16 @@ def test_no_verb_runs_a_command_of_a_project(hostile_project: Path, tmp_path: Pa
         ["transform", "monitor", "flatten", "-o", "flat.yaml", "--keep-going"],
         ["build", "-o", "out", "--keep-going"],
         ["generate", "start", "-o", "robot", "--keep-going"],
-    ):
-        result = subprocess.run(  # noqa: S603 - our own program
-            [sys.executable, str(script), str(journal), *words],
-            cwd=hostile_project,
-            env=environment,
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-        assert "Traceback" not in result.stderr, result.stderr
+    ]
+    result = subprocess.run(  # noqa: S603 - our own program
+        [sys.executable, str(script), str(journal), json.dumps(verbs)],
+        cwd=hostile_project,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (result.returncode, "Traceback" in result.stderr) == (0, False), result.stderr
     assert (hostile_project / "out" / "site" / "start_up.html").is_file()
     assert (hostile_project / "robot" / "start.sh").is_file()
     started = [line for line in journal.read_text(encoding="utf-8").splitlines() if line]

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import re
-import shutil
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from tests.running import QUICK_START, ROOT, archgen_here
+from tests.outside_tools import QUICK_START, find_tool, run_judge
+from tests.running import ROOT, archgen_here
 
 pytestmark = pytest.mark.build
 PAGE = (ROOT / "docs" / "program_simulation.md").read_text(encoding="utf-8")
@@ -42,11 +41,10 @@ def fill_motor(sim: Path) -> None:
 def run_there(command: str, folder: Path) -> str:
     """Run a command of the page, and return what it prints."""
     program, *words = command.split()
-    found = sys.executable if program == "python3" else shutil.which(program)
-    assert found, f"this test needs {program} (Debian: `default-jdk-headless`)"
+    found = {"python3": sys.executable, "java": find_tool("java"), "javac": find_tool("javac")}[program]
     options = {"javac": [f"-J{each}" for each in QUICK_START], "java": [*QUICK_START], "python3": ["-B"]}[program]
-    done = subprocess.run([found, *options, *words], cwd=folder, capture_output=True, text=True, check=False)  # noqa: S603
-    assert (done.returncode, done.stderr) == (0, ""), command
+    done = run_judge(found, *options, *words, cwd=folder)
+    assert done.stderr == "", command
     return done.stdout
 
 

@@ -12,6 +12,7 @@ import pytest
 
 from archgen.diagnostics.diagnostic import Severity
 from archgen.pipeline import check_project
+from tests.outside_tools import run_judge
 from tests.plugins.ros_code.test_ros2_python import AMENT_FLAKE8
 from tests.ros_environment import NEWEST_PYTHON, ROS_FOLDER, make_ros_python, ros_environment
 from tests.running import ROOT, archgen_here
@@ -66,8 +67,8 @@ def test_nothing_is_wrong_with_it(rover: Path) -> None:
 
 def test_own_code_is_written_as_ros_developers_write(rover: Path) -> None:
     command = [sys.executable, "-m", "flake8", "--isolated", "--jobs=1", *AMENT_FLAKE8, str(rover / "ws")]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - our own program
-    assert (done.returncode, done.stdout) == (0, "")
+    done = run_judge(*command)
+    assert done.stdout == ""
 
 
 def test_there_is_a_launch_file_of_the_name_that_is_started(rover: Path) -> None:

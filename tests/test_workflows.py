@@ -15,6 +15,7 @@ import yaml
 
 from archgen.resources import REPOSITORY
 from tests import repositories
+from tests.outside_tools import run_judge
 from tests.property_sizes import mark_further_samples
 from tests.running import ROOT
 
@@ -36,14 +37,7 @@ def read(name: str) -> dict[str, Any]:
 
 def test_zizmor_finds_nothing() -> None:
     program = Path(sys.executable).with_name("zizmor")
-    done = subprocess.run(  # noqa: S603 - a judge of ours
-        [program, "--offline", "--no-progress", "--no-config", "--strict-collection", *FILES],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
+    done = run_judge(program, "--offline", "--no-progress", "--no-config", "--strict-collection", *FILES, cwd=ROOT)
     assert "No findings to report" in done.stdout + done.stderr
 
 

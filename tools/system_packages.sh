@@ -1,5 +1,5 @@
 #!/bin/sh
-# Install what archgen (run) or its tests (test) need of the system, or ROS 1 for the tests that run nodes on it (ros).
+# Install what archgen (run) or all of its tests (test-all) need of the system, or ROS 1 for the tests that run nodes on it (ros).
 # Does nothing where it is there already; where it may not install, it says what to install and, for the tests, stops.
 set -eu
 what=${1:-run}
@@ -17,10 +17,11 @@ if command -v ldconfig >/dev/null 2>&1; then
 fi
 ${PYTHON:-python3} -c "import ensurepip, venv" 2>/dev/null || missing="$missing python3-venv"
 need_command git git
-if [ "$what" = test ]; then
+if [ "$what" = test-all ]; then
     # Playwright's own Node; ldd names it as the one library that nothing else here brings.
     if command -v ldconfig >/dev/null 2>&1; then need_library libatomic.so.1 libatomic1; fi
     need_command chromium chromium
+    command -v firefox >/dev/null 2>&1 || need_command firefox-esr firefox-esr
     need_command soffice libreoffice-writer-nogui
     need_command pdftoppm poppler-utils
     fc-list 2>/dev/null | grep -q Carlito || missing="$missing fontconfig fonts-crosextra-carlito"
@@ -31,6 +32,7 @@ if [ "$what" = test ]; then
     need_command shellcheck shellcheck
     need_command systemd-analyze systemd
     need_command g++ g++
+    need_command luac5.1 lua5.1
     need_command uncrustify uncrustify
     need_command cpplint cpplint
     /usr/bin/python3 -c "import rosidl_adapter" 2>/dev/null || missing="$missing python3-rosidl"
@@ -63,7 +65,7 @@ if [ "$what" = ros ]; then
 fi
 # The browser without its windows: tests take the whole one where a system has no package of it, which costs more time.
 is_offered() { command -v apt-cache >/dev/null 2>&1 && [ -n "$(apt-cache madison "$1" 2>/dev/null)" ]; }
-if [ "$what" = test ] && ! command -v chromium-headless-shell >/dev/null 2>&1; then wanted=chromium-headless-shell; fi
+if [ "$what" = test-all ] && ! command -v chromium-headless-shell >/dev/null 2>&1; then wanted=chromium-headless-shell; fi
 if [ -z "$missing" ] && { [ -z "$wanted" ] || ! is_offered "$wanted"; }; then exit 0; fi
 if command -v apt-get >/dev/null 2>&1 && [ "$(id -u)" = 0 ]; then
     sudo=""
@@ -74,7 +76,7 @@ elif [ -z "$missing" ]; then
 else
     echo "archgen: please install these packages (Debian's names):$missing" >&2
     # Without the drawing libraries archgen still makes everything but the pictures, and without ROS 1 its tests are skipped.
-    [ "$what" = test ] || exit 0
+    [ "$what" = test-all ] || exit 0
     exit 1
 fi
 echo "installing$missing${wanted:+ $wanted}"

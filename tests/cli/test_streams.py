@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import ROOT, Run
+from tests.property_sizes import mark_further_samples
 
 
 def _shell(script: str, project: Path, **environment: str) -> subprocess.CompletedProcess[str]:
@@ -45,7 +46,9 @@ def test_a_reader_who_has_had_enough(broken: Path) -> None:
     assert "mistake in archgen" not in ran.stderr
 
 
-@pytest.mark.parametrize("verb", ["check $project", "stats $project", "explain", "list -C $project"])
+@pytest.mark.parametrize(
+    "verb", mark_further_samples(["check $project", "stats $project", "explain", "list -C $project"])
+)
 def test_closed_streams(broken: Path, verb: str) -> None:
     ran = _shell(f"$archgen {verb} >&-; $archgen {verb} >&- 2>&-", broken)
     assert "mistake in archgen" not in ran.stderr
@@ -53,7 +56,7 @@ def test_closed_streams(broken: Path, verb: str) -> None:
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
-@pytest.mark.parametrize("verb", ["check -q $project", "explain", "explain unread-output"])
+@pytest.mark.parametrize("verb", mark_further_samples(["check -q $project", "explain", "explain unread-output"]))
 def test_a_full_disk(broken: Path, verb: str) -> None:
     ran = _shell(f"$archgen {verb} > /dev/full", broken)
     assert (ran.returncode, ran.stderr) == (2, "archgen: failed: No space left on device\n")
@@ -84,7 +87,9 @@ main()
 """
 
 
-@pytest.mark.parametrize("module", ["click", "archgen.cli", "archgen.cli.check_command", "archgen.pipeline"])
+@pytest.mark.parametrize(
+    "module", mark_further_samples(["archgen.pipeline", "click", "archgen.cli", "archgen.cli.check_command"])
+)
 def test_an_interrupt_while_archgen_is_imported_shows_no_traceback(broken: Path, module: str, tmp_path: Path) -> None:
     (tmp_path / "interrupted.py").write_text(INTERRUPTED.replace("MODULE", repr(module)))
     ran = _shell(f"{sys.executable} {tmp_path / 'interrupted.py'} check $project", broken)
@@ -114,6 +119,7 @@ def test_nothing_is_wider_than_columns_says(
     _demand_width(run, monkeypatch, broken, verb, columns)
 
 
+@pytest.mark.slow
 def test_what_an_improvement_needs_is_not_wider_than_columns_says(
     run: Run, monkeypatch: pytest.MonkeyPatch, broken: Path
 ) -> None:

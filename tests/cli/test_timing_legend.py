@@ -10,6 +10,7 @@ import pytest
 from archgen import resources
 from tests.cli.conftest import Run
 from tests.emit.terminal.test_chain_gaps import HEAVY, ROBOT
+from tests.property_sizes import mark_further_samples
 
 _HOT = HEAVY.replace("8 ms", "12 ms")
 _DARK = "groups: {g: {components: {a: {}}}}\nnodes: {a: {implements: a}}\n"
@@ -114,7 +115,7 @@ def test_what_nobody_wrote_of_jitter_is_said_once(run: Run, tmp_path: Path) -> N
     assert said.count("no jitter is written for 2 of 3 periodic elements: taken as none") == 1
 
 
-@pytest.mark.parametrize("width", [60, 100])
+@pytest.mark.parametrize("width", mark_further_samples([60, 100]))
 @pytest.mark.parametrize(
     "question",
     [

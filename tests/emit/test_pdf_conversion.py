@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import shutil
 
 import pytest
 
@@ -11,6 +10,7 @@ from archgen.emit.docx import write
 from archgen.emit.own_file_marks import name_written_format
 from archgen.emit.pdf_conversion import LibreOfficeError, convert_document, replace_clock
 from archgen.views.shapes import Outline, Paragraph, Section, Text
+from tests.outside_tools import find_tool
 
 OUTLINE = Outline("Arm", sections=(Section("s", "Reach", (Paragraph((Text("So far."),)),)),))
 
@@ -34,8 +34,8 @@ def test_a_pdf_says_the_day_of_the_revision_and_not_the_time_of_its_making() -> 
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(not shutil.which("soffice"), reason="LibreOffice is not there")
 def test_a_report_becomes_a_pdf_that_archgen_knows_again() -> None:
+    find_tool("soffice")  # archgen does so by itself
     document, _ = write(OUTLINE, {}, chapter_files=lambda _path: None)
     data = convert_document(document)
     assert data.startswith(b"%PDF-")

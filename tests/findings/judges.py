@@ -7,15 +7,15 @@ from __future__ import annotations
 import functools
 import json
 import os
-import subprocess
 from pathlib import Path
 from typing import Any
 
 import jsonschema_rs
 from lxml import etree
 
-_JUDGES = Path(__file__).parents[1] / "judges"
-_MULTITOOL = _JUDGES / "node_modules" / "@microsoft" / "sarif-multitool-linux"
+from tests.outside_tools import JUDGES_FOLDER, find_judge, run_judge
+
+_MULTITOOL = "@microsoft/sarif-multitool-linux"
 _ADVICE = {
     "SARIF2002",  # messages by id: ours hold names
     "SARIF2003",  # from which repository: archgen asks no remote
@@ -34,10 +34,8 @@ def sarif_schema(text: str) -> list[str]:
 
 @functools.cache
 def _schema() -> jsonschema_rs.Draft202012Validator:
-    assert _MULTITOOL.exists(), (
-        "Microsoft's SARIF Multitool is missing: run `npm install --prefix tests/judges --no-package-lock`"
-    )
-    return jsonschema_rs.Draft202012Validator(json.loads((_MULTITOOL / "sarif-2.1.0.json").read_text("utf-8-sig")))
+    text = find_judge(f"{_MULTITOOL}/sarif-2.1.0.json").read_text("utf-8-sig")
+    return jsonschema_rs.Draft202012Validator(json.loads(text))
 
 
 def sarif(text: str, folder: Path) -> list[str]:
@@ -48,15 +46,11 @@ def sarif(text: str, folder: Path) -> list[str]:
 def _multitool(text: str, folder: Path) -> list[str]:
     (folder / "judged.sarif").write_text(text, encoding="utf-8")
     words = ("--rule-kind", "Sarif;Ghas", "--level", "Error;Warning;Note", "--quiet", "true", "--log", "ForceOverwrite")
-    done = subprocess.run(  # noqa: S603 - a judge of our own choice
-        [_MULTITOOL / "Sarif.Multitool", "validate", "judged.sarif", *words, "--output", "verdict.sarif"],
-        cwd=folder,
-        env={**os.environ, "DOTNET_SYSTEM_GLOBALIZATION_INVARIANT": "1"},
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=600,
-    )
+    program = find_judge(f"{_MULTITOOL}/Sarif.Multitool")
+    environment = {**os.environ, "DOTNET_SYSTEM_GLOBALIZATION_INVARIANT": "1"}
+    command = (program, "validate", "judged.sarif", *words, "--output", "verdict.sarif")
+    # It ends with 1 where it found something.
+    done = run_judge(*command, statuses=(0, 1), cwd=folder, env=environment)
     verdict = folder / "verdict.sarif"
     assert verdict.exists(), f"the Multitool could not run: {done.stdout}{done.stderr}"
     results: list[dict[str, Any]] = json.loads(verdict.read_text("utf-8-sig"))["runs"][0]["results"]
@@ -65,6 +59,6 @@ def _multitool(text: str, folder: Path) -> list[str]:
 
 def junit(text: str) -> list[str]:
     """Give what Jenkins' schema says against a document."""
-    schema = etree.XMLSchema(etree.parse(_JUDGES / "junit-10.xsd"))
+    schema = etree.XMLSchema(etree.parse(JUDGES_FOLDER / "junit-10.xsd"))
     schema.validate(etree.fromstring(text.encode()))
     return str(schema.error_log).splitlines()

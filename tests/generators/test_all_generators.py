@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import configparser
 import os
-import subprocess
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -19,6 +18,7 @@ from archgen.pipeline import CheckedProject, check_project
 from archgen.products.output_options import OutputOptions
 from archgen.products.workspace_product import write_workspace
 from tests import hostile
+from tests.outside_tools import run_judge
 from tests.property_sizes import mark_further_samples
 from tests.running import ROOT, contents
 
@@ -41,7 +41,7 @@ def _check_files(folder: Path) -> None:
             configparser.RawConfigParser(strict=False).read_string(text)
         elif path.endswith((".sh", ".bash")) or text.startswith(("#!/bin/sh", "#!/bin/bash", "#!/usr/bin/env bash")):
             shell = "bash" if "bash" in text.partition("\n")[0] or path.endswith(".bash") else "sh"
-            subprocess.run([shell, "-n"], input=data, check=True, capture_output=True)  # noqa: S603 - reads it only
+            run_judge(shell, "-n", stdin=text)
 
 
 @pytest.fixture(scope="module", params=mark_further_samples(hostile.TEXTS))

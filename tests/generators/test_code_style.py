@@ -7,7 +7,6 @@ imports and names of modules are as in plain Python, and all else is judged alik
 from __future__ import annotations
 
 import shutil
-import subprocess
 import sys
 from collections.abc import Iterator
 from itertools import cycle
@@ -20,11 +19,11 @@ from archgen.pipeline import check_project
 from archgen.products.output_options import OutputOptions
 from archgen.products.workspace_product import write_workspace
 from tests.hostile import TEXTS
+from tests.outside_tools import QUICK_START, find_tool, run_judge
 from tests.passes.patterns.random_robots import make_robot
 from tests.passes.random_projects import RandomProject
 from tests.plugins.middlewares.simulation.random_robots import make_robot as make_simulated_robot
 from tests.plugins.ros_code.test_ros2_python import AMENT_FLAKE8
-from tests.running import QUICK_START
 
 ROS_BACKENDS = {"ros2_python": "jazzy", "ros1_python": "noetic"}
 NOT_OF_ROS = "A,I,Q"
@@ -89,7 +88,7 @@ def _judge(settings: tuple[str, ...], folders: list[Path]) -> str:
     assert folders
     assert all(any(each.rglob("*.py")) for each in folders)
     command = [sys.executable, "-m", "flake8", "--isolated", "--jobs=1", *settings, *map(str, folders)]
-    return subprocess.run(command, capture_output=True, text=True, check=False).stdout  # noqa: S603 - our own program
+    return run_judge(*command, statuses=(0, 1)).stdout
 
 
 @pytest.mark.slow
@@ -108,12 +107,9 @@ def test_simulations_are_written_as_python_is(workspaces: Path) -> None:
 
 @pytest.mark.build
 def test_simulations_compile_without_any_warning(workspaces: Path) -> None:
-    javac = shutil.which("javac")
-    assert javac, "this test needs a JDK (Debian: `default-jdk-headless`)"
     for number, folder in enumerate(sorted(workspaces.glob("hostile_*/java/java"))):
         sources = [str(each) for each in folder.rglob("*.java")]
         assert len(sources) > 10
         options = ["-Xlint:all", "-Werror", "-encoding", "UTF-8", "--release", "17", "-d", f"{workspaces}/c{number}"]
-        command = [javac, *(f"-J{each}" for each in QUICK_START), *options, *sources]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - the JDK's
-        assert (done.returncode, done.stdout + done.stderr) == (0, ""), folder
+        done = run_judge(find_tool("javac"), *(f"-J{each}" for each in QUICK_START), *options, *sources)
+        assert done.stdout + done.stderr == "", folder

@@ -5,8 +5,6 @@ from __future__ import annotations
 import csv
 import io
 import re
-import shutil
-import subprocess
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -22,6 +20,7 @@ from archgen.products.workspace_product import write_workspace
 from archgen.views.generation.generation_context import GenerationContext
 from archgen.views.generation.structure_view import make_view
 from tests import hostile
+from tests.outside_tools import JUDGES_FOLDER, find_tool, run_judge
 from tests.running import ROOT, archgen_here
 
 PROJECT = """\
@@ -317,23 +316,18 @@ def all_projects(lab: CheckedProject, tmp_path_factory: pytest.TempPathFactory) 
 
 @pytest.mark.build
 def test_plantuml_reads_it(all_projects: list[CheckedProject], tmp_path: Path) -> None:
-    program = shutil.which("plantuml")
-    assert program, "tools/system_packages.sh installs it"
     files = [tmp_path / f"{position}.puml" for position in range(len(all_projects))]
     for file, checked_project in zip(files, all_projects, strict=True):
         file.write_text(export(checked_project, "plantuml"), encoding="utf-8")
-    command = [program, "-checkonly", "-charset", "UTF-8", *map(str, files)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - our own files
-    assert done.returncode == 0, done.stdout + done.stderr
+    command: tuple[str | Path, ...] = (find_tool("plantuml"), "-checkonly", "-charset", "UTF-8", *files)
+    run_judge(*command)
     # The judge can tell: it refuses what is wrong.
     files[-1].write_text('@startuml\ncomponent "a\n@enduml\n', encoding="utf-8")
-    assert subprocess.run(command, capture_output=True, check=False).returncode != 0  # noqa: S603
+    assert run_judge(*command, statuses=range(256)).returncode != 0
 
 
 @pytest.mark.build
 def test_d2_reads_it(all_projects: list[CheckedProject], tmp_path: Path) -> None:
-    node = shutil.which("node")
-    assert node, "tools/system_packages.sh installs it"
     files = [tmp_path / f"{position}.d2" for position in range(len(all_projects))]
     expected = []
     for file, checked_project in zip(files, all_projects, strict=True):
@@ -341,7 +335,5 @@ def test_d2_reads_it(all_projects: list[CheckedProject], tmp_path: Path) -> None
         data = make_view(GenerationContext(checked_project.architecture)).data
         # A shape for each group and component: no text made another one.
         expected.append(f"{file.name} {len(data['components']) + len(data['groups'])} shapes")
-    judge = str(ROOT / "tests" / "judges" / "compile_d2.mjs")
-    done = subprocess.run([node, judge, *map(str, files)], capture_output=True, text=True, check=False)  # noqa: S603
-    assert done.returncode == 0, done.stdout + done.stderr
+    done = run_judge(find_tool("node"), JUDGES_FOLDER / "compile_d2.mjs", *files)
     assert done.stdout.splitlines() == expected

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
 from pathlib import Path
 
 import pytest
@@ -13,6 +12,7 @@ from archgen.products.output_options import OutputOptions
 from archgen.products.project_views import select_elements
 from archgen.products.workspace_product import WorkspaceResult, write_workspace
 from archgen.views.generation.generation_context import GenerationContext
+from tests.outside_tools import run_judge
 from tests.running import ROOT
 
 PARTS = ("owner:lab", "owner:works")
@@ -145,7 +145,7 @@ def test_units_and_projects_of_partners_have_names_of_their_own(tmp_path: Path) 
     assert names == ['"robot-owner-lab"', '"robot-owner-works"']
     for each in ("lab", "works"):
         script = start / f"hosts/pc.owner-{each}.sh"
-        shown = subprocess.run([script, "--help"], capture_output=True, text=True, check=True)  # noqa: S603 - made here
+        shown = run_judge(script, "--help")
         assert f"pc.owner-{each}" in shown.stdout
 
 

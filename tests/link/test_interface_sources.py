@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
 import sys
 from pathlib import Path
 
@@ -16,6 +15,7 @@ from archgen.findings.rule_pages import read_rule_page
 from archgen.link.interface_sources import interface_name_of, load_interfaces
 from archgen.model.known_interfaces import KNOWN_DISTROS, Interface, InterfaceField, InterfaceStatus
 from archgen.syntax.interface_definitions import RULES
+from tests.outside_tools import run_judge
 
 ROOT = Path(__file__).resolve().parents[2]
 DATA = ROOT / "archgen" / "link" / "ros_interfaces"
@@ -32,7 +32,7 @@ def brief(diagnostic: Diagnostic) -> str:
 
 def test_the_script_makes_the_data(tmp_path: Path) -> None:
     script = str(ROOT / "tools" / "make_ros_interfaces.py")
-    subprocess.run([sys.executable, script, "-o", str(tmp_path)], check=True, capture_output=True)  # noqa: S603
+    run_judge(sys.executable, script, "-o", tmp_path)
     made = {file.name: file.read_bytes() for file in tmp_path.iterdir()}
     assert made == {file.name: file.read_bytes() for file in DATA.iterdir()}
 

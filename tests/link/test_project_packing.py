@@ -20,6 +20,7 @@ from archgen.language.language_tables import SECTION_KINDS
 from archgen.pipeline import CheckedProject, check_project
 from archgen.schema.language_schema import load_schema
 from archgen.syntax.yaml_writer import write_yaml
+from tests.judged_projects import judge_shipped
 from tests.language_samples import SCHEMA, list_samples
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -78,7 +79,7 @@ def packed_again(checked: CheckedProject, folder: Path) -> CheckedProject:
     ],
 )
 def test_the_examples(example: str, tmp_path: Path) -> None:
-    packed_again(check_project(ROOT / example), tmp_path)
+    packed_again(judge_shipped(ROOT / example), tmp_path)
 
 
 def test_slices_and_short_forms_become_one_mapping(tmp_path: Path) -> None:
@@ -453,7 +454,7 @@ def check_fixed_point(tmp_path_factory: pytest.TempPathFactory, data: object) ->
 
 def test_what_comments_silence_stays_silent_where_short_forms_are_written_out(tmp_path: Path) -> None:
     """`points: a.b` becomes three lines; the finding points at the last of them."""
-    checked = check_project(ROOT / "examples" / "reference_system")
+    checked = judge_shipped(ROOT / "examples" / "reference_system")
     assert checked.findings == ()
     assert checked.silenced_findings
     again = packed_again(checked, tmp_path)

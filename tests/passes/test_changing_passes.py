@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 import yaml
 
-from archgen.pipeline import check_project, transform_project
+from archgen.pipeline import transform_project
+from tests.judged_projects import judge_shipped
 from tests.passes.same_meaning import EXAMPLES, check_packed, pack, write_project
 
 LAYOUTS = {
@@ -168,7 +169,7 @@ def test_long_names_give_ports_that_are_ids(tmp_path: Path) -> None:
 
 def test_all_passes_over_the_cleaning_robot(tmp_path: Path) -> None:
     names = ("monitor", "envelope", "remove_generics", "flatten")
-    transformed = transform_project(check_project(EXAMPLES / "cleaning_robot"), names)
+    transformed = transform_project(judge_shipped(EXAMPLES / "cleaning_robot"), names)
     assert not [each for each in transformed.findings if str(each.severity) == "error"]
     assert transformed.architecture.shells == {}
     assert transformed.architecture.outputs["cleaning.lidar.p"].type == "Envelope of Laser pose"

@@ -9,8 +9,9 @@ import yaml
 
 from archgen.model.architecture import Architecture
 from archgen.passes.flat_names import name_flat_components
-from archgen.pipeline import CheckedProject, check_project, transform_project
+from archgen.pipeline import CheckedProject, transform_project
 from archgen.timing.chains.chain_bounds import bound_all_chains
+from tests.judged_projects import judge_shipped
 from tests.passes.random_projects import RandomProject
 from tests.passes.same_meaning import EXAMPLES, check_packed, pack, transform_alike, write_project
 from tests.property_sizes import list_seeds
@@ -87,12 +88,12 @@ def test_random_projects(seed: int, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("example", ["cleaning_robot", "arm", "vehicle/scenario", "bringup", "first_robot"])
 def test_the_examples(example: str, tmp_path: Path) -> None:
-    transformed = flatten_alike(check_project(EXAMPLES / example))
+    transformed = flatten_alike(judge_shipped(EXAMPLES / example))
     check_packed(transformed, tmp_path)
 
 
 def test_the_middle_of_figure_2(tmp_path: Path) -> None:
-    transformed = transform_project(check_project(EXAMPLES / "cleaning_robot"), ["flatten"])
+    transformed = transform_project(judge_shipped(EXAMPLES / "cleaning_robot"), ["flatten"])
     components = yaml.safe_load(pack(transformed))["groups"]["cleaning"]["components"]
     arm = ("planner", "shoulder", "elbow", "watch")
     assert list(components) == [

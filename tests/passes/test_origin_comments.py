@@ -13,13 +13,14 @@ from archgen.views.elements.element_card import make_card
 from archgen.views.lookup import make_lookup
 from archgen.views.pages.page_places import place_pages
 from archgen.views.shapes import Page, Section
+from tests.judged_projects import judge_shipped
 from tests.passes.same_meaning import EXAMPLES, pack, write_project
 
 MONITOR = ("groups", "cleaning", "components", "monitor")
 
 
 def test_findings_in_what_a_pass_made_say_which_one_and_from_what(tmp_path: Path) -> None:
-    transformed = transform_project(check_project(EXAMPLES / "cleaning_robot"), ["monitor"])
+    transformed = transform_project(judge_shipped(EXAMPLES / "cleaning_robot"), ["monitor"])
     finding = next(each for each in transformed.findings if each.element == "cleaning.monitor")
     assert (finding.span.file, finding.span.line) == ("archgen.yaml", 90)
     assert [label.text for label in finding.labels] == ["made by the pass `monitor` from this"]
@@ -32,7 +33,7 @@ def test_findings_in_what_a_pass_made_say_which_one_and_from_what(tmp_path: Path
 
 def test_cards_tell_the_way_back_and_further_passes_keep_it(tmp_path: Path) -> None:
     file = tmp_path / "flat.yaml"
-    flat = transform_project(check_project(EXAMPLES / "cleaning_robot"), ["flatten"])
+    flat = transform_project(judge_shipped(EXAMPLES / "cleaning_robot"), ["flatten"])
     file.write_text(pack(flat), encoding="utf-8")
     checked = check_project(file)
     card = make_card(make_lookup(checked.architecture), "component", "cleaning.lidar")
@@ -44,7 +45,7 @@ def test_cards_tell_the_way_back_and_further_passes_keep_it(tmp_path: Path) -> N
 
 
 def test_pages_of_the_site_tell_the_way_back() -> None:
-    transformed = transform_project(check_project(EXAMPLES / "cleaning_robot"), ["monitor"])
+    transformed = transform_project(judge_shipped(EXAMPLES / "cleaning_robot"), ["monitor"])
     lookup = make_lookup(transformed.architecture)
     section = Section("component:cleaning.monitor", "Monitor")
     page = Page("monitor.html", section.anchor, "Monitor", "component", section, lead="Component")

@@ -8,6 +8,7 @@ import pytest
 
 from archgen.passes import PASSES, Pass, PassWork, ProjectTree, UnknownPassError, order_passes
 from archgen.pipeline import check_project, transform_project
+from tests.judged_projects import judge_shipped
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
@@ -63,7 +64,7 @@ def test_what_no_pass_changes_is_judged_once(tmp_path: Path) -> None:
     assert same_project.findings == checked_project.findings
     assert same_project.transformed
     assert same_project.transformed.passes == ("remove_generics",)
-    cleaning = check_project(EXAMPLES / "cleaning_robot")
+    cleaning = judge_shipped(EXAMPLES / "cleaning_robot")
     changed_project = transform_project(cleaning, ["remove_generics"])
     assert changed_project.architecture is not cleaning.architecture
     assert changed_project.transformed
@@ -87,7 +88,7 @@ def test_a_transformed_project_is_judged_and_the_checked_one_stays(tmp_path: Pat
 
 
 def test_what_stands_in_a_list_says_that_its_name_follows() -> None:
-    checked = check_project(EXAMPLES / "cleaning_robot")
+    checked = judge_shipped(EXAMPLES / "cleaning_robot")
     transformed = transform_project(checked, ["normalise_connections"]).transformed
     assert transformed is not None
     assert [path[-1] for path in transformed.provenance] == ["lidar", "gps", "pose_fusion"]

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 import yaml
 
-from archgen.pipeline import check_project, transform_project
-from tests.judged_projects import judge_ramcip
+from archgen.pipeline import transform_project
+from tests.judged_projects import judge_ramcip, judge_shipped
 from tests.passes.same_meaning import EXAMPLES, check_packed, pack, transform_alike, write_project
 
 ALL = ("connect_components", "connect_ports", "connect_types", "resolve_instances", "remove_generics")
@@ -16,7 +16,7 @@ ALL = ("connect_components", "connect_ports", "connect_types", "resolve_instance
 
 @pytest.mark.parametrize("example", ["cleaning_robot", "arm", "vehicle/two_lasers", "bringup", "drone"])
 def test_the_examples(example: str, tmp_path: Path) -> None:
-    checked = check_project(EXAMPLES / example)
+    checked = judge_shipped(EXAMPLES / example)
     for name in ALL:
         transform_alike(checked, name)
     transformed = transform_alike(checked, *ALL)
@@ -182,5 +182,5 @@ def test_each_combination_of_types_becomes_a_type_of_its_own(tmp_path: Path) -> 
 
 
 def test_types_of_libraries_are_made_beside_theirs(tmp_path: Path) -> None:
-    transformed = transform_project(check_project(EXAMPLES / "vehicle" / "scenario"), ["remove_generics"])
+    transformed = transform_project(judge_shipped(EXAMPLES / "vehicle" / "scenario"), ["remove_generics"])
     check_packed(transformed, tmp_path)

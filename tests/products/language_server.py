@@ -12,9 +12,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import pytest
+from tests.outside_tools import find_judge, find_tool
 
-_PROGRAM = Path(__file__).parents[1] / "judges/node_modules/yaml-language-server/bin/yaml-language-server"
 _TIMEOUT_SECONDS = 300
 
 
@@ -164,11 +163,8 @@ class LanguageServer:
 @contextmanager
 def run_language_server(folder: Path, schemas: dict[str, Any]) -> Iterator[LanguageServer]:
     """Run the server with these schemas, by their path in the folder."""
-    if not _PROGRAM.exists():
-        pytest.fail(
-            "yaml-language-server is missing: run `npm install --prefix tests/judges --no-package-lock` (it needs Node.js)"
-        )
-    command = ["node", str(_PROGRAM), "--stdio"]
+    program = find_judge("yaml-language-server/bin/yaml-language-server")
+    command = [find_tool("node"), str(program), "--stdio"]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:  # noqa: S603 - a judge
         server = LanguageServer(process, folder)
         try:

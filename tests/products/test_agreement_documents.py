@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import io
-import json
 import re
-import shutil
-import subprocess
 import zipfile
 from collections.abc import Sequence
 from html.parser import HTMLParser
@@ -26,11 +23,9 @@ from tests import hostile
 from tests.agreeing import DUO, checked, written
 from tests.emit.docx import inspection, judges
 from tests.judged_projects import judge_ramcip
+from tests.outside_tools import ask_nu_checker
 from tests.property_sizes import mark_further_samples
 from tests.repositories import commit, git, repository
-from tests.running import QUICK_START
-
-NU = Path(__file__).parents[1] / "judges" / "node_modules" / "vnu-jar" / "build" / "dist" / "vnu.jar"
 
 
 def evil(text: str) -> dict[str, object]:
@@ -102,14 +97,9 @@ def test_the_page_stands_by_itself(made: PartnerAgreement) -> None:
 
 def judge_pages(pages: Sequence[Path]) -> list[str]:
     """Return what the Nu checker says against pages, of all at once: Java takes longer to begin than to read one."""
-    java = shutil.which("java")
-    assert java, "this test needs a Java (Debian: `default-jre-headless`)"
-    assert NU.exists(), "this test needs the Nu checker (`npm ci` in tests/judges)"
-    command = [java, *QUICK_START, "-Xss4m", "-jar", str(NU), "--no-langdetect", "--format", "json", *map(str, pages)]
-    done = subprocess.run(command, capture_output=True, check=False)  # noqa: S603 - a judge that this project pins
     messages = [
         m
-        for m in json.loads(done.stderr)["messages"]
+        for m in ask_nu_checker(pages)
         # Texts need not be in Unicode's NFC. `rx` is a property of CSS by SVG 2 (7.4), which browsers know and the checker does not.
         if m["type"] == "error" and m["message"] != "CSS: “rx”: Property “rx” doesn't exist."
     ]

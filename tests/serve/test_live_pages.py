@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
-from playwright.sync_api import Browser, Page, expect
 
 from archgen.serve.live_site import LiveSite
 from archgen.serve.site_server import SiteServer
-from tests.browser_pages import OpenPage, judge_with_axe, watch_pages
+from tests.browser_pages import OpenPage, expect, judge_with_axe, watch_pages
 from tests.browser_polling import wait_until
 from tests.property_sizes import mark_further_samples
 from tests.serve.conftest import ROBOT
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
 
 LONG_TEXT = "# Words\n\n" + "".join(f"## Part {number}\n\n{'Some words. ' * 80}\n\n" for number in range(30))
 

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import random
-import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +16,7 @@ from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.model.known_interfaces import InterfaceConstant, InterfaceField
 from archgen.syntax.interface_definitions import InterfaceDefinition, parse_interface_definition
+from tests.outside_tools import ask_ros_parsers
 
 JUDGES = Path(__file__).resolve().parents[1] / "judges" / "ros_definitions.py"
 Parts = list[list[list[str]]]
@@ -39,12 +38,8 @@ def brief(diagnostic: Diagnostic) -> str:
 
 
 def judged(cases: list[tuple[bool, str, str]]) -> list[Parts | None]:
-    """Ask ROS's own parsers, in the Python that Debian installs them for."""
-    done = subprocess.run(  # noqa: S603  # a fixed command
-        ["/usr/bin/python3", str(JUDGES)], input=json.dumps(cases), capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stderr
-    verdicts: list[Parts | None] = json.loads(done.stdout)
+    """Ask ROS's own parsers."""
+    verdicts: list[Parts | None] = ask_ros_parsers(cases)
     return verdicts
 
 

@@ -202,7 +202,10 @@ def test_ignore_comments() -> None:
         ("[" * 100_000, "values are nested deeper than 64"),
         ("a: " + "{b: " * 100_000, "values are nested deeper than 64"),
         ("- " * 100_000, "values are nested deeper than 64"),
-        ("a: [" + "1," * 1_100_000 + "1]", "the file holds more than 1,000,000 values"),
+        # This many take seconds.
+        pytest.param(
+            "a: [" + "1," * 1_100_000 + "1]", "the file holds more than 1,000,000 values", marks=pytest.mark.slow
+        ),
         (
             "a: &a0 [x]\n" + "".join(f"b{n}: &a{n + 1} [{', '.join([f'*a{n}'] * 10)}]\n" for n in range(20)),
             "the file's aliases stand for more than 100,000 values",

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-import json
-import shutil
-import subprocess
 from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
-from playwright.sync_api import Browser, Page, Route
 
 from archgen.emit.file_tree import FileTree, write_tree
 from archgen.emit.site import build_site as make_site
 from archgen.views import shapes
 from tests.browser_pages import OpenPage, judge_with_axe
+from tests.outside_tools import ask_nu_checker
 from tests.property_sizes import mark_further_samples
-from tests.running import QUICK_START
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page, Route
 
 ROOT = Path(__file__).resolve().parents[3]
 JUDGES = ROOT / "tests" / "judges" / "node_modules"
@@ -97,23 +97,9 @@ def visit(browser: Browser, folder: Path) -> Iterator[OpenPage]:
 
 
 def said_by_nu(folder: Path) -> list[str]:
-    java = needed(shutil.which("java"), "a Java (Debian: `default-jre-headless`)")
-    jar = needed(JUDGES / "vnu-jar/build/dist/vnu.jar", "the Nu checker (`npm ci` in tests/judges)")
     pages = [str(path) for path in sorted(folder.rglob("*.html"))]
     assert len(pages) > 350
-    command = [
-        java,
-        *QUICK_START,
-        "-Xss4m",
-        "-jar",
-        jar,
-        "--no-langdetect",
-        "--format",
-        "json",
-        *pages,
-    ]  # the language it would guess from ids
-    done = subprocess.run(command, capture_output=True, check=False)  # noqa: S603 - a judge that this project pins
-    messages = [f"{m.get('url')}:{m.get('lastLine')}: {m['message']}" for m in json.loads(done.stderr)["messages"]]
+    messages = [f"{m.get('url')}:{m.get('lastLine')}: {m['message']}" for m in ask_nu_checker(pages)]
     # To Nu nothing on a disk is a page's own. Browsers see that otherwise: test_page_policy opens each kind in one.
     return [message for message in messages if "blocked by" not in message or "Content Security Policy" not in message]
 

@@ -5,14 +5,17 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
-from playwright.sync_api import Browser, Locator, Page, expect
 
-from tests.browser_pages import OpenPage, judge_with_axe, watch_pages
+from tests.browser_pages import OpenPage, expect, judge_with_axe, watch_pages
 from tests.emit.site.conftest import write_bare_site
 from tests.property_sizes import mark_further_samples
 from tests.running import ROOT
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Locator, Page
 
 GROUP = ["Cleaning", "Controller", "Left Arm", "Localization", "Navigation", "Right Arm", "Smooth"]
 LEFT_ARM = ["Elbow", "Planner", "Shoulder", "Watch"]

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
-from playwright.sync_api import Browser, sync_playwright
-from playwright.sync_api import Page as Tab
 
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import NO_SPAN
@@ -21,7 +19,7 @@ from archgen.model.selector_parser import SELECTOR_KEYS
 from archgen.views.explorer import make_explorer_map
 from archgen.views.lookup import make_lookup
 from archgen.views.shapes import Page, Section
-from tests.browser_pages import launch_chromium
+from tests.browser_pages import launch_chromium, sync_playwright
 from tests.selector_cases import (
     COMPOSED_FINDINGS,
     COMPOSED_ROBOT,
@@ -33,6 +31,10 @@ from tests.selector_cases import (
     SELECTED_NODES,
     WRONG,
 )
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
+    from playwright.sync_api import Page as Tab
 
 SELECT = """text => {
   const model = archgenExplorer.readModel();

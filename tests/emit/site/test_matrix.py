@@ -6,17 +6,20 @@ import csv
 import io
 from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 from xml.etree import ElementTree as ET
 
 import pytest
-from playwright.sync_api import Browser
-from playwright.sync_api import Page as BrowserPage
 
 from archgen.emit.file_tree import FileTree, write_tree
 from archgen.emit.site import build_site
 from archgen.views.matrix_shapes import Matrix, MatrixEntry, MatrixFlow
 from archgen.views.shapes import Page, Section
 from tests.browser_pages import watch_pages
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
+    from playwright.sync_api import Page as BrowserPage
 
 HOSTILE = '=1+1</script><b>"x"'
 

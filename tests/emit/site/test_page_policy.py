@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-
-from playwright.sync_api import Browser
+from typing import TYPE_CHECKING
 
 from archgen.emit.file_tree import FileTree
 from archgen.emit.picture import Picture
 from archgen.emit.site.page_policy import PAGE_POLICY
 from archgen.emit.site.standalone_page import write_standalone_page
 from archgen.views.shapes import Figure, Outline, Section
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
 
 MOST_BYTES = 100_000
 """A page's bytes without its pictures."""

@@ -5,18 +5,21 @@ from __future__ import annotations
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
-from playwright.sync_api import Browser, Page, expect
 
 from archgen.emit.file_tree import FileTree, write_tree
 from archgen.emit.site import build_site
 from archgen.views import shapes
 from archgen.views.search.search_entry import SearchEntry
-from tests.browser_pages import OpenPage, judge_with_axe, watch_pages
+from tests.browser_pages import OpenPage, expect, judge_with_axe, watch_pages
 from tests.emit.site.conftest import write_bare_site
 from tests.property_sizes import mark_further_samples
 from tests.running import RAMCIP
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
 
 HOSTILE = '</script><img src=x onerror=document.title="taken"><script>document.title="taken"</script>'
 

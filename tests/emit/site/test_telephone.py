@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
-from playwright.sync_api import Browser
-from playwright.sync_api import Page as BrowserPage
 
 from tests.emit.site.test_page_policy import choose_pages
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
+    from playwright.sync_api import Page as BrowserPage
 
 # What scrolls by itself is left out: sequences, tables, listings, the matrix, and the explorer's bar of tools and its map.
 WIDE = """[...document.querySelectorAll("main *")].filter(e => !e.closest(".scroll, pre, .spoken, .matrix-box, .explorer-tools, .map, .sequence .canvas, thead") &&

@@ -13,6 +13,7 @@ from archgen.passes.patterns.pass_files import list_shipped_passes
 from archgen.passes.patterns.pattern_registry import find_known_passes
 from archgen.pipeline import CheckedProject, check_project, transform_project
 from archgen.syntax.yaml_writer import write_yaml
+from tests.judged_projects import judge_shipped
 from tests.passes.patterns.random_robots import make_robot
 from tests.property_sizes import list_seeds
 from tests.running import ROOT
@@ -66,7 +67,7 @@ def test_every_shipped_pass_of_rules_is_right() -> None:
 @pytest.mark.parametrize("name", TWINS)
 @pytest.mark.parametrize("example", EXAMPLES)
 def test_rules_make_what_the_pass_of_their_name_makes(example: str, name: str) -> None:
-    _compare(check_project(ROOT / "examples" / example), name)
+    _compare(judge_shipped(ROOT / "examples" / example), name)
 
 
 @pytest.mark.parametrize("seed", list_seeds(12))
@@ -106,7 +107,7 @@ def _with_library(folder: Path) -> CheckedProject:
 def robot(request: pytest.FixtureRequest, tmp_path: Path) -> CheckedProject:
     """Return the cleaning robot."""
     return (
-        check_project(ROOT / "examples" / "cleaning_robot")
+        judge_shipped(ROOT / "examples" / "cleaning_robot")
         if request.param.startswith("written")
         else _with_library(tmp_path)
     )

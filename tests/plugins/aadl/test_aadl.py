@@ -18,7 +18,7 @@ from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.run_analysis import analyse_architecture
 from archgen.views.generation.generation_context import GenerationContext
 from tests import hostile
-from tests.judged_projects import judge_ramcip
+from tests.judged_projects import judge_ramcip, judge_shipped
 from tests.plugins.aadl.aadl_judge import Classifier, find_member, judge_packages
 from tests.running import ROOT, contents
 
@@ -97,7 +97,7 @@ def find_line(text: str, pattern: str) -> str:
 
 @pytest.mark.parametrize("example", EXAMPLES)
 def test_every_example_is_aadl(example: str, tmp_path: Path) -> None:
-    project = check_project(ROOT / example)
+    project = judge_shipped(ROOT / example)
     packages = judge_packages(write_files(project, tmp_path))
     classifiers = [classifier for each in packages.values() for classifier in each.values()]
     parts = [part for each in classifiers for part in each.sections.get("subcomponents", ())]
@@ -198,7 +198,7 @@ def read_latency(tokens: list[str], name: str) -> Fraction:
 
 @pytest.mark.parametrize("example", EXAMPLES)
 def test_latencies_add_up_to_our_bounds(example: str, tmp_path: Path) -> None:
-    project = check_project(ROOT / example)
+    project = judge_shipped(ROOT / example)
     packages = judge_packages(write_files(project, tmp_path))
     results = bound_all_chains(analyse_architecture(project.architecture), project.architecture)
     for home, system, name, tokens in list_whole_flows(packages):
@@ -230,7 +230,7 @@ def list_whole_flows(
 
 
 def test_flows_of_systems_are_those_inside(tmp_path: Path) -> None:
-    packages = judge_packages(write_files(check_project(ROOT / "examples/arm"), tmp_path))
+    packages = judge_packages(write_files(judge_shipped(ROOT / "examples/arm"), tmp_path))
     systems = packages["two_arms"]
     (flow,) = [tokens for _, tokens in systems["body.impl"].sections["flows"]]
     inside = "".join(flow[2:])

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import shutil
-import subprocess
 from pathlib import Path
 
 from archgen.pipeline import CheckedProject, check_project
 from archgen.products.output_options import OutputOptions
 from archgen.products.workspace_product import WorkspaceRequest, write_workspace
+from tests.outside_tools import find_tool, run_judge
 
 STAND_INS = Path(__file__).parent / "middleware_stubs"
-HAS_COMPILER = shutil.which("g++") is not None
 HEADLAMP = """\
 archgen: 1
 project: {id: headlamp, title: Assembly of a headlamp}
@@ -116,8 +114,7 @@ def generate(
 def compile_cpp(files: list[Path], folders: list[Path], stand_ins: list[Path], unit: Path) -> str:
     """Return what a compiler says of files, which it takes as one, since headers are read once then."""
     unit.write_text("".join(f'#include "{each}"\n' for each in files), encoding="utf-8")
-    command = ["g++", "-std=c++17", "-fsyntax-only", "-Wall", "-Wextra", "-Werror"]
+    command = ["-std=c++17", "-fsyntax-only", "-Wall", "-Wextra", "-Werror"]
     command += [f"-I{each}" for each in folders]
     command += [word for each in stand_ins for word in ("-isystem", str(each))]
-    done = subprocess.run([*command, str(unit)], capture_output=True, text=True, check=False)  # noqa: S603 - a compiler
-    return done.stderr if done.returncode == 0 else done.stderr or "failed"
+    return run_judge(find_tool("g++"), *command, unit).stderr

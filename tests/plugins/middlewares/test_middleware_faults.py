@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import re
-import subprocess
 from pathlib import Path
 
 import pytest
 
 from archgen.products.workspace_product import WorkspaceRequest
-from tests.plugins.middlewares.middleware_projects import HAS_COMPILER, STAND_INS, generate, write_project
+from tests.outside_tools import find_tool, run_judge
+from tests.plugins.middlewares.middleware_projects import STAND_INS, generate, write_project
 from tests.plugins.middlewares.test_middlewares import MIDDLEWARES, compile_middleware
 from tests.running import contents
 
-needs_compiler = pytest.mark.skipif(not HAS_COMPILER, reason="needs a C++ compiler")
 NAMES = """
     camera camera_behaviour camera_servant library types typekit transport main plugin encoding values parameters message device
     driver property peer config_file std operations services timed calls wait publish rtc corba pre_operational
@@ -45,7 +44,6 @@ def test_names_of_the_generators_own_files_and_classes_are_free(middleware: str,
     assert {"camera_behaviour.cpp", "camera_behaviour__behaviour.cpp", "types__behaviour.cpp"} <= own
 
 
-@needs_compiler
 @pytest.mark.build
 @pytest.mark.parametrize("middleware", MIDDLEWARES)
 def test_names_of_the_generators_own_files_and_classes_compile(middleware: str, tmp_path: Path) -> None:
@@ -219,7 +217,6 @@ int main() {
 """A record, and behind it a list of what takes no bytes; what is cut short anywhere is refused."""
 
 
-@needs_compiler
 @pytest.mark.build
 @pytest.mark.parametrize(
     ("middleware", "header", "put", "get"),
@@ -238,6 +235,6 @@ def test_what_is_written_as_bytes_is_read_again(
     )
     (tmp_path / "main.cpp").write_text(ROUND_TRIP % (header, *calls), "utf-8")
     folders = (tmp_path / "w" / middleware / "include", STAND_INS / middleware)
-    command = ["g++", "-std=c++14", *(f"-I{each}" for each in folders), "main.cpp", "-o", "main"]
-    subprocess.run(command, cwd=tmp_path, check=True)  # noqa: S603
-    subprocess.run([tmp_path / "main"], check=True)  # noqa: S603
+    words = ("-std=c++14", *(f"-I{each}" for each in folders), "main.cpp", "-o", "main")
+    run_judge(find_tool("g++"), *words, cwd=tmp_path)
+    run_judge(tmp_path / "main")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import subprocess
 from pathlib import Path
 
 import pytest
@@ -12,6 +11,7 @@ from archgen.importers.import_formats import list_import_formats
 from archgen.pipeline import check_text
 from archgen.plugins.ros.launch.launch_import import read_launch
 from archgen.syntax.yaml_writer import write_yaml
+from tests.outside_tools import run_judge
 from tests.running import ROOT
 
 PAGE = (ROOT / "docs" / "existing_robot.md").read_text(encoding="utf-8")
@@ -47,5 +47,5 @@ def test_the_formats_are_there() -> None:
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=["ros2", "ros1"])
 def test_the_lines_to_copy_are_shell(script: str) -> None:
-    subprocess.run(["sh", "-n", "-c", script], check=True, timeout=60)  # noqa: S603, S607 - of the page
+    run_judge("sh", "-n", "-c", script)
     assert "\\$ ros" in script

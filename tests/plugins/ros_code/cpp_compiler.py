@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import re
-import shutil
-import subprocess
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 import yaml
 
+from tests.outside_tools import find_tool, run_judge
+
 STAND_INS = Path(__file__).parent / "rclcpp_stubs"
-HAS_COMPILER = shutil.which("g++") is not None
 _MESSAGE = re.compile(r"\b([a-z]\w*)::(msg|srv|action)::([A-Z]\w*)")
 _PARTS = {"msg": (), "srv": ("Request", "Response"), "action": ("Goal", "Result", "Feedback")}
 _TYPES = {"bool": "bool", "int": "int64_t", "double": "double", "string": "std::string"}
@@ -39,7 +38,6 @@ def compile_package(package: Path, folder: Path, include_folders: list[Path] | N
     own = [package / "include", headers]
     system = [STAND_INS, *include_folders]
     command = [
-        "g++",
         "-std=c++17",
         "-fsyntax-only",
         "-Wall",
@@ -49,8 +47,7 @@ def compile_package(package: Path, folder: Path, include_folders: list[Path] | N
         "-Wno-unused-function",
     ]
     command += [f"-I{each}" for each in own] + [word for each in system for word in ("-isystem", str(each))]
-    done = subprocess.run([*command, str(unit)], capture_output=True, text=True, check=False)  # noqa: S603 - a compiler
-    return done.stderr if done.returncode == 0 else done.stderr or "failed"
+    return run_judge(find_tool("g++"), *command, unit).stderr
 
 
 def write_messages(package: Path, headers: Path) -> None:

@@ -14,6 +14,7 @@ from archgen.pipeline import check_project
 from archgen.plugins.ros_code.node_programs import make_view
 from archgen.views.generation.generation_context import GenerationContext
 from archgen.views.generation.message_envelopes import is_envelope
+from tests.outside_tools import run_judge
 from tests.plugins.ros_code.test_ros2_python import AMENT_FLAKE8
 from tests.ros_2_kilted import build_interfaces, kilted_environment, make_kilted_python
 from tests.ros_environment import NEWEST_PYTHON, interrupt_node
@@ -85,8 +86,8 @@ def test_it_is_written_as_ros_developers_write(backend: str, distro: str, tmp_pa
     project = write_enveloped(tmp_path, distro)
     archgen_here("generate", backend, "-o", tmp_path / "w", cwd=project, status=0)
     command = [sys.executable, "-m", "flake8", "--isolated", "--jobs=1", *AMENT_FLAKE8, str(tmp_path / "w")]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - our own program
-    assert (done.returncode, done.stdout) == (0, "")
+    done = run_judge(*command)
+    assert done.stdout == ""
 
 
 MOTOR = """
@@ -161,7 +162,7 @@ def test_foreign_senders_are_refused_on_ros_2(tmp_path: Path) -> None:
         node = subprocess.Popen(command, env=environment, stdout=stream, stderr=stream)  # noqa: S603 - just generated
     try:
         sending = [python, "-c", STRANGER, str(log)]
-        done = subprocess.run(sending, env=environment, capture_output=True, text=True, check=False)  # noqa: S603
+        done = run_judge(*sending, statuses=range(256), env=environment)
     finally:
         status = interrupt_node(node)
     said = log.read_text(encoding="utf-8")
@@ -169,5 +170,4 @@ def test_foreign_senders_are_refused_on_ros_2(tmp_path: Path) -> None:
     assert json.loads(done.stdout.splitlines()[-1]) == [[4.0], ["/arm/left"]], said
     assert status == 0, said
     tests = [python, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(workspace / "src" / "rt_arm" / "test")]
-    done = subprocess.run(tests, env=environment, capture_output=True, text=True, check=False)  # noqa: S603
-    assert done.returncode == 0, done.stdout
+    done = run_judge(*tests, env=environment)

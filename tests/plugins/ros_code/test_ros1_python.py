@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import subprocess
 import sys
 from pathlib import Path
 from typing import Any
@@ -16,6 +15,7 @@ from archgen import pipeline
 from archgen.plugins.ros_code.node_programs import make_view
 from archgen.views.generation.generation_context import GenerationContext
 from tests.hostile import TEXTS
+from tests.outside_tools import run_judge
 from tests.plugins.ros_code.test_ros2_python import AMENT_FLAKE8
 from tests.running import archgen_here
 
@@ -113,8 +113,8 @@ def test_it_is_written_as_ros_developers_write(tmp_path: Path) -> None:
     scripts = [str(each) for each in (tmp_path / "w").rglob("scripts/*")]
     assert len(scripts) == 6
     command = [sys.executable, "-m", "flake8", "--isolated", "--jobs=1", *AMENT_FLAKE8, str(tmp_path / "w"), *scripts]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - our own program
-    assert (done.returncode, done.stdout) == (0, "")
+    done = run_judge(*command)
+    assert done.stdout == ""
     for path in [*(tmp_path / "w").rglob("scripts/*"), *(tmp_path / "w").rglob("test/*.py")]:
         assert path.stat().st_mode & 0o111, path
 

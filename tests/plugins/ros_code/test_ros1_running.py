@@ -12,6 +12,7 @@ import pytest
 from archgen import pipeline
 from archgen.model.architecture import Architecture
 from archgen.model.parameter_values import find_effective_parameters
+from tests.outside_tools import run_judge
 from tests.ros_1_environment import (
     SYSTEM_PYTHON,
     build_messages,
@@ -42,6 +43,8 @@ def judge_graph(environment: dict[str, str], architecture: Architecture) -> dict
     judge = [SYSTEM_PYTHON, str(ROOT / "tests" / "plugins" / "ros_code" / "ros_1_judge.py"), *names]
     done = subprocess.run(judge, env=environment, capture_output=True, text=True, check=False)  # noqa: S603
     assert done.returncode == 0, done.stderr
+    judge = [SYSTEM_PYTHON, str(ROOT / "tests" / "generators" / "ros_1_judge.py"), *names]
+    done = run_judge(*judge, env=environment)
     observed: dict[str, Any] = json.loads(done.stdout)
     return observed
 
@@ -152,8 +155,7 @@ json.dump(sorted({(each.sender, *each.payload.name) for each in answers}), sys.s
 
 
 def run_script(text: str, environment: dict[str, str]) -> str:
-    done = subprocess.run([SYSTEM_PYTHON, "-c", text], env=environment, capture_output=True, text=True, check=False)  # noqa: S603
-    assert done.returncode == 0, done.stderr
+    done = run_judge(SYSTEM_PYTHON, "-c", text, env=environment)
     return done.stdout
 
 
@@ -173,7 +175,7 @@ def test_the_cleaning_robot_runs_as_its_model_says(folder: Path) -> None:
     port = find_free_port()
     environment = ros_1_environment(workspace, folder, port)
     launch = ["/usr/bin/roslaunch", "cleaning_robot_bringup", "cleaning_robot.launch"]
-    listed = subprocess.run([*launch, "--nodes"], env=environment, capture_output=True, text=True, check=True)  # noqa: S603
+    listed = run_judge(*launch, "--nodes", env=environment)
     assert set(listed.stdout.split()) == {each.full_name for each in architecture.nodes.values()}
     commands = [["/usr/bin/roscore", "-p", str(port)], [*launch, "--wait"]]
     with run_programs(commands, environment, folder / "log"):
@@ -334,7 +336,7 @@ def test_generated_tests_pass_and_fail(folder: Path, robot_workspace: Path) -> N
 
     def run_test(name: str) -> tuple[bool, str]:
         command = ["/usr/bin/rostest", "rt_g", f"{name}_node.test"]
-        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)  # noqa: S603
+        done = run_judge(*command, statuses=range(256), env=environment)
         return done.returncode == 0, done.stdout + done.stderr
 
     for name in ("det", "rospy_py"):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
 import sys
 from pathlib import Path
 
@@ -11,6 +10,7 @@ import pytest
 from archgen.pipeline import check_project
 from archgen.plugins.ros_code.node_programs import make_view
 from archgen.views.generation.generation_context import GenerationContext
+from tests.outside_tools import run_judge
 from tests.ros_environment import NEWEST_PYTHON, make_ros_python, ros_environment
 from tests.running import archgen_here
 
@@ -119,5 +119,5 @@ def test_groups_run_side_by_side_and_callbacks_of_one_do_not(tmp_path: Path) -> 
     archgen_here("generate", "ros2_python", "-o", tmp_path / "w", "--keep-going", cwd=tmp_path)
     environment = ros_environment(62, tmp_path) | {"PYTHONPATH": str(tmp_path / "w" / "src" / "rt_g")}
     command = [str(make_ros_python()), "-c", WATCHED]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)  # noqa: S603 - our own
+    done = run_judge(*command, env=environment)
     assert done.stdout == "side by side []\n", done.stderr

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
-import shutil
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
 from archgen.pipeline import CheckedProject, check_project
-from tests.plugins.ros_code.cpp_compiler import HAS_COMPILER, compile_package
+from tests.outside_tools import find_tool, run_judge
+from tests.plugins.ros_code.cpp_compiler import compile_package
 from tests.plugins.ros_code.test_ros2_cpp import ROBOT, generate, write_project
 from tests.ros_environment import NEWEST_PYTHON, ROS_FOLDER, make_ros_python
 from tests.running import ROOT
@@ -55,10 +54,6 @@ nodes:
   void: {implements: class.void, language: cpp, package: own, executable: test}
   nameless: {implements: class.nameless, language: cpp}
 """
-needs_compiler = pytest.mark.skipif(not HAS_COMPILER, reason="needs a C++ compiler")
-needs_linters = pytest.mark.skipif(
-    shutil.which("uncrustify") is None or shutil.which("cpplint") is None, reason="needs uncrustify and cpplint"
-)
 
 
 def make_cpp(folder: Path) -> CheckedProject:
@@ -75,7 +70,6 @@ def compile_all(workspace: Path, folder: Path, include_folders: list[Path] | Non
         assert compile_package(package, folder, include_folders) == "", package
 
 
-@needs_compiler
 @pytest.mark.build
 def test_odd_names_and_numbers_compile(tmp_path: Path) -> None:
     project = write_project(tmp_path / "p", ODD)
@@ -84,7 +78,6 @@ def test_odd_names_and_numbers_compile(tmp_path: Path) -> None:
     compile_all(tmp_path / "w", tmp_path)
 
 
-@needs_compiler
 @pytest.mark.build
 @pytest.mark.parametrize("example", ["examples/cleaning_robot", "example_ramcip"])
 def test_examples_compile(example: str, tmp_path: Path) -> None:
@@ -92,7 +85,6 @@ def test_examples_compile(example: str, tmp_path: Path) -> None:
     compile_all(tmp_path / "w", tmp_path)
 
 
-@needs_compiler
 @pytest.mark.ros
 def test_it_compiles_against_real_messages(tmp_path: Path) -> None:
     if sys.version_info[:2] > NEWEST_PYTHON or sys.platform != "linux":
@@ -102,7 +94,6 @@ def test_it_compiles_against_real_messages(tmp_path: Path) -> None:
     compile_all(tmp_path / "w", tmp_path, sorted(each for each in (ROS_FOLDER / "include").iterdir() if each.is_dir()))
 
 
-@needs_linters
 @pytest.mark.build
 @pytest.mark.parametrize("example", ["robot", "example_ramcip"])
 def test_it_is_formatted_as_ament_wants_it(example: str, tmp_path: Path) -> None:
@@ -110,18 +101,8 @@ def test_it_is_formatted_as_ament_wants_it(example: str, tmp_path: Path) -> None
     generate(write_project(tmp_path / "p", ROBOT) if is_own else make_cpp(ROOT / example), tmp_path / "w")
     files = sorted(str(path) for path in tmp_path.rglob("*.?pp"))
     assert len(files) > 20
-    command = [
-        "cpplint",
-        "--quiet",
-        "--linelength=100",
-        "--extensions=hpp,cpp",
-        "--headers=hpp",
-        f"--filter={AMENT_CPPLINT}",
-    ]
-    done = subprocess.run([*command, *files], capture_output=True, text=True, check=False)  # noqa: S603 - a linter
-    assert (done.returncode, done.stderr) == (0, "")
+    words = ("--quiet", "--linelength=100", "--extensions=hpp,cpp", "--headers=hpp", f"--filter={AMENT_CPPLINT}")
+    assert run_judge(find_tool("cpplint"), *words, *files).stderr == ""
     style = Path(__file__).parent / "ament_code_style.cfg"
     # With `--check` it names those that it would write otherwise.
-    command = ["uncrustify", "-q", "-l", "CPP", "-c", str(style), "--check"]
-    done = subprocess.run([*command, *files], capture_output=True, text=True, check=False)  # noqa: S603 - a formatter
-    assert done.returncode == 0, done.stdout + done.stderr
+    run_judge(find_tool("uncrustify"), "-q", "-l", "CPP", "-c", style, "--check", *files)

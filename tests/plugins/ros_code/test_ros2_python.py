@@ -17,6 +17,7 @@ from archgen import pipeline
 from archgen.plugins.ros_code.node_programs import make_view
 from archgen.views.generation.generation_context import GenerationContext
 from tests.hostile import TEXTS
+from tests.outside_tools import run_judge
 from tests.ros_environment import NEWEST_PYTHON, interrupt_node, make_ros_python, ros_environment
 from tests.running import ROOT, archgen_here
 
@@ -152,8 +153,8 @@ def test_messages_of_one_name_are_told_apart(tmp_path: Path) -> None:
 def test_it_is_written_as_ros_developers_write(tmp_path: Path) -> None:
     generate(tmp_path / "p", ROBOT, tmp_path / "w")
     command = [sys.executable, "-m", "flake8", "--isolated", "--jobs=1", *AMENT_FLAKE8, str(tmp_path / "w")]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603 - our own program
-    assert (done.returncode, done.stdout) == (0, "")
+    done = run_judge(*command)
+    assert done.stdout == ""
 
 
 def test_own_code_is_asked_for_what_the_model_gained(tmp_path: Path) -> None:
@@ -214,8 +215,7 @@ def test_the_graph_is_what_the_model_says(ros_python: Path, tmp_path: Path) -> N
     package = tmp_path / "w" / "src" / "rt_g"
     environment = ros_environment(61, tmp_path) | {"PYTHONPATH": str(package)}
     tests = [str(ros_python), "-m", "pytest", "-q", "-p", "no:cacheprovider", str(package / "test")]
-    done = subprocess.run(tests, env=environment, capture_output=True, text=True, check=False)  # noqa: S603
-    assert done.returncode == 0, done.stdout
+    done = run_judge(*tests, env=environment)
     assert re.search(r"\b1[0-9] passed", done.stdout)
 
     programs, _ = make_programs(tmp_path / "p", ROBOT)
@@ -235,6 +235,8 @@ def test_the_graph_is_what_the_model_says(ros_python: Path, tmp_path: Path) -> N
                 expected[node["full_name"]] = list_expected(program, node["id"])
         judge = [str(ros_python), str(ROOT / "tests" / "plugins" / "ros_code" / "graph_judge.py"), *expected]
         done = subprocess.run(judge, env=environment, capture_output=True, text=True, check=False)  # noqa: S603
+        judge = [str(ros_python), str(ROOT / "tests" / "generators" / "graph_judge.py"), *expected]
+        done = run_judge(*judge, env=environment)
         observed = json.loads(done.stdout.splitlines()[-1])
     finally:
         statuses = [interrupt_node(process) for process in processes]

@@ -16,6 +16,7 @@ from archgen.plugins.ros_code.node_programs import make_view
 from archgen.products.output_options import OutputOptions
 from archgen.products.workspace_product import write_workspace
 from archgen.views.generation.generation_context import GenerationContext
+from tests.outside_tools import run_judge
 from tests.plugins.ros_code.test_ros2_python import is_ros_own, list_expected
 from tests.ros_environment import NEWEST_PYTHON, make_ros_python, ros_environment
 from tests.running import ROOT
@@ -103,6 +104,8 @@ def test_all_planned_nodes_run_as_the_model_says(tmp_path: Path) -> None:
         assert running.stdout.readline() == "ready\n"
         judge = [python, str(ROOT / "tests" / "plugins" / "ros_code" / "graph_judge.py"), *expected]
         done = subprocess.run(judge, env=environment, capture_output=True, text=True, check=False)  # noqa: S603
+        judge = [python, str(ROOT / "tests" / "generators" / "graph_judge.py"), *expected]
+        done = run_judge(*judge, env=environment)
         running.stdin.close()
     assert running.returncode == 0
     graph = json.loads(done.stdout.splitlines()[-1])["graph"]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
 from collections.abc import Mapping
 from pathlib import Path
 from xml.etree import ElementTree as ET
@@ -17,6 +15,7 @@ from archgen.products.output_options import OutputOptions
 from archgen.products.workspace_product import WorkspaceRequest, write_workspace
 from archgen.syntax.interface_definitions import parse_interface_definition
 from archgen.syntax.yaml_writer import write_yaml
+from tests.outside_tools import ask_ros_parsers
 from tests.property_sizes import count_examples
 from tests.running import ROOT, contents
 
@@ -134,16 +133,13 @@ def test_archgen_reads_back_what_it_knows(made: Mapping[str, str], distro: str, 
             assert [each.comment for each in parts if each.name == "width"] in ([], ["[m] between the fingers"])
 
 
-@pytest.mark.ros
 def test_ros_reads_it(made: Mapping[str, str], distro: str) -> None:
     definitions = _definitions(made)
     cases = [
         [distro == "noetic", *each] for each in definitions.items() if distro == "jazzy" or "/action/" not in each[0]
     ]
-    done = subprocess.run(  # noqa: S603 - a fixed command
-        ["/usr/bin/python3", str(JUDGES)], input=json.dumps(cases), capture_output=True, text=True, check=True
-    )
-    assert None not in json.loads(done.stdout), list(zip(cases, json.loads(done.stdout), strict=True))
+    read = ask_ros_parsers(cases)
+    assert None not in read, list(zip(cases, read, strict=True))
 
 
 def test_packages_say_what_they_need(made: Mapping[str, str], distro: str) -> None:

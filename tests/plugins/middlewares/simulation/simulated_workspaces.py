@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -10,7 +9,7 @@ from pathlib import Path
 from archgen.pipeline import check_project
 from archgen.products.output_options import OutputOptions
 from archgen.products.workspace_product import write_workspace
-from tests.running import QUICK_START
+from tests.outside_tools import QUICK_START, find_tool, run_judge
 
 BACKENDS = ("java", "python_simulation")
 DOC_CHECKS = "-Xdoclint:all/protected,-missing"
@@ -30,18 +29,14 @@ def generate(project: Path, workspace: Path, *, backends: tuple[str, ...] = BACK
 
 def build_java(workspace: Path) -> None:
     """Compile as the README says, and find nothing to warn of."""
-    javac = shutil.which("javac")
-    assert javac, "this test needs a JDK (Debian: `default-jdk-headless`)"
-    command = [javac, *(f"-J{each}" for each in QUICK_START), DOC_CHECKS, "@build.args"]
-    done = subprocess.run(command, cwd=workspace / "java", capture_output=True, text=True, check=False)  # noqa: S603
-    assert (done.returncode, done.stdout + done.stderr) == (0, "")
+    words = (*(f"-J{each}" for each in QUICK_START), DOC_CHECKS, "@build.args")
+    done = run_judge(find_tool("javac"), *words, cwd=workspace / "java")
+    assert done.stdout + done.stderr == ""
 
 
 def run_java(workspace: Path, main_class: str, *words: str) -> tuple[int, str, str]:
     """Return the exit status, the trace and what is said of mistakes."""
-    java = shutil.which("java")
-    assert java, "this test needs a Java (Debian: `default-jre-headless`)"
-    command = [java, *QUICK_START, "-cp", "build", main_class, *words]
+    command = [find_tool("java"), *QUICK_START, "-cp", "build", main_class, *words]
     done = subprocess.run(command, cwd=workspace / "java", capture_output=True, text=True, check=False)  # noqa: S603
     return done.returncode, done.stdout, done.stderr
 

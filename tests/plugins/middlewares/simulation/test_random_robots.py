@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import os
-import shutil
-import subprocess
 from pathlib import Path
 
 import pytest
 
+from tests.outside_tools import QUICK_START, find_tool, run_judge
 from tests.plugins.middlewares.simulation.random_robots import Robot, make_robot, make_scenario
 from tests.plugins.middlewares.simulation.robot_behaviours import write_behaviours
 from tests.plugins.middlewares.simulation.simulated_workspaces import generate, run_python
-from tests.running import QUICK_START
 
 pytestmark = pytest.mark.build
 SEEDS = range(6)
@@ -46,17 +44,14 @@ def run_all_in_java(folder: Path, robots: list[Robot]) -> dict[str, str]:
     )
     sources = [f"{robots[0].name}/java/runtime"]
     sources += [f"{each.name}/java/{place}" for each in robots for place in ("generated", "src")]
-    javac, java = shutil.which("javac"), shutil.which("java")
-    assert javac, "this test needs a JDK (Debian: `default-jdk-headless`)"
-    assert java, "this test needs a JDK (Debian: `default-jdk-headless`)"
     options = ["-Xlint:all", "-Werror", "-encoding", "UTF-8", "--release", "17", "-d", "build"]
     quick = [f"-J{each}" for each in QUICK_START]
     for command in (
-        [javac, *quick, *options, "--source-path", os.pathsep.join(sources), "RunAll.java"],
-        [java, *QUICK_START, "-cp", "build", "RunAll"],
+        [find_tool("javac"), *quick, *options, "--source-path", os.pathsep.join(sources), "RunAll.java"],
+        [find_tool("java"), *QUICK_START, "-cp", "build", "RunAll"],
     ):
-        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)  # noqa: S603
-        assert (done.returncode, done.stdout + done.stderr) == (0, "")
+        done = run_judge(*command, cwd=folder)
+        assert done.stdout + done.stderr == ""
     return {each.name: (folder / f"{each.name}.txt").read_bytes().decode("ascii") for each in robots}
 
 

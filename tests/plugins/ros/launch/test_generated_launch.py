@@ -10,6 +10,7 @@ import pytest
 from archgen.pipeline import CheckedProject, check_project
 from archgen.plugins.ros.launch.launch_import import read_launch
 from archgen.syntax.yaml_writer import write_yaml
+from tests.judged_projects import judge_shipped
 from tests.plugins.ros_code.launch.launch_reading import make_launch_workspace
 from tests.plugins.ros_code.launch.test_launch_files import write_simple
 from tests.running import RAMCIP, ROOT
@@ -60,7 +61,7 @@ def list_nodes(checked: CheckedProject, *, with_values: bool) -> dict[str, dict[
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_examples_come_back(name: str, tmp_path: Path) -> None:
-    project = check_project(EXAMPLES[name])
+    project = judge_shipped(EXAMPLES[name])
     ros = 1 if project.architecture.distro == "noetic" else 2
     package = make_launch_workspace(EXAMPLES[name], tmp_path / "ws", f"ros{ros}_launch")[0]
     launch_file = next(path for path in (package / "launch").iterdir() if path.is_file())

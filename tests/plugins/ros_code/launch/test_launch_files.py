@@ -13,8 +13,8 @@ import yaml
 
 from archgen.bringup.plan_shapes import StartPlan
 from archgen.bringup.start_plan import make_start_plan
-from archgen.pipeline import check_project
 from tests import hostile
+from tests.judged_projects import judge_shipped
 from tests.plugins.ros_code.launch.launch_reading import (
     make_launch_workspace,
     read_launch_file,
@@ -23,7 +23,7 @@ from tests.plugins.ros_code.launch.launch_reading import (
     read_text_2,
     read_words_1,
 )
-from tests.plugins.start_scripts.start_up.started_workspaces import judge
+from tests.plugins.start_scripts.start_up.started_workspaces import check_by_shellcheck
 from tests.running import RAMCIP, ROOT
 
 EXAMPLES = {
@@ -129,7 +129,7 @@ def list_launched(file: Path, ros: int, names: dict[str, str]) -> list[str]:
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_each_computer_starts_what_the_plan_says_in_its_order(name: str, tmp_path: Path) -> None:
-    architecture = check_project(EXAMPLES[name]).architecture
+    architecture = judge_shipped(EXAMPLES[name]).architecture
     plan: StartPlan = make_start_plan(architecture)
     package, left_out = make_launch_workspace(EXAMPLES[name], tmp_path / "ws", "ros2_launch")
     assert left_out == []
@@ -302,7 +302,6 @@ def test_states_are_set_one_after_the_other(tmp_path: Path) -> None:
         "lifecycle set /b configure",
         "lifecycle set /b configure",
     ]
-    assert judge("shellcheck", script) == ("", 0)
 
 
 def test_programs_do_not_see_what_roslaunch_adds(tmp_path: Path) -> None:
@@ -311,4 +310,10 @@ def test_programs_do_not_see_what_roslaunch_adds(tmp_path: Path) -> None:
     words = ["printf", "%s\\n", "a b", "", "-n", "__name:=x", "__log:=/tmp/x.log"]
     done = subprocess.run([script, *words], capture_output=True, text=True, check=True)  # noqa: S603 - just generated
     assert done.stdout == "a b\n\n-n\n"
-    assert judge("shellcheck", script) == ("", 0)
+
+
+@pytest.mark.parametrize(("ros", "distro", "name"), [(1, "noetic", "run_program"), (2, "", "set_states")])
+def test_shellcheck_finds_nothing(ros: int, distro: str, name: str, tmp_path: Path) -> None:
+    project = write_simple(tmp_path / "p", distro) if distro else EXAMPLES["courier"]
+    package, _ = make_launch_workspace(project, tmp_path / "ws", f"ros{ros}_launch")
+    check_by_shellcheck(package / "scripts" / name)

@@ -15,6 +15,7 @@ import yaml
 from archgen.pipeline import check_project
 from archgen.products.output_options import OutputOptions
 from archgen.products.workspace_product import write_workspace
+from tests.outside_tools import run_judge
 from tests.play_launch import find_python_library, install_packages, make_play_launch, play_environment
 from tests.ros_environment import NEWEST_PYTHON, make_ros_python
 from tests.running import ROOT
@@ -73,8 +74,7 @@ def play_settings(workspace: Path, domain: int) -> tuple[list[str], dict[str, st
 def test_it_resolves_to_the_nodes_of_the_model(workspace: Path) -> None:
     program, environment, launch_file = play_settings(workspace, 66)
     command = [*program, "resolve", launch_file, "-o", "-"]
-    done = subprocess.run(command, env=environment, cwd=workspace, capture_output=True, text=True, check=False)  # noqa: S603
-    assert done.returncode == 0, done.stderr
+    done = run_judge(*command, env=environment, cwd=workspace)
     # What it does not know is a warning only.
     assert not re.search(r"\bWARN", done.stderr), done.stderr
     nodes = yaml.safe_load(done.stdout)["structure"]["nodes"]
@@ -109,7 +109,7 @@ def test_what_it_starts_is_what_the_model_says(workspace: Path) -> None:
     judge_environment = {key: value for key, value in environment.items() if key != "LD_LIBRARY_PATH"}
     judge = [python, str(ROOT / "tests" / "plugins" / "ros_code" / "graph_judge.py"), *EXPECTED]
     try:
-        done = subprocess.run(judge, env=judge_environment, capture_output=True, text=True, check=False)  # noqa: S603
+        done = run_judge(*judge, env=judge_environment)
         graph = json.loads(done.stdout.splitlines()[-1])["graph"]
     finally:
         running.send_signal(signal.SIGINT)

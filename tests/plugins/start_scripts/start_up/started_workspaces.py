@@ -19,6 +19,7 @@ from typing import Any
 from archgen.pipeline import check_project
 from archgen.products.output_options import OutputOptions
 from archgen.products.workspace_product import WorkspaceRequest, write_workspace
+from tests.outside_tools import find_tool, run_judge
 from tests.running import ROOT
 
 _STAND_IN = Path(__file__).with_name("stand_in.py")
@@ -207,7 +208,12 @@ def list_marked(logs: Path) -> list[str]:
     return found
 
 
-def judge(*words: str | Path) -> tuple[str, int]:
-    """Run a judge, and return all that it says, and its status."""
-    done = subprocess.run(["/usr/bin/env", *words], capture_output=True, text=True, check=False, timeout=300)  # noqa: S603 - a judge
-    return done.stdout + done.stderr, done.returncode
+def check_by_shellcheck(*scripts: Path) -> None:
+    """Find nothing in scripts, and in what they include."""
+    assert run_judge(find_tool("shellcheck"), "-x", *scripts).stdout == ""
+
+
+def check_by_systemd(*units: Path) -> None:
+    """Find nothing in units, which is more than that systemd would take them."""
+    done = run_judge(find_tool("systemd-analyze"), "verify", "--man=no", *units)
+    assert done.stdout + done.stderr == ""

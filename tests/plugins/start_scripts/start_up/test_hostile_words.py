@@ -9,7 +9,13 @@ from pathlib import Path
 import pytest
 import yaml
 
-from tests.plugins.start_scripts.start_up.started_workspaces import Run, Stage, judge, make_workspace
+from tests.plugins.start_scripts.start_up.started_workspaces import (
+    Run,
+    Stage,
+    check_by_shellcheck,
+    check_by_systemd,
+    make_workspace,
+)
 
 WORDS = [
     "$(touch trace)",
@@ -121,7 +127,7 @@ def test_systemd_reads_nothing_of_them(workspace: Path) -> None:
     (line,) = [line for line in watching.split("\n") if line.startswith("ExecStart=")]
     assert "$(touch trace)\\ %n 'x' \"y\"" in read_unit_words(line.partition("=")[2])
     units = sorted((workspace / "start" / "systemd" / "box").iterdir())
-    assert judge("systemd-analyze", "verify", "--man=no", *units) == ("", 0)
+    check_by_systemd(*units)
 
 
 def test_compose_reads_nothing_of_them(workspace: Path) -> None:
@@ -146,4 +152,4 @@ def test_compose_reads_nothing_of_them(workspace: Path) -> None:
 
 def test_shellcheck_finds_nothing(workspace: Path) -> None:
     scripts = sorted(workspace.rglob("*.sh"))
-    assert judge("shellcheck", "-x", *scripts) == ("", 0)
+    check_by_shellcheck(*scripts)

@@ -16,7 +16,11 @@ import yaml
 from archgen.bringup.plan_shapes import StartPlan
 from archgen.bringup.start_plan import make_start_plan
 from archgen.pipeline import check_project
-from tests.plugins.start_scripts.start_up.started_workspaces import judge, make_workspace
+from tests.plugins.start_scripts.start_up.started_workspaces import (
+    check_by_shellcheck,
+    check_by_systemd,
+    make_workspace,
+)
 from tests.property_sizes import mark_further_samples
 from tests.running import RAMCIP, ROOT
 
@@ -202,10 +206,10 @@ def test_shellcheck_finds_nothing(generated: Generated) -> None:
     # With what they read; one computer's script is like the other.
     host_scripts = [generated.workspace / "start" / "hosts" / f"{generated.hosts[0]}.sh"]
     scripts = [*host_scripts, *generated.workspace.glob("*.sh"), *(generated.workspace / "start" / "lib").glob("*.sh")]
-    assert judge("shellcheck", "-x", *scripts) == ("", 0)
+    check_by_shellcheck(*scripts)
 
 
 def test_systemd_finds_nothing(generated: Generated) -> None:
     for host in generated.hosts:
         units = sorted((generated.workspace / "start" / "systemd" / host).iterdir())
-        assert judge("systemd-analyze", "verify", "--man=no", *units) == ("", 0)
+        check_by_systemd(*units)

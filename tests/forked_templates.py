@@ -1,0 +1,126 @@
+"""Processes of templates that are forked from one that has imported all they need: to start a Python costs more than to render.
+
+Each render has a process of its own, confined as users have it, and runs the same code. Tests of how such a process is started
+take it as it is: `pytest.mark.usefixtures("fresh_workers")`.
+"""
+
+from __future__ import annotations
+
+import os
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from types import SimpleNamespace
+
+import pytest
+
+from archgen.emit import text
+
+# Answers each request (three descriptors: the child's input, output and errors) with the child's number, and with its status
+# when it ended.
+_FORKING_CODE = """
+import os, socket, sys
+sys.path.insert(0, sys.argv[1])
+from archgen.emit.text.template_worker import main
+channel = socket.socket(fileno=int(sys.argv[2]))
+while True:
+    request, descriptors, _, _ = socket.recv_fds(channel, 1, 3)
+    if not request:
+        break
+    child = os.fork()
+    if not child:
+        channel.close()
+        for number, descriptor in enumerate(descriptors):
+            os.dup2(descriptor, number)
+        main()
+    for descriptor in descriptors:
+        os.close(descriptor)
+    channel.sendall(child.to_bytes(8, "little"))
+    status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+    channel.sendall(status.to_bytes(8, "little", signed=True))
+"""
+
+
+class _ForkingProcess:
+    """A Python that forks itself for each request, one after the other."""
+
+    def __init__(self, package_root: str, environment: Mapping[str, str]) -> None:
+        self._channel, others_end = socket.socketpair()
+        words = ("-I", "-B", "-c", _FORKING_CODE, package_root, str(others_end.fileno()))
+        self._process = subprocess.Popen(  # noqa: S603 - our own interpreter and code
+            [sys.executable, *words], env=environment, pass_fds=[others_end.fileno()], stdin=subprocess.DEVNULL
+        )
+        others_end.close()
+        self._lock = threading.Lock()
+
+    def run(self, command: Sequence[str], request: bytes, seconds: float) -> subprocess.CompletedProcess[bytes]:
+        """Render in a child, and return what `subprocess.run` would; end it after some seconds."""
+        with self._lock, tempfile.TemporaryFile() as given, ThreadPoolExecutor(2) as readers:
+            given.write(request)
+            given.seek(0)
+            output, errors = os.pipe(), os.pipe()
+            socket.send_fds(self._channel, [b"r"], [given.fileno(), output[1], errors[1]])
+            os.close(output[1])
+            os.close(errors[1])
+            child = int.from_bytes(self._channel.recv(8), "little")
+            reading = [readers.submit(_read_all, end[0]) for end in (output, errors)]
+            self._channel.settimeout(seconds)
+            try:
+                status = int.from_bytes(self._channel.recv(8), "little", signed=True)
+            except TimeoutError:
+                os.kill(child, 9)
+                self._channel.settimeout(None)
+                self._channel.recv(8)
+                raise subprocess.TimeoutExpired(command, seconds) from None
+            self._channel.settimeout(None)
+            said, complained = (each.result() for each in reading)
+            return subprocess.CompletedProcess(command, status, said, complained)
+
+    def end(self) -> None:
+        """End the process."""
+        self._channel.close()
+        self._process.wait()
+
+
+def _read_all(descriptor: int) -> bytes:
+    with os.fdopen(descriptor, "rb") as stream:
+        return stream.read()
+
+
+_RUNNING: dict[tuple[tuple[str, str], ...], _ForkingProcess] = {}
+"""By its environment."""
+
+
+def _run_forked(
+    command: Sequence[str],
+    *,
+    input: bytes,  # noqa: A002 - as `subprocess.run` calls it
+    env: Mapping[str, str],
+    timeout: float,
+    **others: bool,
+) -> subprocess.CompletedProcess[bytes]:
+    assert others == {"capture_output": True, "check": False}
+    key = tuple(sorted(env.items()))
+    if key not in _RUNNING:
+        _RUNNING[key] = _ForkingProcess(command[-1], env)
+    return _RUNNING[key].run(command, input, timeout)
+
+
+FORKING = SimpleNamespace(run=_run_forked, TimeoutExpired=subprocess.TimeoutExpired)
+"""Stands for `subprocess` where templates are rendered."""
+
+
+def fork_templates(config: pytest.Config) -> None:
+    """Fork the processes of templates until the end of the run."""
+    vars(text)["subprocess"] = FORKING
+    config.add_cleanup(_end_processes)
+
+
+def _end_processes() -> None:
+    for process in _RUNNING.values():
+        process.end()
+    _RUNNING.clear()

@@ -1,0 +1,116 @@
+"""`make test` needs no program from outside, and says which tests it leaves to `make test-all`."""
+
+from __future__ import annotations
+
+import functools
+import re
+import shutil
+import subprocess
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import pytest
+
+from tests.outside_tools import (
+    LATER_MARKS,
+    TOOL_MARKS,
+    describe_left_out,
+    find_judge,
+    find_system_python,
+    find_tool,
+    list_tool_marks,
+    run_judge,
+)
+from tests.plugins.ros_code.cpp_compiler import compile_package
+from tests.running import ROOT
+
+_ASK_COMPILER = functools.partial(find_tool, "javac")
+_ASK_JUDGE = functools.partial(find_judge, "nothing/there")
+"""In a form that marks no test that calls them."""
+
+
+def _ask_browser() -> None:
+    find_tool("chromium", "firefox")
+
+
+@contextmanager
+def _ask_in_a_context() -> Iterator[None]:
+    _ask_browser()
+    yield
+
+
+class _Asking:
+    def ask_judge(self) -> None:
+        find_judge("axe-core/axe.min.js")
+
+
+def _ask_all() -> None:
+    def ask_office() -> str:
+        return find_tool("soffice")
+
+    _Asking().ask_judge()
+    ask_office()
+    with _ask_in_a_context():
+        find_system_python()
+
+
+@pytest.mark.parametrize(
+    ("function", "marks"),
+    [
+        (_ask_browser, {"browser"}),
+        (_ask_in_a_context, {"browser"}),
+        (_ask_all, {"browser", "judges", "office", "ros"}),
+        (compile_package, {"compilers"}),
+        (describe_left_out, set()),
+        (run_judge, set()),
+    ],
+)
+def test_the_programs_that_a_test_asks_are_found_in_its_code(function: Callable[..., object], marks: set[str]) -> None:
+    assert list_tool_marks([function]) == marks
+
+
+def test_who_asks_for_nothing_sees_no_program_from_outside() -> None:
+    assert shutil.which("git")
+    for name in ("g++", "javac", "chromium", "soffice", "node", "shellcheck", "pkill"):
+        assert shutil.which(name) is None
+        assert subprocess.run(["sh", "-c", f"command -v {name}"], check=False).returncode == 127  # noqa: S603, S607 - asks only
+    # Nor by its full path, whether it is installed or not.
+    for path in ("/usr/bin/g++", "/usr/bin/python3", f"{ROOT}/tests/judges/node_modules/.bin/ooxml-validator"):
+        with pytest.raises(pytest.fail.Exception, match="is from outside: ask for it by `find_tool`"):
+            subprocess.run([path, "--version"], check=False)  # noqa: S603 - it is not run
+
+
+def test_a_judge_that_fails_has_its_own_words_in_the_message() -> None:
+    command = ("sh", "-c", "echo line 3 is wrong; echo a note >&2; exit 3")
+    with pytest.raises(AssertionError, match="ended with 3:\nline 3 is wrong\na note"):
+        run_judge(*command)
+    done = run_judge(*command, statuses=(0, 3))
+    assert (done.returncode, done.stdout, done.stderr) == (3, "line 3 is wrong\n", "a note\n")
+
+
+def test_a_program_that_is_missing_is_a_failure(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(shutil, "which", lambda _name: None)
+    with pytest.raises(
+        AssertionError, match="this test needs Debian's default-jdk-headless: `make test-all` installs it"
+    ):
+        _ASK_COMPILER()
+    with pytest.raises(AssertionError, match="this test needs nothing/there in tests/judges/node_modules"):
+        _ASK_JUDGE()
+
+
+def test_each_mark_is_left_out_by_make_test_and_tried_by_make_test_all() -> None:
+    settings, makefile = ((ROOT / name).read_text(encoding="utf-8") for name in ("pyproject.toml", "Makefile"))
+    assert set(TOOL_MARKS) < set(LATER_MARKS)
+    (left_out,) = re.findall(r"-m '(.*)'", settings)
+    assert set(left_out.split(" and ")) == {f"not {mark}" for mark in LATER_MARKS}
+    (tried,) = re.findall(r'-m "(slow .*?)"', makefile)
+    assert set(tried.split(" or ")) == set(LATER_MARKS)
+
+
+def test_the_end_says_what_was_left_out() -> None:
+    (line,) = describe_left_out({"all": 12, "browser": 3, "ros": 1, "slow": 9})
+    assert line == (
+        "12 tests are left to `make test-all`, which installs what they need: "
+        "3 want a browser, 1 ROS, 9 take long or try further samples."
+    )
+    assert list(describe_left_out({})) == []
