@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from importlib import import_module
+from typing import Any
+
 import pytest
 
-from benchmarks.refinements import REFINEMENTS, Refinement, find_function, without
+_BENCHMARK = import_module("benchmarks.refinements")
 
 
-@pytest.mark.parametrize("refinement", REFINEMENTS, ids=lambda each: each.title)
-def test_a_refinement_is_switched_off_for_a_while(refinement: Refinement) -> None:
-    code = find_function(refinement.place).__code__
-    with without(refinement):
-        assert find_function(refinement.place).__code__ != code
-    assert find_function(refinement.place).__code__ is code
+@pytest.mark.parametrize("refinement", _BENCHMARK.REFINEMENTS, ids=lambda each: each.title)
+def test_a_refinement_is_switched_off_for_a_while(refinement: Any) -> None:  # noqa: ANN401 - benchmarks are no package
+    code = _BENCHMARK.find_function(refinement.place).__code__
+    with _BENCHMARK.without(refinement):
+        assert _BENCHMARK.find_function(refinement.place).__code__ != code
+    assert _BENCHMARK.find_function(refinement.place).__code__ is code

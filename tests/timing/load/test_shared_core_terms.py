@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from archgen.timing.chains.figure_explanations import explain_word
+from archgen.timing.load.response_terms import ResponseTerms
+from archgen.timing.run_analysis import analyse_system
+from tests.timing.random_uses import random_use_system
 from tests.timing.sketches import analyse_sketch
 
 _REST = "hosts: {pc: {cores: 2}, far: {cores: 1}}\nlinks: {lan: {connects: [pc, far], latency: 1 ms}}"
@@ -47,3 +50,11 @@ def test_what_works_only_at_the_start_says_so() -> None:
         "B = (1 ms b + 1 ms c) / 2 = 1 ms, what each of 2 other threads has to do, but none for longer than B: b (6 ms)",
         "9 ms + 1 ms = 10 ms, A + B",
     ]
+
+
+def test_how_long_something_waits_to_be_stored_is_left_open_on_cores_of_which_something_is_unknown() -> None:
+    """`a1` has a bound of its wait; the solver of the cores that it shares finds nothing."""
+    analysis = analyse_system(random_use_system(56))
+    assert analysis.state is not None
+    assert analysis.storing_waits["a1"].value
+    assert ResponseTerms(analysis.state).find_storing_wait("a1") is None
