@@ -61,8 +61,9 @@ def _read_robot() -> dict[str, Any]:
 
 def _list_places(part: str, value: object, path: Place) -> Iterator[tuple[Key, Place]]:
     """Yield each key of each element with its place; the components that a composed one holds are elements themselves."""
-    for key, inner in value.items() if isinstance(value, dict) else ():
-        if part in KEY_FACTS.keys() & ELEMENT_KINDS.keys() and not (part == "component" and "components" in value):
+    entries: Mapping[str, object] = value if isinstance(value, dict) else {}
+    for key, inner in entries.items():
+        if part in KEY_FACTS.keys() & ELEMENT_KINDS.keys() and not (part == "component" and "components" in entries):
             yield (part, key), (*path, key)
         yield from _list_places(find_inner_part(part, key), inner, (*path, key))
 
