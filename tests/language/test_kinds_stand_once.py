@@ -48,7 +48,9 @@ def test_every_list_of_kinds_has_a_reason_and_every_reason_a_list() -> None:
     files = (file for file in package.rglob("*.py") if file.parent != package / "language")
     listing = {file.relative_to(package).as_posix() for file in files if any(_list_literals(file))}
     assert sorted(listing - REASONS.keys()) == [], "ask archgen.language, or say why not"
-    assert sorted(REASONS.keys() - listing) == [], "no list of kinds stands there any more"
+    # Where all plug-ins are taken out, reasons for theirs are none.
+    kept = {file for file in REASONS if not file.startswith("plugins/") or (package / "plugins").is_dir()}
+    assert sorted(kept - listing) == [], "no list of kinds stands there any more"
 
 
 def test_the_schema_of_backends_knows_every_kind_with_hints() -> None:
