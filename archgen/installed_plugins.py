@@ -205,7 +205,7 @@ def _leave_out_current_folder() -> Iterator[None]:
 
     `python -m archgen` puts it first: there, a file of the project would be imported in place of the plug-in's.
     """
-    current = os.getcwd()  # noqa: PTH109 - pathlib takes longer to load than all this takes
+    current = _find_current_folder()
     named = _list_path_file_folders()
     kept = sys.path[:]
     if not sys.flags.safe_path:
@@ -216,9 +216,17 @@ def _leave_out_current_folder() -> Iterator[None]:
         sys.path[:] = kept
 
 
+def _find_current_folder() -> str:
+    try:
+        return os.getcwd()  # noqa: PTH109 - pathlib takes longer to load than all this takes
+    except FileNotFoundError:
+        # Somebody took it away: then nothing is in it.
+        return os.sep
+
+
 @cache
 def _scan_folders() -> tuple[PluginEntry, ...]:
-    current = os.path.realpath(os.getcwd())  # noqa: PTH109
+    current = os.path.realpath(_find_current_folder())
     found: dict[tuple[str, str, str], PluginEntry] = {}
     for folder in (*list_package_folders(), *_list_path_file_folders()):
         if os.path.realpath(folder) == current:
@@ -282,6 +290,7 @@ def _list_path_file_folders() -> tuple[str, ...]:
 def _list_editable_folder(entry: PluginEntry) -> tuple[str, ...]:
     """Return where a package lies that is installed to be edited, as its installer wrote down: some add no `.pth` line."""
     import json
+    from urllib.parse import unquote, urlsplit
 
     stem = f"{entry.package.replace('-', '_')}-{entry.version}.dist-info"
     try:
@@ -290,4 +299,4 @@ def _list_editable_folder(entry: PluginEntry) -> tuple[str, ...]:
     except (OSError, ValueError):
         return ()
     is_editable = record.get("dir_info", {}).get("editable", False)
-    return (record["url"].removeprefix("file://"),) if is_editable else ()
+    return (unquote(urlsplit(record["url"]).path),) if is_editable else ()

@@ -46,7 +46,10 @@ def test_the_rule_judges_and_is_explained(python: Path, tmp_path: Path) -> None:
     assert "warning[unowned-component]: `g.arm` has no owner" in done.stdout
     assert "unowned-component" not in run_here(python, tmp_path, "-m", "archgen", "--no-plugins", "check").stdout
     done = run_here(python, tmp_path, "-m", "archgen", "explain", "unowned-component")
-    assert done.stdout == "unowned-component (warning)\n\nA component has no owner.\n\nNobody answers for it.\n"
+    assert (
+        done.stdout
+        == "unowned-component (warning, of archgen-toy 1.0)\n\nA component has no owner.\n\nNobody answers for it.\n"
+    )
 
 
 def test_the_version_names_the_package(python: Path, tmp_path: Path) -> None:

@@ -110,6 +110,8 @@ class Rule:
     options: tuple[RuleOption, ...] = ()
     setting: str = ""
     """The line of archgen.yaml that sets the severity, where no comment can, or where it is no entry below `rules`."""
+    origin: str = ""
+    """The package that brings it, with its version, where it does not ship."""
 
     @classmethod
     def from_function(

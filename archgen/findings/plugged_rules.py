@@ -9,7 +9,7 @@ from archgen.analyses import bound_findings
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.diagnostics.rule_options import OptionValues, RuleOption, read_option_values
 from archgen.findings.rule_table import FAILED_RULE
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.installed_plugins import RULES, PluginEntry, PluginRefusedError, list_entries, load_facts
 
 if TYPE_CHECKING:
@@ -21,11 +21,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class PluggedRule:
-    """A rule of a package, the function behind it, and who brings it."""
+    """A rule of a package, and the function behind it."""
 
     rule: Rule
     find: Callable[..., Iterable[Any]]
-    origin: str
 
 
 @cache
@@ -50,7 +49,7 @@ def _load_rules(entry: PluginEntry) -> Iterator[PluggedRule]:
             _refuse(entry, f"`{function.__name__}` has no docstring, which is the page of a rule")
         if not all(isinstance(option, RuleOption) for option in options):
             _refuse(entry, f"the options of `{function.__name__}` are not all of the type RuleOption")
-        yield PluggedRule(Rule.from_function(function, severity, options), function, entry.origin)
+        yield PluggedRule(replace(Rule.from_function(function, severity, options), origin=entry.origin), function)
 
 
 def _refuse(entry: PluginEntry, problem: str) -> None:
@@ -63,9 +62,9 @@ def refuse_taken_names(plugged_rules: Iterable[PluggedRule], taken: Iterable[str
     origins = dict.fromkeys(taken, "archgen")
     for plugged in plugged_rules:
         if plugged.rule.name in origins:
-            msg = f"the rule `{plugged.rule.name}` of {plugged.origin} cannot be used: {origins[plugged.rule.name]} has one of this name"
+            msg = f"the rule `{plugged.rule.name}` of {plugged.rule.origin} cannot be used: {origins[plugged.rule.name]} has one of this name"
             raise PluginRefusedError(msg)
-        origins[plugged.rule.name] = plugged.origin
+        origins[plugged.rule.name] = plugged.rule.origin
 
 
 def judge_plugged(architecture: Architecture, rule_options: Mapping[str, OptionValues]) -> Iterator[Diagnostic]:
@@ -90,8 +89,8 @@ def _judge_by(
 
 
 def _report_failure(architecture: Architecture, plugged: PluggedRule, problem: str) -> Diagnostic:
-    message = f"the rule `{plugged.rule.name}` of {plugged.origin} failed: {problem}"
+    message = f"the rule `{plugged.rule.name}` of {plugged.rule.origin} failed: {problem}"
     help_line = (
-        f"tell who wrote {plugged.origin.partition(' ')[0]}; `archgen --no-plugins check` does without its rules"
+        f"tell who wrote {plugged.rule.origin.partition(' ')[0]}; `archgen --no-plugins check` does without its rules"
     )
     return Diagnostic(FAILED_RULE.name, message, architecture.project.at, help=help_line)

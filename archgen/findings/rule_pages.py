@@ -106,7 +106,8 @@ def _describe_options(rule: Rule) -> Iterable[str]:
 
 
 def _describe_severity(rule: Rule) -> str:
-    return f"{rule.severity}, cannot be changed" if rule.fixed else str(rule.severity)
+    severity = f"{rule.severity}, cannot be changed" if rule.fixed else str(rule.severity)
+    return f"{severity}, of {rule.origin}" if rule.origin else severity
 
 
 def _dedent_example(text: str) -> str:

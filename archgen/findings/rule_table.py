@@ -67,7 +67,7 @@ A rule of an installed package failed, or found something that is no finding of 
 
 Why: What the rule would have found is not known, and a check that was not made must not pass for one that found nothing. The
 message names the package and what went wrong: who wrote it can mend it. `archgen --no-plugins check` leaves out the rules of all
-packages that do not ship with archgen; [Plug-ins](../plugins.md) says how rules of others come in.
+packages that do not ship with archgen.
 """,
 )
 """No project breaks it by itself: only a package can, whose rules archgen.findings.plugged_rules runs."""

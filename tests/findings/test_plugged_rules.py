@@ -9,6 +9,7 @@ import pytest
 from archgen import analyses, pipeline
 from archgen.cache.program_stamp import stamp_program
 from archgen.findings import rule_pages
+from archgen.findings.plugged_rules import load_plugged_rules
 from archgen.installed_plugins import PluginRefusedError, switch_off_others
 from archgen.resources import SWITCH_VARIABLE
 from tests.installed_packages import installed_in, write_package
@@ -59,7 +60,9 @@ def test_a_rule_of_a_package_is_known_in_settings_comments_and_options(tmp_path:
         assert judge(settings="rules: {short-name: {severity: note, most: 10 %}}\n") == []
         assert judge(comment=" # archgen: ignore[short-name] because it is") == []
         rule = pipeline.index_all_rules()["short-name"]
-        assert rule_pages.format_rule_page(rule).startswith("short-name (warning)\n\nA component has a short name.")
+        assert rule_pages.format_rule_page(rule).startswith(
+            "short-name (warning, of archgen-names 1.0)\n\nA component has a short name."
+        )
 
 
 def test_plug_ins_of_others_are_switched_off(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -67,7 +70,10 @@ def test_plug_ins_of_others_are_switched_off(tmp_path: Path, monkeypatch: pytest
     # Set here, so that it is taken back.
     monkeypatch.setenv(SWITCH_VARIABLE, "")
     with installed_in(tmp_path):
+        assert [plugged.rule.name for plugged in load_plugged_rules()] == ["short-name"]
+        load_plugged_rules.cache_clear()
         switch_off_others()
+        assert load_plugged_rules() == ()
         assert judge() == []
 
 

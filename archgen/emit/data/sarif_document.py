@@ -90,7 +90,8 @@ def _rule_to_sarif(rule: Rule) -> dict[str, Any]:
         "name": "".join(word.capitalize() for word in rule.name.split("-")),
         "shortDescription": {"text": page.summary},
         "fullDescription": {"text": " ".join(page.why.split()) or page.summary},
-        "helpUri": f"{HOME_URL}/blob/main/docs/rules/{rule.name}.md",
+        # A rule of a package has no page but its own text.
+        **({} if rule.origin else {"helpUri": f"{HOME_URL}/blob/main/docs/rules/{rule.name}.md"}),
         "help": {"text": rule_pages.format_rule_page(rule), "markdown": rule_pages.rule_page_to_markdown(rule)},
         "defaultConfiguration": {"level": _severity_to_level(rule.severity)},
         "properties": {

@@ -84,6 +84,13 @@ def test_rules_carry_their_whole_pages() -> None:
     }
 
 
+def test_a_rule_of_a_package_has_no_page_of_ours() -> None:
+    rules = {"unread-output": replace(index_all_rules()["unread-output"], origin="toys 1.0")}
+    (rule,) = json.loads(sarif_document.format_sarif([_FINDING], rules, _SCAN))["runs"][0]["tool"]["driver"]["rules"]
+    assert "helpUri" not in rule
+    assert rule["help"]["text"].startswith("unread-output (warning, of toys 1.0)\n")
+
+
 def format_all_rules() -> str:
     """Return a document with a finding of each rule."""
     findings = [replace(_FINDING, rule=rule.name, severity=Severity.NOTE) for rule in SHIPPED_RULES]

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from archgen.plugins.recordings.recorded_names import CallbackPlace, UnmappedError
+from tests.measured_project import PROJECT
 from tests.plugins.recordings import recorded
 from tests.plugins.recordings.recorded import make_names
 
@@ -24,7 +25,7 @@ def test_subscriptions_fire_or_store(tmp_path: Path) -> None:
 
 
 def test_two_nodes_of_one_name_are_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    project = recorded.PROJECT.replace("  drive: {implements: base}", "  drive: {implements: base, name: plan}")
+    project = PROJECT.replace("  drive: {implements: base}", "  drive: {implements: base, name: plan}")
     monkeypatch.setattr(recorded, "PROJECT", project)
     with pytest.raises(UnmappedError, match="several nodes of the design have this name"):
         make_names(tmp_path).find_node("/plan")
@@ -33,7 +34,7 @@ def test_two_nodes_of_one_name_are_none(tmp_path: Path, monkeypatch: pytest.Monk
 def test_one_topic_that_two_activities_of_a_node_read_is_not_guessed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    project = recorded.PROJECT.replace("checker: {outputs", "checker: {inputs: {scan: scanner.scan}, outputs")
+    project = PROJECT.replace("checker: {outputs", "checker: {inputs: {scan: scanner.scan}, outputs")
     monkeypatch.setattr(recorded, "PROJECT", project)
     with pytest.raises(UnmappedError, match=r"several activities of this node use it: maps.mapper, maps.checker"):
         make_names(tmp_path).find_subscription("/maps", "/scan")

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from archgen.plugins.recordings import trace_losses, trace_reading, trace_registry
+from tests.measured_project import PROJECT
 from tests.plugins.recordings import recorded
 from tests.plugins.recordings.recorded import (
     begin,
@@ -46,7 +47,7 @@ def test_an_input_that_fires_is_an_activation_and_one_that_does_not_is_stored(tm
 def test_of_an_activity_that_drops_messages_only_the_longest_run_counts(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(recorded, "PROJECT", recorded.PROJECT.replace("trigger: [scan]", "trigger: [scan], every: 3"))
+    monkeypatch.setattr(recorded, "PROJECT", PROJECT.replace("trigger: [scan]", "trigger: [scan], every: 3"))
     runs = run("2", "0x2", 10, 15) + run("2", "0x2", 60, 67)
     assert list_figures(read(tmp_path, PLANNER + runs)) == ["plan: wcet 7 ms"]
 
