@@ -41,7 +41,7 @@ def repository(
     folder.mkdir(parents=True, exist_ok=True)
     if options:
         git(folder, "init", "-q", "-b", "main", *options)
-    else:
+    elif not (folder / ".git").exists():  # git itself leaves one that is there as it is
         shutil.copytree(_make_empty_repository(), folder / ".git")
     if files is not None:
         commit(folder, files, day)

@@ -20,7 +20,10 @@ def _may_be_float(call: ast.Call) -> bool:
     if isinstance(element, COUNTS):
         return False
     text = ast.unparse(element)
-    return not any(word in text for word in ("len", "count", "Fraction", "_segments_cross", "flows_within.values()"))
+    return not any(
+        word in text
+        for word in ("len", "count", "Fraction", "is_file()", "endswith", "_segments_cross", "flows_within.values()")
+    )
 
 
 def _list_float_sums(file: Path) -> Iterator[str]:

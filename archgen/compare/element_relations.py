@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 from archgen.model.architecture import Architecture
-from archgen.model.component import Component, Input, Output
+from archgen.model.component import list_component_ports
 
 
 def project_messages(architecture: Architecture) -> list[str]:
@@ -86,7 +86,7 @@ class ElementRelations:
         """
         user_ids: dict[str, list[str]] = defaultdict(list)
         for component in self.architecture.components.values():
-            for port in ports_of(component):
+            for port in list_component_ports(component):
                 if port.type:
                     user_ids[f"type:{port.type}"].append(port.id)
                 if port.frame:
@@ -111,9 +111,3 @@ class ElementRelations:
             if component.owner:
                 element_ids[component.owner].append(component.id)
         return element_ids
-
-
-def ports_of(component: Component) -> Iterator[Input | Output]:
-    """Yield all ports of a component, inputs first."""
-    yield from component.inputs.values()
-    yield from component.outputs.values()

@@ -11,13 +11,13 @@ from typing import Any
 
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.element_likeness import CERTAIN, Feature, FeatureMap, find_likely_pairs
-from archgen.compare.element_relations import ElementRelations, ports_of
+from archgen.compare.element_relations import ElementRelations
 from archgen.compare.kinds import ELEMENT_KINDS, MATCHING_ORDER
 from archgen.compare.kinds.kind_spec import KindSpec
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.reassigned_ids import REASSIGNABLE_KINDS, find_reassigned_ids
 from archgen.model.architecture import Architecture
-from archgen.model.component import Component
+from archgen.model.component import Component, list_component_ports
 
 
 def match_elements(before: Architecture, after: Architecture) -> MatchedIds:
@@ -161,7 +161,7 @@ def _list_alike(component: Component, shell: Component, leaves: Mapping[str, Com
 
 
 def _list_port_types(component: Component) -> set[tuple[str, str, str | None]]:
-    return {(type(port).__name__, port.name, port.type) for port in ports_of(component)}
+    return {(type(port).__name__, port.name, port.type) for port in list_component_ports(component)}
 
 
 def _declared_elements(kind: KindSpec, relations: ElementRelations) -> Mapping[str, Any]:

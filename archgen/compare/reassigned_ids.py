@@ -10,8 +10,8 @@ from collections import defaultdict
 from collections.abc import Hashable, Iterator, Mapping
 from typing import Any
 
-from archgen.compare.element_relations import ElementRelations, ports_of
-from archgen.model.component import Component
+from archgen.compare.element_relations import ElementRelations
+from archgen.model.component import Component, list_component_ports
 from archgen.model.path_resolver import title_from_id
 
 REASSIGNABLE_KINDS = frozenset({"component", "requirement", "use_case"})
@@ -70,7 +70,7 @@ def _ids_by_fingerprint(
 
 def _read_wiring(component: Component, relations: ElementRelations) -> Hashable:
     """Return the ports of a component and, by their names, who reads them: who only takes over texts is not the same."""
-    ports = frozenset((type(port).__name__, port.name, port.type) for port in ports_of(component))
+    ports = frozenset((type(port).__name__, port.name, port.type) for port in list_component_ports(component))
     readers = frozenset(
         (port.name, reader) for port in component.outputs.values() for reader in relations.readers_by_output[port.id]
     )

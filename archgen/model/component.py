@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import field
 from typing import Literal
 
@@ -260,3 +260,9 @@ class ComponentType:
     def base_name(self) -> str:
         """The name of what it is made from alone, without what generic names stand for; empty where that is nothing."""
         return (self.base or "").partition("<")[0].strip()
+
+
+def list_component_ports(component: Component) -> Iterator[Input | Output]:
+    """Yield all ports of a component, inputs first."""
+    yield from component.inputs.values()
+    yield from component.outputs.values()

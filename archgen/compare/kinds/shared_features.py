@@ -7,9 +7,9 @@ from operator import attrgetter
 from typing import Any
 
 from archgen.compare.element_likeness import letter_pairs, word_set
-from archgen.compare.element_relations import ElementRelations, ports_of
+from archgen.compare.element_relations import ElementRelations
 from archgen.compare.kinds.kind_spec import FeatureSpec
-from archgen.model.component import Component
+from archgen.model.component import Component, list_component_ports
 from archgen.model.path_resolver import title_from_id
 
 
@@ -82,7 +82,7 @@ def mark_ports(_relations: ElementRelations, component: Component) -> frozenset[
     # The direction is part of the mark, so that an input and an output of one name are not alike.
     ports = [f"> {port.name}" for port in component.inputs.values()]
     ports += [f"{port.name} >" for port in component.outputs.values()]
-    return mark_values(*ports, *(port.type for port in ports_of(component)))
+    return mark_values(*ports, *(port.type for port in list_component_ports(component)))
 
 
 def mark_neighbours(relations: ElementRelations, component: Component) -> frozenset[str]:

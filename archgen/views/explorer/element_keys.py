@@ -9,9 +9,8 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 
-from archgen.compare.element_relations import ports_of
 from archgen.model.architecture import Architecture
-from archgen.model.component import Component
+from archgen.model.component import Component, list_component_ports
 from archgen.model.declared_timing import Timing
 from archgen.model.deprecation_lookup import list_deprecated_kinds
 from archgen.model.node import Node
@@ -44,7 +43,7 @@ def list_component_keys(lookup: Lookup) -> Mapping[str, tuple[Key, ...]]:
                     *(("tag", tag) for tag in _list_tags(architecture, component)),
                     *(("owner", owner) for owner in component.owners),
                     *(("type", name) for name in types[component.id]),
-                    *(("medium", word) for port in ports_of(component) for word in list_medium_words(port)),
+                    *(("medium", word) for port in list_component_ports(component) for word in list_medium_words(port)),
                     *((("role", component.role),) if component.role else ()),
                     *((("status", status),) if (status := find_component_status(architecture, component)) else ()),
                     *(("requirement", name) for name in _list_requirements(architecture, component)),
