@@ -234,8 +234,6 @@ def test_the_graph_is_what_the_model_says(ros_python: Path, tmp_path: Path) -> N
                 )
                 expected[node["full_name"]] = list_expected(program, node["id"])
         judge = [str(ros_python), str(ROOT / "tests" / "plugins" / "ros_code" / "graph_judge.py"), *expected]
-        done = subprocess.run(judge, env=environment, capture_output=True, text=True, check=False)  # noqa: S603
-        judge = [str(ros_python), str(ROOT / "tests" / "generators" / "graph_judge.py"), *expected]
         done = run_judge(*judge, env=environment)
         observed = json.loads(done.stdout.splitlines()[-1])
     finally:
