@@ -12,7 +12,7 @@ import os
 import site
 import sys
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cache
 from typing import Any
 
@@ -238,11 +238,7 @@ def _scan_folders() -> tuple[PluginEntry, ...]:
 
 
 def _scan_folder(folder: str) -> Iterator[PluginEntry]:
-    try:
-        names = os.listdir(folder)  # noqa: PTH208 - names are enough
-    except OSError:
-        return
-    for name in names:
+    for name in _list_names(folder):
         if name.endswith(".dist-info"):
             try:
                 # Unbuffered: there are as many of these files as there are packages.
@@ -279,12 +275,23 @@ def _list_path_file_folders() -> tuple[str, ...]:
     """Return the folders that `.pth` files add to these: packages that are installed to be edited lie there."""
     found: dict[str, None] = {}
     for folder in list_package_folders():
-        for name in sorted(os.listdir(folder)):  # noqa: PTH208 - names are enough
+        for name in _list_names(folder):
             if name.endswith(".pth"):
-                with open(os.path.join(folder, name), encoding="utf-8", errors="replace") as stream:  # noqa: PTH118, PTH123
+                with (
+                    suppress(OSError),  # one that cannot be read adds nothing to Python's search either
+                    open(os.path.join(folder, name), encoding="utf-8", errors="replace") as stream,  # noqa: PTH118, PTH123
+                ):
                     lines = [line.strip() for line in stream if not line.startswith(("#", "import ", "import\t"))]
-                found |= dict.fromkeys(os.path.join(folder, line) for line in lines if line)  # noqa: PTH118
+                    found |= dict.fromkeys(os.path.join(folder, line) for line in lines if line)  # noqa: PTH118
     return tuple(path for path in sys.path if path in found)
+
+
+def _list_names(folder: str) -> list[str]:
+    """Return the names in a folder in order; none of one that cannot be read."""
+    try:
+        return sorted(os.listdir(folder))  # noqa: PTH208 - names are enough
+    except OSError:
+        return []
 
 
 def _list_editable_folder(entry: PluginEntry) -> tuple[str, ...]:

@@ -119,8 +119,12 @@ def test_a_package_that_is_installed_to_be_edited_is_found_where_it_lies(
         load_facts(list_entries(IMPORTERS)[0])
     record.unlink()
     (site / "toy.pth").write_text(f"# where it lies\nimport os\n{source}\n", encoding="utf-8")
+    # What cannot be read is as if it were not there.
+    (site / "folder.pth").mkdir()
     with installed_in(site):
         assert load_facts(list_entries(IMPORTERS)[0])["summary"] == "a toy"
+    with installed_in(tmp_path / "gone"):
+        assert list_entries(IMPORTERS) == ()
 
 
 def test_entry_points_are_read_as_installers_write_them(tmp_path: Path) -> None:
