@@ -19,6 +19,10 @@ NodeStatus = Literal["existing", "adapted", "planned"]
 UseKind = Literal["publishes", "subscribes", "serves", "calls"]
 FlowKind = Literal["topic", "service", "action"]
 CodeLanguage = Literal["python", "cpp"]
+EvidenceKind = Literal["written", "library", "observed", "generated", "default", "unknown"]
+Clock = Literal["system", "simulated"]
+RunState = Literal["active", "inactive", "off", "planned"]
+OverrideEffect = Literal["obeyed", "ignored", "unknown"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,6 +156,15 @@ class Node:
 
 
 @dataclass(frozen=True, slots=True)
+class Evidence:
+    """Why a field of an endpoint is what it is: who says so, by which rule (`/safety:=/safety_raw`), and where."""
+
+    kind: EvidenceKind
+    rule: str = ""
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class Endpoint:
     """The use of one topic, service or action by one node, written or derived.
 
@@ -178,6 +191,18 @@ class Endpoint:
     sources: tuple[str, ...] = ()
     medium: str = "ros"
     """What it travels over; of anything but `ros` the name is free text behind the medium's word."""
+    program_name: str | None = None
+    """What the program says, made absolute, before remaps; None where that is unknown."""
+    qos_override: OverrideEffect | None = None
+    """What parameters named `qos_overrides` do to its `qos`; None where there are none for it."""
+    domain: int | None = None
+    """Its `ROS_DOMAIN_ID`, where something sets one; None is the usual one, the same for all."""
+    clock: Clock | None = "system"
+    """The clock of its node; None where that is unknown."""
+    runs: RunState | None = "active"
+    """Whether its node runs it once the robot is up; None where that is unknown."""
+    evidence: Mapping[str, Evidence] = field(default_factory=dict)
+    """By the names of the fields above: where each that is no default comes from. `qos.depth` names a policy."""
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     message_at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
