@@ -26,6 +26,8 @@ DOMAIN_VARIABLE = "ROS_DOMAIN_ID"
 CLOCK_PARAMETER = "use_sim_time"
 _MANAGER_PROGRAM = "lifecycle_manager"
 """What the package, the program or the class of a lifecycle manager has in its name."""
+ANY_NODE = "*"
+"""What stands for the name of a node where it is not known."""
 _LAUNCH_HINT = "launch"
 _NUMBER = re.compile(r"\s*([+-]?)(0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)")
 _MAX_DIGITS = 40
@@ -164,10 +166,10 @@ class RunningStates:
         if "lifecycle" not in node.kinds or self._is_ros_1:
             return "active", None
         start = node.start or NO_START
-        if start.wanted_state not in {None, "active"}:
+        if start.state is not None and start.state != "active":
             evidence["runs"] = Evidence("written", f"state: {start.state}", start.places.get("state", node.at))
             return "inactive", start.state
-        if start.wanted_state is None and self.managers.get(node.full_name) is not True:
+        if not start.wanted_state and self.managers.get(node.full_name) is not True:
             evidence["runs"] = Evidence("unknown", "nobody activates it", node.kind_at)
             return None, None
         return "active", None
@@ -176,9 +178,11 @@ class RunningStates:
     def managers(self) -> Mapping[str, bool]:
         """The full names of nodes that a lifecycle manager lists, each with whether it activates them by itself.
 
-        Of a manager whose list is unknown the name is "": it may manage any node.
+        A manager whose list is unknown may manage `ANY_NODE`.
         """
         managed: dict[str, bool] = {}
+        # What lists nothing itself is told, in launch files that archgen writes, who names it in `by`.
+        named = {node.start.by.id for node in self._architecture.nodes.values() if node.start and node.start.by}
         for node in self._architecture.nodes.values():
             if _MANAGER_PROGRAM not in f"{node.package} {node.executable} {node.plugin}":
                 continue
@@ -186,7 +190,8 @@ class RunningStates:
             names = parameters["node_names"].value if "node_names" in parameters else None
             autostart = parameters["autostart"].value if "autostart" in parameters else None
             if not isinstance(names, Sequence) or isinstance(names, str) or any(map(is_filled_in, names)):
-                managed[""] = False
+                if names is not None or named.isdisjoint((node.id, *node.implements)):
+                    managed[ANY_NODE] = False
                 continue
             for name in map(str, names):
                 full_name = name if name.startswith("/") else f"{node.namespace.rstrip('/')}/{name}"
