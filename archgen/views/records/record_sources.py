@@ -13,7 +13,7 @@ from archgen.model.component import Component, Group, Input, Output
 from archgen.model.declared_timing import Timing
 from archgen.model.deployment import Host
 from archgen.model.message_types import PART_KEYS
-from archgen.model.node import Node
+from archgen.model.node import Endpoint, Evidence, Node
 from archgen.model.parameter_values import EffectiveParameter, find_effective_parameters
 from archgen.model.port_media import ROS, is_physical, name_on_medium, word_of_medium
 from archgen.model.promise import Promise, describe_deprecation, format_range
@@ -54,6 +54,12 @@ def _list_port_types(ports: Mapping[str, str | None]) -> dict[str, str]:
 def _list_endpoints(node: Node, lookup: Lookup) -> list[object]:
     """Return what a node uses over ROS: who generates launch files from it knows nothing else."""
     return [each for each in lookup.endpoints_of.get(node.id, ()) if each.medium == ROS]
+
+
+def _list_evidence(endpoint: Endpoint, _lookup: Lookup) -> dict[str, Evidence]:
+    """Return where fields come from; that it is planned stands at its node."""
+    without = "runs" if endpoint.runs == "planned" else ""
+    return {name: each for name, each in endpoint.evidence.items() if each.kind != "unknown" and name != without}
 
 
 def _name_activities(node: Node, _lookup: Lookup) -> dict[str, Timing]:
@@ -192,7 +198,7 @@ _PARTS: Mapping[str, Mapping[str, Source]] = {
         "clock": lambda end, _: end.clock if end.clock != "system" else None,
         "runs": lambda end, _: end.runs if end.runs != "active" else None,
         "unknown": lambda end, _: [name for name, each in end.evidence.items() if each.kind == "unknown"],
-        "from": lambda end, _: {name: each for name, each in end.evidence.items() if each.kind != "unknown"},
+        "from": _list_evidence,
     },
     "evidence": {
         "by": lambda evidence, _: evidence.kind,
