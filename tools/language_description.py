@@ -63,6 +63,7 @@ _OTHER_WORDS = frozenset(
             "unit",
             "unrecorded",
             "common_word",
+            "section",
             "place",
         ),
         *("effect", "worse", "form", "attribute", "default", "names", "told", "noun", "verb", "verbs", "new_verb"),

@@ -82,7 +82,7 @@ def make_generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard
             if kind == "type" and key == "size"
             else format_fact(getattr(element, key, None)),
         )
-        for key in (KEYS[kind] if kind in PLAIN_KINDS else _CARD_KEYS)
+        for key in ([key for key in KEYS[kind] if key != "title"] if kind in PLAIN_KINDS else _CARD_KEYS)
     ]
     lists: list[tuple[str, tuple[str, ...]]] = []
     if kind == "type":
