@@ -221,7 +221,12 @@ def find_argument_value(node: Node, name: str) -> str | None:
     found = None
     for flag, word in pairwise(words):
         parameter, separator, value = word.partition(":=")
-        if flag in {"-p", "--param"} and separator and parameter.rpartition(":")[2] == name:
+        whose, _, parameter = parameter.rpartition(":")
+        if flag not in {"-p", "--param"} or not separator or parameter != name:
+            continue
+        if "/" in whose:
+            found = word  # with it, no process starts
+        elif whose in {"", node.full_name[1:]}:
             found = value
     return found
 
