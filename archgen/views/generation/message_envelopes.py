@@ -40,7 +40,7 @@ def is_envelope(data_type: ConceptualType) -> bool:
 
 
 def _list_senders(architecture: Architecture, endpoint: Endpoint) -> list[str]:
-    topic = architecture.topics.get(endpoint.name)
+    topic = architecture.topics.get(endpoint.label)
     writers = topic.writers if topic else ()
     nodes = [architecture.nodes[each.node].full_name for each in writers if each.port in endpoint.sources]
     return sorted(set(nodes)) or [ANYBODY]
