@@ -135,6 +135,8 @@ def _find_fault_in_ros_1(own_name: str, name: str) -> str | None:
 def find_rule_fault(text: str, *, ros_1: bool) -> str:
     """Return what is wrong with a rule that ROS refuses."""
     own_name, joint, name = text.partition(JOINT)
+    if read_rule(text, NO_SPAN, is_argument=True, ros_1=ros_1):
+        return "behind `--ros-args` a rule stands after `-r`"
     if not joint:
         return f"a rule has the form `from{JOINT}to`"
     if ros_1:
@@ -159,6 +161,11 @@ def apply_launch_names(node: Node, distro: str | None) -> Node:
     return node
 
 
+def moves_whole_actions(distro: str | None) -> bool:
+    """Whether a rule for an action alone moves all of its parts."""
+    return distro not in _DISTROS_OF_PARTS
+
+
 class NodeNames:
     """Knows what the names of one node's program are on the wire. Its name and namespace are those after all rules."""
 
@@ -177,7 +184,7 @@ class NodeNames:
     def __init__(self, node: Node, distro: str | None) -> None:
         self._name, self._ros_1 = node.name, is_ros_1(distro)
         self._namespace = "/" + "/".join(part for part in node.namespace.split("/") if part)
-        self._moves_actions = distro not in _DISTROS_OF_PARTS
+        self._moves_actions = moves_whole_actions(distro)
         self._is_observed = node.observed
         self.rules: tuple[RemapRule, ...] = ()
         self._topics: dict[str, RemapRule | None] = {}
@@ -230,9 +237,10 @@ class NodeNames:
         found = self._find_rule(program_name, flow)
         if found is not None and not (has_rule_of_port and (self._ros_1 or not found[1].is_argument)):
             name, rule = found
-            return WireName(
-                program_name, name, {"name": Evidence("written" if name else "unknown", rule.text, rule.at)}
-            )
+            if name == program_name:
+                return WireName(program_name, name, _NO_EVIDENCE)
+            reason = Evidence("written" if name else "unknown", rule.text, rule.at)
+            return WireName(program_name, name, {"name": reason})
         if has_rule_of_port and target != program_name:
             return WireName(program_name, target, {"name": Evidence("written", f"{own_name}{JOINT}{target}", own_at)})
         return WireName(program_name, program_name, _NO_EVIDENCE)
