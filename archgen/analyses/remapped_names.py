@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from archgen.derivation.reading_endpoints import is_moved
 from archgen.derivation.ros_names import SHARED_TOPICS
 from archgen.derivation.wire.remap_rules import (
     ACTION_PARTS,
@@ -208,7 +207,7 @@ def _list_some(names: list[str]) -> str:
 def remapped_away(architecture: Architecture) -> Iterator[Diagnostic]:
     """A rule takes what a node writes away from a name that others read, or what it reads to where nobody writes."""
     ruled = _RuledNodes(architecture)
-    moved = [each for ends in ruled.endpoints.values() for each in ends if is_moved(each) and each.name]
+    moved = [each for ends in ruled.endpoints.values() for each in ends if each.is_moved and each.name]
     if not moved:
         return
     writers: dict[tuple[str | None, str], list[Endpoint]] = {}

@@ -7,7 +7,6 @@ from collections import defaultdict
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from archgen.derivation.reading_endpoints import is_moved
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN
 
@@ -62,7 +61,7 @@ class _TopicUsers:
     def left_names(self) -> frozenset[tuple[str | None, str | None]]:
         """The names that rules took outputs away from, each behind the output."""
         writers = (each for named in self.writers.values() for each in named)
-        return frozenset((each.port, each.program_name) for each in writers if is_moved(each))
+        return frozenset((each.port, each.program_name) for each in writers if each.is_moved)
 
     @cached_property
     def outputs_by_component(self) -> Mapping[str, set[str]]:

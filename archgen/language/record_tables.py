@@ -159,8 +159,8 @@ RECORD_KEYS: Mapping[str, Mapping[str, str]] = {
         "directory": "", "user": "", "once": "flag", "state": "", "by": "",
     },
     "endpoint": {
-        "use": "", "name": "", "own_name": "", "flow": "", "message": "", "type": "", "port": "", "internal": "flag",
-        "sources": "", "qos": "qos",
+        "use": "", "name": "", "own_name": "", "program_name": "", "from": "evidence{}", "unknown": "", "flow": "",
+        "message": "", "type": "", "port": "", "internal": "flag", "sources": "", "qos": "qos",
     },
     "effective_parameter": {
         "origin": "", "value": "",
@@ -197,6 +197,9 @@ RECORD_KEYS: Mapping[str, Mapping[str, str]] = {
     },
     "start_ready": {
         "port": "", "file": "", "topic": "", "service": "", "log": "", "wait": "ns", "within": "ns",
+    },
+    "evidence": {
+        "by": "", "rule": "", "at": "",
     },
     "qos": {
         "profile": "", "reliability": "", "durability": "", "history": "", "depth": "", "liveliness": "",

@@ -211,6 +211,12 @@ class Endpoint:
     message_at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
     @property
+    def is_moved(self) -> bool:
+        """Whether a launch moves it away from where the model puts it; the rule of its own port (`own_name`) puts it there."""
+        reason = self.evidence.get("name")
+        return reason is not None and reason.kind == "written" and reason.at != self.at
+
+    @property
     def label(self) -> str:
         """The name, else words that say that it is not known: the same ones at all ends of one output's connections."""
         return self.name or f"{self.sources[0] if self.sources else self.port or self.node} (name not known)"

@@ -176,6 +176,7 @@ class NodeNames:
         "_name",
         "_namespace",
         "_ros_1",
+        "_rules_by_name",
         "_services",
         "_topics",
         "rules",
@@ -189,6 +190,7 @@ class NodeNames:
         self.rules: tuple[RemapRule, ...] = ()
         self._topics: dict[str, RemapRule | None] = {}
         self._services: dict[str, RemapRule | None] = {}
+        self._rules_by_name: dict[str, list[RemapRule]] = {}
         if node.remaps or node.arguments:
             rules = list_rules(node, ros_1=self._ros_1)
             self.rules = tuple(each for each in rules if not each.is_for_node and each.node_name in {"", node.name})
@@ -199,6 +201,7 @@ class NodeNames:
             own_name = self.expand(rule.own_name)
             if own_name is None:
                 continue
+            self._rules_by_name.setdefault(own_name, []).append(rule)
             for flow, table in (("topic", self._topics), ("service", self._services)):
                 if rule.flow not in {"", flow}:
                     continue
@@ -247,12 +250,8 @@ class NodeNames:
 
     def list_matched_rules(self, program_name: str, flow: FlowKind) -> Iterator[RemapRule]:
         """Yield the rules that say something of an end, also those that another one keeps from it."""
-        wanted = {program_name}
-        if flow == "action":
-            wanted = {f"{program_name}{part}" for part in ACTION_PARTS[1 if self._ros_1 else 2]} | (
-                set() if self._ros_1 else wanted
-            )
-        yield from (rule for rule in self.rules if self.expand(rule.own_name) in wanted)
+        for ending in ("", *(ACTION_PARTS[1 if self._ros_1 else 2] if flow == "action" else ())):
+            yield from self._rules_by_name.get(f"{program_name}{ending}", ())
 
     def _find_rule(self, program_name: str, flow: FlowKind) -> tuple[str | None, RemapRule] | None:
         """Return the new name of an end and the rule that gives it, None where no rule moves all of it."""
@@ -279,6 +278,5 @@ class NodeNames:
         rule = table[program_name]
         if rule is None:
             # Two spellings of one name in ROS 1.
-            rule = next(each for each in self.rules if self.expand(each.own_name) == program_name)
-            return None, rule
+            return None, self._rules_by_name[program_name][0]
         return (None if rule.name is None else self.expand(rule.name)), rule
