@@ -144,7 +144,9 @@ KINDS_NOT_IN_RECORD = {
     "policy": "a rule, not a part of the system",
 }
 CARD_ONLY = {
-    "state": "what serves and verifies it",
+    "state": "what serves and verifies it, or whether it runs",
+    "clock": "what `use_sim_time` says",
+    "domain": "what the environment says",
     "parent": "the beginning of the id",
     "ROS name": "made of name and namespace",
     "group": "the beginning of the id",
@@ -159,7 +161,7 @@ NOT_ON_CARDS = {
     "component": "autoconnect components containers description frames from layout node open performance same_as urls",
     "output": "external from to",
     "input": "external from optional",
-    "node": "arguments calls description internal language parameter_commands parameter_files plugin publishes remaps "
+    "node": "arguments calls description internal language observed parameter_commands parameter_files plugin publishes remaps "
     "serves subscribes tags urls",
     "type": "constants feedback request response status",
     "host": "environment tags",
@@ -271,7 +273,7 @@ nodes:
     properties: {q: 1}
     hints: {x: {a: 1}}
     publishes: {o: {topic: /o, own_name: w}}
-  m: b
+  m: {implements: b, observed: true}
   r: [whole, copy]
   s: {timing: {rate: 1 Hz}}
   t: [d, e]

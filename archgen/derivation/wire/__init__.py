@@ -1,1 +1,1 @@
-"""What nodes are on the wire once they run: names, quality of service, domain, clock, and whether they run at all."""
+"""What each endpoint is on the wire, after all that a launch says: the record that everything else reads."""

@@ -56,10 +56,15 @@ def _list_endpoints(node: Node, lookup: Lookup) -> list[object]:
     return [each for each in lookup.endpoints_of.get(node.id, ()) if each.medium == ROS]
 
 
-def _list_evidence(endpoint: Endpoint, _lookup: Lookup) -> dict[str, Evidence]:
-    """Return where fields come from; that it is planned stands at its node."""
-    without = "runs" if endpoint.runs == "planned" else ""
-    return {name: each for name, each in endpoint.evidence.items() if each.kind != "unknown" and name != without}
+def _list_reasons(endpoint: Endpoint, _lookup: Lookup) -> dict[str, Evidence]:
+    """Return where fields come from that are not as the program, or the model of its port, has them."""
+    told = {key: each for key, each in endpoint.evidence.items() if each.kind not in {"default", "unknown"}}
+    # That a node is planned stands at the node.
+    return {
+        key: each
+        for key, each in told.items()
+        if (key != "name" or endpoint.is_moved) and (key != "runs" or endpoint.runs != "planned")
+    }
 
 
 def _name_activities(node: Node, _lookup: Lookup) -> dict[str, Timing]:
@@ -194,15 +199,16 @@ _PARTS: Mapping[str, Mapping[str, Source]] = {
         "effective_parameters": _list_effective,
     },
     "endpoint": {
-        "qos": lambda end, _: end.qos if end.flow == "topic" else None,
-        "clock": lambda end, _: end.clock if end.clock != "system" else None,
-        "runs": lambda end, _: end.runs if end.runs != "active" else None,
-        "unknown": lambda end, _: [name for name, each in end.evidence.items() if each.kind == "unknown"],
-        "from": _list_evidence,
+        "program_name": lambda endpoint, _: endpoint.program_name if endpoint.is_moved else None,
+        "from": _list_reasons,
+        "unknown": lambda endpoint, _: [key for key, each in endpoint.evidence.items() if each.kind == "unknown"],
+        "qos": lambda endpoint, _: endpoint.qos if endpoint.flow == "topic" else None,
+        "clock": lambda endpoint, _: endpoint.clock if endpoint.clock != "system" else None,
+        "runs": lambda endpoint, _: endpoint.runs if endpoint.runs != "active" else None,
     },
     "evidence": {
-        "by": lambda evidence, _: evidence.kind,
-        "at": lambda evidence, _: str(evidence.at) if evidence.at.file else None,
+        "by": lambda reason, _: reason.kind,
+        "at": lambda reason, _: str(reason.at) if reason.at.line else None,
     },
     "topic": _CARRIER,
     "channel": {**_CARRIER, "name": lambda channel, _: name_on_medium(channel)},
