@@ -10,14 +10,10 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 from dataclasses import replace
 
+from archgen.compare.change_hashes import agreement_key
 from archgen.compare.comparison import Change, PartnerBreak
 from archgen.compare.matched_ids import MatchedIds
 from archgen.model.review_settings import AcceptedChange
-
-
-def agreement_key(change: Change) -> str:
-    """Return what an entry has to name as the `key` of a change: `removed`, `renamed` and so on where no key changed."""
-    return change.key or change.kind
 
 
 def find_partner_id(partner: str, matched_ids: MatchedIds) -> str:

@@ -73,7 +73,9 @@ def mark_breaking_changes(
     breaks_by_index: dict[int, dict[PartnerBreak, None]] = defaultdict(dict)
     for loss in _find_losses(context, chains, timing_pair):
         if policy.severity_of(loss.category) is not Severity.OFF:
-            partner_break = PartnerBreak(loss.partner, loss.reason, category=loss.category)
+            partner_break = PartnerBreak(
+                loss.partner, loss.reason, category=loss.category, fallen_state=loss.fallen_state
+            )
             breaks_by_index[loss.change_index][partner_break] = None
     entries = context.before.review.accepted, context.after.review.accepted
     marked_changes = [

@@ -32,6 +32,8 @@ class PartnerBreak:
     agreement: str | None = None
     category: BreakCategory = "wire"
     variants: tuple[str, ...] = ()
+    fallen_state: tuple[object, ...] | None = None
+    """The requirement that is kept no more (see `describe_fallen_state`), of which an agreement holds the hash."""
 
 
 @dataclass(frozen=True, slots=True)

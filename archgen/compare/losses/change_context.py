@@ -29,6 +29,7 @@ class PartnerLoss:
     partner: str
     reason: str
     category: BreakCategory = "wire"
+    fallen_state: tuple[object, ...] | None = None
 
 
 class LastingOutput(NamedTuple):
