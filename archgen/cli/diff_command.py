@@ -231,6 +231,7 @@ def command(  # noqa: PLR0913 - the options of the verb, each by its name
     whose variants are compared, left out the working tree.
     """
     from archgen.compare.breaking_changes import keep_breaking_only
+    from archgen.forge.reviewed_request import find_request_authors
     from archgen.products import compared_versions, repository_comparison
 
     project = project or _find_meant_project(before, after)
@@ -240,7 +241,9 @@ def command(  # noqa: PLR0913 - the options of the verb, each by its name
             msg = f"this folder only holds projects: name one with -C, such as `-C {projects[0].folder}`"
             raise click.UsageError(msg)
         with command_support.explain_missing_versions():
-            comparisons = list(repository_comparison.compare_projects_below(project, projects, before, after))
+            comparisons = list(
+                repository_comparison.compare_projects_below(project, projects, before, after, find_request_authors())
+            )
         _print_comparisons(comparisons)
         is_refused = breaking and any(each.is_refused for each in comparisons)
         sys.exit(1 if is_refused or (exit_code and any(each.has_changes for each in comparisons)) else 0)
@@ -249,7 +252,10 @@ def command(  # noqa: PLR0913 - the options of the verb, each by its name
     else:
         old_version, new_version = _read_versions(before, after, project)
     comparison = _select_changes(
-        compared_versions.compare_named_versions(old_version, new_version), old_version, new_version, select
+        compared_versions.compare_named_versions(old_version, new_version, find_request_authors()),
+        old_version,
+        new_version,
+        select,
     )
     if breaking:
         comparison = keep_breaking_only(comparison)

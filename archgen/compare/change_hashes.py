@@ -18,8 +18,11 @@ _HASH_DIGITS = 6
 
 def hash_values(values: Sequence[object]) -> str:
     """Return the first digits of the SHA-256 of values as canonical JSON."""
-    text = json.dumps(values, sort_keys=True, separators=(",", ":"), default=str)
-    return hashlib.sha256(text.encode()).hexdigest()[:_HASH_DIGITS]
+    return hashlib.sha256(_write_canonically(values).encode()).hexdigest()[:_HASH_DIGITS]
+
+
+def _write_canonically(values: Sequence[object]) -> str:
+    return json.dumps(values, sort_keys=True, separators=(",", ":"), default=str)
 
 
 def agreement_key(change: Change) -> str:
@@ -43,7 +46,7 @@ def summarize_change(change: Change, versions: VersionPair) -> list[object]:
 def hash_change(change: Change, versions: VersionPair, partner: str) -> str:
     """Return the hash of a change, and of the requirements of a partner that it leaves unkept, if there are any."""
     states = [each.fallen_state for each in change.breaks if each.partner == partner and each.fallen_state is not None]
-    return hash_values([*summarize_change(change, versions), *sorted(states, key=repr)])
+    return hash_values([*summarize_change(change, versions), *sorted(states)])
 
 
 def _walk_written(change: Change) -> Iterator[Change]:
@@ -60,8 +63,6 @@ def _list_values(change: Change, versions: VersionPair) -> list[object]:
     return [change.element_kind, change.element_id, values]
 
 
-def describe_fallen_state(
-    port: str, key: str, limit: object, causes: Iterable[Change], versions: VersionPair
-) -> tuple[object, ...]:
+def describe_fallen_state(port: str, key: str, limit: object, causes: Iterable[Change], versions: VersionPair) -> str:
     """Return what an agreement holds of a requirement that is kept no more: which one, its limit, and what caused it."""
-    return port, key, limit, *(tuple(summarize_change(cause, versions)) for cause in causes)
+    return _write_canonically([port, key, limit, *(summarize_change(cause, versions) for cause in causes)])
