@@ -80,7 +80,6 @@ def _is_reviewer(author: Author, partner_id: str, partners: Mapping[str, Partner
     if any(author & each for each in handles.values()):
         return False
     has_mail = any(not name.startswith("@") for name in author)
-    is_told = all(name.startswith("@") or has_mail for name in own_handles) and not any(
-        "/" in name or name.startswith("@@") for name in own_handles
-    )
-    return False if is_forge and own_handles and is_told else None
+    has_team = any("/" in name or name.startswith("@@") for name in own_handles)
+    is_told = any(name.startswith("@") or has_mail for name in own_handles) and not has_team
+    return False if is_forge and is_told else None

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from archgen.compare.agreements import find_partner_id
-from archgen.compare.compared_elements import ComparedElement, ElementKey
+from archgen.compare.compared_elements import ElementKey
 from archgen.compare.comparison import Change
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
 from archgen.compare.matched_ids import MatchedIds
@@ -90,10 +90,12 @@ def _list_edits(context: ChangeContext) -> Iterator[_OwnedEdit]:
 def _find_edited(change: Change, context: ChangeContext) -> Iterator[ElementKey]:
     """Yield the elements that a change edits: itself, and in which something new stands, or something moved."""
     key = (change.element_kind, context.common_id(change))
-    if change.kind != "added":
+    is_new = key not in context.versions.elements_before
+    if not is_new:
         yield key
     element = context.versions.elements_after.get(key)
-    if element and change.kind in {"added", "moved"}:
+    # A port of which a node said nothing before is new, too.
+    if element and (is_new or change.kind == "moved"):
         holders = [element.parent_key] if element.parent_key else []
         if element.kind == "node":
             holders += (("component", each) for each in element.component_refs)
@@ -101,25 +103,22 @@ def _find_edited(change: Change, context: ChangeContext) -> Iterator[ElementKey]
 
 
 def _list_owners(key: ElementKey, context: ChangeContext) -> tuple[str, ...]:
-    """Return who owned an element before the change, first who answers for it; for a port those of its component."""
-    element = context.versions.elements_before.get(key)
-    if element is None:
+    """Return who owned an element before the change, first who answers for it; of what is in another element, the owners
+    of that, and of a node those of its components.
+    """
+    elements = context.versions.elements_before
+    element = elements.get(key)
+    if element is None or not element.owner:
         return ()
-    holder = context.versions.elements_before.get(element.parent_key) if element.parent_key else None
-    return tuple(
-        dict.fromkeys(
-            owner
-            for each in (element, holder if element.kind in {"input", "output", "port"} else None)
-            for owner in _name_owners(each)
-        )
-    )
-
-
-def _name_owners(element: ComparedElement | None) -> Iterator[str]:
-    if element and element.owner:
-        yield element.owner
-        co_owners = element.values.get("co_owners")
-        yield from sorted(co_owners) if isinstance(co_owners, frozenset) else ()
+    co_owners = element.values.get("co_owners")
+    owners = [element.owner, *(sorted(co_owners) if isinstance(co_owners, frozenset) else ())]
+    holders = [element.parent_key] if element.kind in {"input", "output", "port"} else []
+    holders += (("component", each) for each in element.component_refs if element.kind == "node")
+    for holder in holders:
+        holder_owners = _list_owners(holder, context) if holder else ()
+        # A node may belong to somebody else than its component.
+        owners += holder_owners if element.owner in holder_owners else ()
+    return tuple(dict.fromkeys(owners))
 
 
 def _is_written(change: Change, context: ChangeContext) -> bool:
