@@ -11,6 +11,7 @@ import jinja2
 import yaml as pyyaml
 
 from archgen import resources
+from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.safe_text import make_visible
 from archgen.emit.markdown.escaped_text import escape_markdown
 from archgen.start.start_answers import EXAMPLE_GROUPS, GroupAnswer, StartAnswers
@@ -68,8 +69,15 @@ def fill_project_file(answers: StartAnswers, *, sources: bool) -> bytes:
         title=answers.title,
         distro=answers.distro,
         partners=answers.partners,
+        foreign=_choose_foreign(answers),
         sources=sources,
     )
+
+
+def _choose_foreign(answers: StartAnswers) -> Severity:
+    """Return how serious it is to edit what belongs to others: who is in a team, or stands for nobody, cannot be told."""
+    names_people = all(partner.reviewers and "/" not in partner.reviewers for partner in answers.partners)
+    return Severity.ERROR if names_people else Severity.WARNING
 
 
 def fill_agreements(partner_title: str, *, has_schema: bool = True) -> bytes:
