@@ -12,10 +12,13 @@ from archgen.merge.tree_merge import FIELD_ORDER
 
 @dataclass(frozen=True, slots=True)
 class FileMerge:
-    """The merged content. `problem` says what a person has to settle in it, None for nothing."""
+    """The merged content. `problem` says what a person has to settle in it, None for nothing; `conflict_path` are the keys
+    that lead to what both sides changed, none where only the text is in the way.
+    """
 
     content: bytes
     problem: str | None = None
+    conflict_path: tuple[str, ...] = ()
 
 
 def merge_contents(base: bytes, ours: bytes, theirs: bytes, marker_size: int = 7) -> FileMerge:
@@ -28,7 +31,7 @@ def merge_contents(base: bytes, ours: bytes, theirs: bytes, marker_size: int = 7
         return FileMerge(merged_slice.encode())
     line_merge = merge_lines(base, ours, theirs, marker_size=marker_size)
     if line_merge.conflict_count:
-        return FileMerge(line_merge.content, _describe_conflict(merged_slice))
+        return FileMerge(line_merge.content, _describe_conflict(merged_slice), merged_slice.conflict_path)
     # git merges lines that say different things of one element, such as two sentences of one description: as it would
     # without this driver. But where both sides can be said together, lines that say anything else are wrong.
     if merged_slice.is_settled:
