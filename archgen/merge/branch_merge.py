@@ -239,7 +239,8 @@ class BranchMerger:
         if not all(places) or not new_place:
             return ""
         try:
-            merge_values(*(read_merged_value(node, path) if node else None for node in nodes), path)
+            base, our, their = (read_merged_value(node, path) if node else None for node in nodes)
+            merge_values(base, our, their, path)
         except MergeConflictError:
             return ""
         return (
