@@ -125,13 +125,54 @@ def test_the_action_fails_with_errors_after_it_has_made_everything(tmp_path: Pat
     assert "::error" in (runner / "said").read_text()
 
 
-def test_the_hook_of_pre_commit_runs_a_verb() -> None:
-    (hook,) = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text(encoding="utf-8"))
-    program, verb = hook["entry"].split()
-    assert (program, hook["language"], hook["pass_filenames"]) == ("archgen", "python", False)
-    assert verb == "check"
+def run_hook(hook: dict[str, Any], folder: Path, runner: Path) -> subprocess.CompletedProcess[str]:
+    """Run a hook as pre-commit does: its words, without a shell, at the repository's top."""
+    program, *words = hook["entry"].split()
+    return subprocess.run(  # noqa: S603 - what stands in our own file
+        [runner / "archgen/bin" / program, *words], cwd=folder, capture_output=True, text=True, check=False
+    )
+
+
+def test_the_hook_of_pre_commit_shows_only_what_stops_the_commit(tmp_path: Path, runner: Path) -> None:
+    hook, _ = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text(encoding="utf-8"))
+    assert (hook["language"], hook["pass_filenames"]) == ("python", False)
     assert re.search(hook["files"], "groups/sensing.yaml")
     assert not re.search(hook["files"], "firmware/main.c")
+    unserved = f"{ROBOT}requirements: {{R-1: It works}}\n"
+    text = f"{unserved}rules: {{uncovered-requirement: error}}\n"
+    folder = repositories.repository(tmp_path / "work", {"archgen.yaml": text})
+    done = run_hook(hook, folder, runner)
+    assert done.returncode == 1
+    assert [line for line in done.stdout.splitlines() if re.match(r"(error|warning|note)\[", line)] == [
+        "error[uncovered-requirement]: no component and no chain serves the requirement `R-1` (It works)"
+    ]
+    assert done.stderr == "not shown: 2 warnings, 2 notes\n"
+    (folder / "archgen.yaml").write_text(unserved)
+    done = run_hook(hook, folder, runner)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def test_the_hook_before_a_push_holds_it_against_the_main_line_of_the_remote(tmp_path: Path, runner: Path) -> None:
+    _, hook = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text(encoding="utf-8"))
+    assert (hook["stages"], hook["always_run"], hook["pass_filenames"]) == (["pre-push"], True, False)
+    strict = f"{ROBOT}review: {{breaking: error}}\n"
+    folder = repositories.repository(tmp_path / "work", {"README.md": "x\n"})
+    done = run_hook(hook, folder, runner)
+    assert (done.returncode, "knows no main line of `origin`" in done.stderr) == (0, True)
+    repositories.git(tmp_path, "clone", "-q", "--bare", str(folder), "remote.git")
+    repositories.git(folder, "remote", "add", "origin", "../remote.git")
+    repositories.git(folder, "fetch", "-q")
+    repositories.commit(folder, {"archgen.yaml": strict})
+    done = run_hook(hook, folder, runner)
+    assert (done.returncode, "`origin` is without this project" in done.stderr) == (0, True)
+    repositories.git(folder, "push", "-q", "origin", "main")
+    # Also on the main line itself, and of what is committed, whatever lies in the working tree.
+    repositories.commit(
+        folder, {"archgen.yaml": strict.replace("outputs: {image: sensor_msgs/msg/Image}", "outputs: {}")}
+    )
+    (folder / "archgen.yaml").write_text(strict)
+    done = run_hook(hook, folder, runner)
+    assert (done.returncode, "breaks Q (wire)" in done.stdout) == (1, True)
 
 
 def test_gitlab_runs_the_same_commands(tmp_path: Path, runner: Path) -> None:

@@ -19,6 +19,7 @@ from archgen.syntax.file_patterns import YAML_ENDINGS
 
 _PLAIN_PATH_PATTERN = re.compile(r"[A-Za-z0-9._/-]+\Z")
 """Folders without characters that have a meaning in a workflow's path filter."""
+_RUN_GROUP = "${{ github.event_name == 'pull_request' && github.ref || github.run_id }}"
 PORT_HINTS = {
     "inputs": "                      # where the data comes from: group.component.output",
     "outputs": "                     # what it gives: a conceptual type each",
@@ -99,7 +100,7 @@ def fill_workflow(folder: str, *, publishes: bool = True) -> bytes:
         paths=paths,
         # Two projects of a repository must not cancel each other's runs.
         workflow_name=f"Architecture of {inert_folder}" if folder else "Architecture",
-        group="-".join(filter(None, ("architecture", inert_folder, "${{ github.ref }}"))),
+        group="-".join(filter(None, ("architecture", inert_folder, _RUN_GROUP))),
         key=f"diff/{make_project_slug(folder)}",
         publishes=publishes,
     )

@@ -136,8 +136,10 @@ def test_a_file_that_one_side_split_says_whether_the_models_conflict(
     [
         (
             "image: Image",
-            "one side moved `groups.sense.components.eye` to `groups/eyes.yaml`, the other one changed it: git conflicts, what"
-            " both sides say does not; make the change where it stands now",
+            (
+                "one side moved `groups.sense.components.eye` to `groups/eyes.yaml`, the other one changed it: git conflicts,"
+                " what both sides say does not; make the change where it stands now"
+            ),
         ),
         ("image: Colour", "both sides changed `groups.sense.components.eye`"),
     ],
