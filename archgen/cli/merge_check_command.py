@@ -51,7 +51,7 @@ def command(main_line: str, branches: tuple[str, ...], form: str, *, strict: boo
     else:
         for folder, branch_merges in zip(folders or [""], merges_by_project, strict=True):
             for branch_merge in branch_merges:
-                _print_merge(main_line, branch_merge, folder)
+                print_merge(main_line, branch_merge, folder)
     sys.exit(
         1
         if any(
@@ -75,7 +75,8 @@ def _list_folders(project: Path | None, revisions: tuple[str, ...]) -> list[str]
     return [] if "" in folders else sorted(folders)
 
 
-def _print_merge(main_line: str, branch_merge: BranchMerge, folder: str) -> None:
+def print_merge(main_line: str, branch_merge: BranchMerge, folder: str = "") -> None:
+    """Print what came out of a merge, with what is wrong with it."""
     from archgen.merge.merge_sentences import describe_conflict, describe_merge
 
     merged_names = " + ".join((main_line, *branch_merge.branches))

@@ -39,6 +39,8 @@ class JointBreaks:
     by_theirs: tuple[Diagnostic, ...] = ()
     """What breaks where our side is merged first, and then theirs."""
     by_ours: tuple[Diagnostic, ...] = ()
+    partners: tuple[str, ...] = ()
+    """What people call those who lose something, sorted."""
 
     @property
     def findings(self) -> tuple[Diagnostic, ...]:
@@ -292,11 +294,17 @@ def _find_node(checked_project: CheckedProject, path: Sequence[str]) -> YamlNode
 
 
 def preview_merges(
-    path: Path | None, main_line: str, branches: Sequence[str], find_breaks: BreakFinder
+    path: Path | None,
+    main_line: str,
+    branches: Sequence[str],
+    find_breaks: BreakFinder,
+    *,
+    leaves_out_unmergeable: bool = False,
 ) -> Iterator[BranchMerge]:
     """Yield each branch merged into the main line, then what only several of them together do.
 
-    Raise `git.GitError` and `project.ProjectNotFoundError`.
+    Raise `git.GitError` and `project.ProjectNotFoundError`; with `leaves_out_unmergeable` a branch that git cannot find or
+    merge is a conflict of its own, since it may be a stranger's.
     """
     tracked_project = project.find_tracked_project(path)
     with open_merge_folder(tracked_project.objects.repository) as merge_folder:
@@ -304,7 +312,13 @@ def preview_merges(
         main_state = merger.read_state(main_line, ())
         merged_states = []
         for branch in dict.fromkeys(branches):
-            branch_merge, merged_state = merger.merge_states(main_state, merger.read_state(branch, (branch,)))
+            try:
+                branch_merge, merged_state = merger.merge_states(main_state, merger.read_state(branch, (branch,)))
+            except GitError as error:
+                if not leaves_out_unmergeable:
+                    raise
+                yield BranchMerge((branch,), (FileConflict("", str(error)),), sides=((), (branch,)))
+                continue
             yield branch_merge
             if merged_state is not None:
                 merged_states.append(replace(merged_state, parts=()))

@@ -39,4 +39,4 @@ def describe_order(branch_merge: BranchMerge, main_line: str) -> str:
 def describe_conflict(conflict: FileConflict) -> str:
     """Return what is to be done about a file that git conflicts in."""
     outcome = conflict.problem or "git conflicts, what both sides say does not: `archgen merge-driver` merges it"
-    return f"{conflict.file}: {outcome}"
+    return f"{conflict.file}: {outcome}" if conflict.file else outcome

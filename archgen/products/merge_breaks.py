@@ -7,11 +7,11 @@ from dataclasses import replace
 
 from archgen.compare import Change, Comparison
 from archgen.compare.matched_ids import MatchedIds
-from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.merge.branch_merge import JointBreaks
 from archgen.pipeline import CheckedProject
 from archgen.products.break_findings import find_breaks
 from archgen.products.compared_versions import ProjectVersion, compare_named_versions
+from archgen.views.changes.partner_names import name_each, name_partners
 
 _BreakIdentity = tuple[str, str, str, str, str | None]
 
@@ -27,16 +27,21 @@ def find_joint_breaks(
     if not merged.architecture.partners or any(each.reading_errors for each in (base, ours, theirs, merged)):
         return JointBreaks()
     after_ours, after_theirs = _compare(ours, merged), _compare(theirs, merged)
-    by_theirs: tuple[Diagnostic, ...] = ()
-    by_ours: tuple[Diagnostic, ...] = ()
+    by_theirs, by_ours = replace(after_ours, changes=()), replace(after_theirs, changes=())
     # Most merges break nobody: then nobody has to know what either side breaks alone.
     if _breaks_anybody(after_ours):
         known = _list_breaks(base, theirs, _compare(base, ours).matched_ids, after_theirs.matched_ids)
-        by_theirs = find_breaks(_leave_out(after_ours, known), merged)
+        by_theirs = _leave_out(after_ours, known)
     if _breaks_anybody(after_theirs):
         known = _list_breaks(base, ours, _compare(base, theirs).matched_ids, after_ours.matched_ids)
-        by_ours = find_breaks(_leave_out(after_theirs, known), merged)
-    return JointBreaks(by_theirs, by_ours)
+        by_ours = _leave_out(after_theirs, known)
+    partners = {
+        name
+        for comparison in (by_theirs, by_ours)
+        for change in comparison.changes
+        for name in name_each(change.unheard_partners, name_partners(comparison))
+    }
+    return JointBreaks(find_breaks(by_theirs, merged), find_breaks(by_ours, merged), tuple(sorted(partners)))
 
 
 def _compare(before: CheckedProject, after: CheckedProject) -> Comparison:

@@ -52,8 +52,14 @@ def test_a_folder_is_no_expression_of_a_workflow(folder: str) -> None:
 
 def test_two_projects_of_a_repository_have_nothing_in_common_that_could_clash() -> None:
     first, second = (yaml.safe_load(start_templates.fill_workflow(f"robots/{name}")) for name in ("alpha", "beta"))
-    assert first["concurrency"]["group"] == "architecture-robots/alpha-${{ github.ref }}"
-    assert second["concurrency"]["group"] == "architecture-robots/beta-${{ github.ref }}"
+    assert (
+        first["concurrency"]["group"]
+        == "architecture-robots/alpha-${{ github.event_name == 'pull_request' && github.ref || github.run_id }}"
+    )
+    assert (
+        second["concurrency"]["group"]
+        == "architecture-robots/beta-${{ github.event_name == 'pull_request' && github.ref || github.run_id }}"
+    )
     assert [each["name"] for each in (first, second)] == ["Architecture of robots/alpha", "Architecture of robots/beta"]
     keys = [each["jobs"]["comment"]["steps"][0]["with"]["key"] for each in (first, second)]
     assert keys == ["diff/robots-alpha", "diff/robots-beta"]
