@@ -46,6 +46,7 @@ def command(*, list_refs: bool, output: Path | None, project: Path | None) -> No
         for request in requests:
             click.echo(request.refspec)
         return
+    requests = _keep_fetched(requests, project)
     merges = _merge_requests(requests, branch, project)
     if output is not None:
         from archgen.emit import file_tree
@@ -56,6 +57,20 @@ def command(*, list_refs: bool, output: Path | None, project: Path | None) -> No
                 output, format_request_comments(write_request_comments(branch, requests, merges)).encode()
             )
         command_support.print_written(output)
+
+
+def _keep_fetched(requests: Sequence[OpenRequest], project: Path | None) -> tuple[OpenRequest, ...]:
+    """Return the requests whose commits are in this clone; say of the others, which are newer, that they are not."""
+    from archgen.git import find_repository
+    from archgen.git.repository_lookup import look_up_commit
+
+    with command_support.explain_missing_versions():
+        repository = find_repository(project or Path.cwd())
+    fetched_requests = tuple(request for request in requests if look_up_commit(repository, request.ref))
+    for request in requests:
+        if request not in fetched_requests:
+            command_support.print_warning(f"#{request.number} was not fetched, and is left out")
+    return fetched_requests
 
 
 def _merge_requests(requests: Sequence[OpenRequest], branch: str, project: Path | None) -> list[BranchMerge]:

@@ -46,8 +46,8 @@ def _write_comment(
     comment = LimitedComment(MAX_COMMENT_SIZE, write_code("archgen merge-check MAIN BRANCHES"))
     comment.add_block("### With the other open requests")
     if not told_merges:
-        others = len(requests_by_ref) - 1
-        with_others = f" and with {others} other open request{'s' * (others != 1)}" if others else ""
+        count = len(requests_by_ref) - 1
+        with_others = f" and with {count} other open request{'s' * (count != 1)}" if count else ""
         comment.add_block(f"This goes with {write_code(main_line)}{with_others}.")
     for merge in told_merges:
         others = [requests_by_ref[ref] for ref in merge.branches if ref != request.ref]

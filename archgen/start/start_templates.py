@@ -106,6 +106,18 @@ def fill_workflow(folder: str, *, publishes: bool = True) -> bytes:
     )
 
 
+def fill_nightly_workflow(folder: str) -> bytes:
+    """Return GitHub's workflow that holds open pull requests against each other."""
+    inert_folder = folder.replace("${{", "${{ '${{' }}")
+    return fill_template(
+        "github_nightly.yml.j2",
+        folder=inert_folder,
+        workflow_name=f"Open pull requests of {inert_folder}" if folder else "Open pull requests",
+        group="-".join(filter(None, ("requests", inert_folder))),
+        key="/".join(filter(None, ("requests", make_project_slug(folder)))),
+    )
+
+
 def make_project_slug(folder: str) -> str:
     """Return a folder's path as one word of letters, digits, `_`, `.` and `-`."""
     return re.sub(r"[^A-Za-z0-9_.-]+", "-", folder).strip("-.")

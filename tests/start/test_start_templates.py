@@ -65,6 +65,21 @@ def test_two_projects_of_a_repository_have_nothing_in_common_that_could_clash() 
     assert keys == ["diff/robots-alpha", "diff/robots-beta"]
 
 
+@pytest.mark.parametrize("folder", ["", "a b", "${{ secrets.X }}"])
+def test_open_requests_are_held_against_each_other_each_night(folder: str) -> None:
+    text = start_templates.fill_nightly_workflow(folder).decode()
+    workflow = yaml.safe_load(text)
+    assert "${{ secrets" not in text
+    assert workflow[True]["schedule"] == [{"cron": "23 2 * * *"}]
+    check, comment = (workflow["jobs"][name]["steps"][-1]["with"] for name in ("check", "comment"))
+    assert check.pop("project", "") == folder.replace("${{", "${{ '${{' }}")
+    assert check == {"requests": "true"}
+    assert comment["file"] == "requests.json"
+    assert comment["key"].startswith("requests")
+    # Whoever reads what strangers wrote may write nothing.
+    assert set(workflow["jobs"]["check"]["permissions"].values()) == {"read"}
+
+
 @pytest.mark.parametrize("folder", ["", "robot"])
 def test_a_merge_queue_is_answered(folder: str) -> None:
     triggers = yaml.safe_load(start_templates.fill_workflow(folder))[True]
