@@ -300,7 +300,7 @@ def test_the_examples_of_the_manual_name_inputs_and_variables_that_exist() -> No
     examples = [yaml.safe_load(text) for text in re.findall(r"```yaml\n(.*?)```", manual, re.DOTALL)]
     jobs = [job for example in examples if "jobs" in example for job in example["jobs"].values()]
     steps = [step for job in jobs for step in job["steps"] if step.get("uses", "").startswith(REPOSITORY)]
-    assert len(steps) == 5, "a review and a comment twice, and the comment after the review of a fork"
+    assert len(steps) == 7, "a review and a comment twice, the comment after the review of a fork, and both for open requests"
     for step in steps:
         action = read("comment/action.yml" if "/comment@" in step["uses"] else "action.yml")
         assert step.get("with", {}).keys() <= action["inputs"].keys()
