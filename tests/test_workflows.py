@@ -95,6 +95,27 @@ def defaults(step: dict[str, Any], **given: str) -> dict[str, str]:
     return {key: inputs[re.fullmatch(r"\$\{\{ inputs\.(\w+) \}\}", value)[1]] for key, value in step["env"].items()}  # type: ignore[index]
 
 
+def test_what_the_cache_keeps_is_named_by_what_is_installed(tmp_path: Path, runner: Path) -> None:
+    steps = read("action.yml")["runs"]["steps"]
+    (version,) = (step for step in steps if step.get("id") == "version")
+    source = tmp_path / "source"
+    (source / ".git").mkdir(parents=True)
+    (source / "a b.py").write_text("1\n")
+    names = []
+    for file, text in ((".git/HEAD", "x"), (".git/HEAD", "y"), ("a b.py", "2\n"), ("c.py", "2\n")):
+        (source / file).write_text(text)
+        names.append(run(version, tmp_path, runner, GITHUB_ACTION_PATH=str(source))["digest"])
+    assert names[0] == names[1]
+    assert len({*names}) == 3
+    # Kept before anything of a branch is read, and only where it was made anew.
+    order = [step.get("uses", step.get("name", "")).split("@")[0] for step in steps]
+    save = order.index("actions/cache/save")
+    assert order.index("actions/cache/restore") < order.index("Install archgen") < save < order.index("Review")
+    (restore,) = (step for step in steps if step.get("id") == "cache")
+    assert "steps.python.outputs.python-version" in restore["with"]["key"]
+    assert steps[save]["with"]["path"] == restore["with"]["path"]
+
+
 def test_the_action_reviews_a_pull_request(tmp_path: Path, runner: Path) -> None:
     folder = repositories.repository(tmp_path / "work", {"robot/archgen.yaml": ROBOT})
     repositories.git(folder, "checkout", "-q", "-b", "stranger")
@@ -300,7 +321,9 @@ def test_the_examples_of_the_manual_name_inputs_and_variables_that_exist() -> No
     examples = [yaml.safe_load(text) for text in re.findall(r"```yaml\n(.*?)```", manual, re.DOTALL)]
     jobs = [job for example in examples if "jobs" in example for job in example["jobs"].values()]
     steps = [step for job in jobs for step in job["steps"] if step.get("uses", "").startswith(REPOSITORY)]
-    assert len(steps) == 7, "a review and a comment twice, the comment after the review of a fork, and both for open requests"
+    assert len(steps) == 7, (
+        "a review and a comment twice, the comment after the review of a fork, and both for open requests"
+    )
     for step in steps:
         action = read("comment/action.yml" if "/comment@" in step["uses"] else "action.yml")
         assert step.get("with", {}).keys() <= action["inputs"].keys()

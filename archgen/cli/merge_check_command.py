@@ -55,7 +55,7 @@ def command(main_line: str, branches: tuple[str, ...], form: str, *, strict: boo
     sys.exit(
         1
         if any(
-            branch_merge.checked_project is None or command_support.exit_status(branch_merge.findings, strict=strict)
+            branch_merge.is_refused or command_support.exit_status(branch_merge.findings, strict=strict)
             for branch_merges in merges_by_project
             for branch_merge in branch_merges
         )

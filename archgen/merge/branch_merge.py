@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from archgen import git, pipeline, project
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.finding_identity import FindingIdentity, identify_finding
 from archgen.git import GitError
 from archgen.git.merged_trees import MergeFolder, PathConflict, open_merge_folder
@@ -17,6 +17,7 @@ from archgen.merge.double_renames import find_double_renames
 from archgen.merge.file_merge import merge_contents
 from archgen.merge.slice_reading import read_normal_tree
 from archgen.merge.tree_merge import MergeConflictError, merge_values, read_merged_value
+from archgen.model.review_settings import BreakPolicy
 from archgen.pipeline import CheckedProject, VersionCache
 from archgen.project import TrackedProject
 from archgen.syntax.file_patterns import YAML_ENDINGS
@@ -83,6 +84,20 @@ class BranchMerge:
         return self.sides if self.joint_breaks.by_ours else self.sides[::-1]
 
     @property
+    def unread_files(self) -> tuple[str, ...]:
+        """The files that could not be read: what the merge breaks cannot be judged then."""
+        errors = self.checked_project.reading_errors if self.checked_project else ()
+        return tuple(sorted({error.span.file for error in errors}))
+
+    @property
+    def is_refused(self) -> bool:
+        """Whether the project's policy refuses what cannot be judged, as `archgen diff --breaking` does."""
+        if self.checked_project is None:
+            return True
+        policy = self.checked_project.architecture.review.breaking or BreakPolicy()
+        return bool(self.unread_files) and policy.gravest is Severity.ERROR
+
+    @property
     def findings(self) -> tuple[Diagnostic, ...]:
         """All that is wrong with the merged project and with none of its branches."""
         return (*self.joint_breaks.findings, *self.new_findings)
@@ -131,7 +146,7 @@ class BranchMerger:
 
     def _check_commit(self, commit: str, name: str) -> CheckedProject | None:
         # A branch that has all of the main line is what it is merged into: one tree, checked once.
-        tree = look_up_tree(self._merge_folder.objects.repository, commit)
+        tree = look_up_tree(self._merge_folder.objects.repository, commit) or commit
         if tree not in self._checked_trees:
             self._checked_trees[tree] = self._check_tree(commit, name)
         return self._checked_trees[tree]

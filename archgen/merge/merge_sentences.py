@@ -19,9 +19,9 @@ def describe_merge(branch_merge: BranchMerge, main_line: str) -> str:
     elif branch_merge.conflicts and not parts:
         parts.append("git conflicts needlessly")
     elif not parts:
-        unread_files = sorted({error.span.file for error in branch_merge.checked_project.reading_errors})
-        note = f"; what it breaks cannot be judged: `{unread_files[0]}` cannot be read" if unread_files else ""
-        parts.append(f"merges{note}")
+        parts.append("merges")
+        if branch_merge.unread_files:
+            parts.append(f"what it breaks cannot be judged: `{branch_merge.unread_files[0]}` cannot be read")
     return "; ".join(parts)
 
 

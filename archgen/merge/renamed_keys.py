@@ -1,22 +1,20 @@
 """Elements that have another id on one side: what the other side changed in them follows, and two new ids contradict.
 
-Within one file, and by what stands below the id. A rename is sure where all of it is as it was; where both sides take an id
-away and write something alike under another one, they renamed it, each in its own way.
+Within one file, and by what stands below the id: a file alone cannot be linked, so that values stand for features.
 """
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from archgen.compare.element_likeness import MIN_LIKENESS
+from archgen.compare.element_likeness import CERTAIN, Feature, FeatureMap, find_likely_pairs
 from archgen.language.key_paths import find_part
 from archgen.language.language_tables import ENTRIES
 from archgen.merge.tree_merge import FIELD_ORDER, MappingValue, MergeConflictError, MergedValue, ScalarValue
 
-_SURE_LEAVES = 2
-"""As many values have to stand below an id for an equal mapping under another id to be surely the same element."""
+_LEAF_WEIGHT = 2.5
+"""What one value below an id weighs: two that are the same make a sure rename, one a likely one."""
 
 
 class KeyRename(NamedTuple):
@@ -28,6 +26,14 @@ class KeyRename(NamedTuple):
     is_ours: bool
 
 
+_Entries = Mapping[str, MergedValue]
+
+
+class _KeyPair(NamedTuple):
+    new_key: str
+    is_sure: bool
+
+
 def find_renames(
     base: MergedValue, ours: MergedValue, theirs: MergedValue, path: tuple[str, ...] = ()
 ) -> Iterator[KeyRename]:
@@ -37,74 +43,74 @@ def find_renames(
     """
     if not (isinstance(base, MappingValue) and isinstance(ours, MappingValue) and isinstance(theirs, MappingValue)):
         return
-    if base in {ours, theirs}:
+    if base in (ours, theirs):
         return
     old, our, their = (dict(value.items) for value in (base, ours, theirs))
     if find_part(path) in ENTRIES:
-        for key in old.keys() - {FIELD_ORDER}:
-            if key not in our or key not in their:
-                yield from _judge_key(key, old, our, their, path)
-    for key in old.keys() & our.keys() & their.keys():
-        yield from find_renames(old[key], our[key], their[key], (*path, key))
+        our_keys, their_keys = _pair_keys(old, our), _pair_keys(old, their)
+        for key in old:
+            if key in our_keys or key in their_keys:
+                yield from _judge_key(key, (old, our, their), our_keys.get(key), their_keys.get(key), path)
+    for key in old:
+        if key in our and key in their:
+            yield from find_renames(old[key], our[key], their[key], (*path, key))
 
 
 def _judge_key(
     key: str,
-    old: Mapping[str, MergedValue],
-    our: Mapping[str, MergedValue],
-    their: Mapping[str, MergedValue],
+    versions: tuple[_Entries, _Entries, _Entries],
+    our_pair: _KeyPair | None,
+    their_pair: _KeyPair | None,
     path: tuple[str, ...],
 ) -> Iterator[KeyRename]:
-    if key not in our and key not in their:
-        our_key, their_key = _find_likeliest(key, old, our), _find_likeliest(key, old, their)
-        # What both sides call alike is one element, also where one of them changed much of it.
-        common_key = next((each for each in (our_key, their_key) if each in our and each in their), "")
-        if our_key != their_key and not common_key:
-            raise MergeConflictError((*path, key), _describe_contradiction((*path, key), our_key, their_key))
-        if common_key and our[common_key] != their[common_key]:
-            yield KeyRename(path, key, common_key, is_ours=True)
+    old, our, their = versions
+    if key in our or key in their:
+        pair, edited = (their_pair, our) if key in our else (our_pair, their)
+        # What the other side wrote under the new id is another element.
+        if pair and pair.is_sure and edited[key] != old[key] and pair.new_key not in edited:
+            yield KeyRename(path, key, pair.new_key, is_ours=key not in our)
         return
-    is_ours = key not in our
-    renamed, edited = (our, their) if is_ours else (their, our)
-    new_key = _find_same(key, old, renamed)
-    # What the other side wrote under the new id is another element.
-    if new_key and edited[key] != old[key] and new_key not in edited:
-        yield KeyRename(path, key, new_key, is_ours)
+    new_keys = [pair.new_key for pair in (our_pair, their_pair) if pair]
+    # What both sides call alike is one element, also where one of them changed much of it.
+    common_key = next((each for each in new_keys if each in our and each in their), "")
+    if not common_key:
+        raise MergeConflictError((*path, key), _describe_contradiction((*path, key), new_keys))
+    if our[common_key] != their[common_key]:
+        yield KeyRename(path, key, common_key, is_ours=True)
 
 
-def _describe_contradiction(path: tuple[str, ...], our_key: str, their_key: str) -> str:
+def _describe_contradiction(path: tuple[str, ...], new_keys: Sequence[str]) -> str:
     name = ".".join(path)
-    if our_key and their_key:
-        return f"both sides renamed `{name}`: it is `{our_key}` and `{their_key}` now"
-    return f"one side renamed `{name}` to `{our_key or their_key}`, the other one took it away"
+    if len(new_keys) > 1:
+        return f"both sides renamed `{name}`: it is `{new_keys[0]}` and `{new_keys[1]}` now"
+    return f"one side renamed `{name}` to `{new_keys[0]}`, the other one took it away"
 
 
-def _find_same(key: str, old: Mapping[str, MergedValue], new: Mapping[str, MergedValue]) -> str:
-    """Return the only new id below which all of an old one stands, empty where it is not sure."""
-    value = old[key]
-    if not isinstance(value, MappingValue) or sum(_count_leaves(value).values()) < _SURE_LEAVES:
-        return ""
-    new_keys = [each for each in new.keys() - old.keys() if new[each] == value]
-    lost_keys = [each for each in old.keys() - new.keys() if old[each] == value]
-    return new_keys[0] if len(new_keys) == len(lost_keys) == 1 else ""
+def _pair_keys(old: _Entries, new: _Entries) -> Mapping[str, _KeyPair]:
+    """Return the new ids of what is gone, as archgen recognises renamed elements in a comparison."""
+    lost, added = (
+        {key: _describe_value(value) for key, value in side.items() if key not in other and key != FIELD_ORDER}
+        for side, other in ((old, new), (new, old))
+    )
+    if not (lost and added):
+        return {}
+    return {
+        old_key: _KeyPair(new_key, confidence >= CERTAIN and old[old_key] == new[new_key])
+        for old_key, new_key, confidence in find_likely_pairs(lost, added)
+    }
 
 
-def _find_likeliest(key: str, old: Mapping[str, MergedValue], new: Mapping[str, MergedValue]) -> str:
-    """Return the new id that is the likeliest for what stood below an old one, empty where none is likely."""
-    old_leaves = _count_leaves(old[key])
-    likenesses = [(_measure_likeness(old_leaves, _count_leaves(new[each])), each) for each in new.keys() - old.keys()]
-    likeness, new_key = max(likenesses, key=lambda pair: (pair[0], pair[1]), default=(0.0, ""))
-    return new_key if likeness >= MIN_LIKENESS else ""
+def _describe_value(value: MergedValue) -> FeatureMap:
+    leaves = frozenset(_list_leaves(value, ""))
+    return {"leaves": Feature(_LEAF_WEIGHT * len(leaves), leaves)}
 
 
-def _measure_likeness(old_leaves: Counter[str], new_leaves: Counter[str]) -> float:
-    common_count = (old_leaves & new_leaves).total()
-    return common_count / (old_leaves | new_leaves).total() if common_count else 0.0
-
-
-def _count_leaves(value: MergedValue, path: str = "") -> Counter[str]:
-    """Return the values that stand below something, each with the keys that lead to it."""
+def _list_leaves(value: MergedValue, path: str) -> Iterator[str]:
+    """Yield the values that stand below something, each with the keys that lead to it."""
     if isinstance(value, ScalarValue):
-        return Counter([f"{path}={value.text}"])
+        yield f"{path}={value.text}"
+        return
     items = value.items if isinstance(value, MappingValue) else tuple(("-", item) for item in value.items)
-    return sum((_count_leaves(item, f"{path}.{key}") for key, item in items if key != FIELD_ORDER), Counter[str]())
+    for key, item in items:
+        if key != FIELD_ORDER:
+            yield from _list_leaves(item, f"{path}.{key}")

@@ -51,7 +51,7 @@ def _write_check(project: str) -> str:
     # ORIG_HEAD is what was there before the merge: only what came with it is said.
     return (
         f"{find_program()} check {shlex.quote(project)} --quiet --changed-since ORIG_HEAD >&2\n"
-        '[ $? -ne 1 ] || echo "archgen: git merged, and the architecture has new errors" >&2\n'
+        '[ $? -ne 1 ] || echo "archgen: git merged, and the architecture has errors" >&2\n'
     )
 
 

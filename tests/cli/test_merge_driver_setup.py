@@ -145,7 +145,7 @@ def test_after_a_clean_merge_the_whole_is_checked(run: Run, tmp_path: Path, monk
     )
     assert done.returncode == 0
     assert "error[unknown-reference]: no component or output named `eye.image`" in done.stderr
-    assert done.stderr.endswith("archgen: git merged, and the architecture has new errors\n")
+    assert done.stderr.endswith("archgen: git merged, and the architecture has errors\n")
 
 
 def test_a_second_project_checks_too_and_a_hook_of_somebody_s_is_left_alone(run: Run, tmp_path: Path) -> None:

@@ -111,14 +111,20 @@ def test_a_job_without_a_branch_says_so() -> None:
         find_target_branch({})
 
 
-def run_action(forge: Forge, clone: Path, tmp_path: Path) -> dict[str, Any]:
-    """Run the action's step as a runner does, with a token that git must not show."""
-    programs = tmp_path / "archgen/bin"
+def install_program(folder: Path) -> Path:
+    """Put an archgen where a job has one."""
+    programs = folder / "archgen/bin"
     if not programs.exists():
         programs.mkdir(parents=True)
         program = programs / "archgen"
         program.write_text(f'#!/bin/sh\nPYTHONPATH="{ROOT}" exec "{sys.executable}" -m archgen "$@"\n')
         program.chmod(0o755)
+    return programs
+
+
+def run_action(forge: Forge, clone: Path, tmp_path: Path) -> dict[str, Any]:
+    """Run the action's step as a runner does, with a token that git must not show."""
+    install_program(tmp_path)
     action = yaml.safe_load((ROOT / "action.yml").read_text(encoding="utf-8"))
     (step,) = (step for step in action["runs"]["steps"] if step.get("id") == "requests")
     environment = {
@@ -193,6 +199,33 @@ def test_comments_are_renewed_in_place_and_not_begun_without_news(
     done = CliRunner().invoke(main, words, env=nightly(forge, tmp_path))
     assert done.output == "#10: comment updated\n#13: comment unchanged\n"
     assert "goes with `main` and with 1 other open request." in forge.comments[0]["body"]
+
+
+def test_a_schedule_of_gitlab_does_the_same(forge: Forge, clone: Path, tmp_path: Path) -> None:
+    forge.user = {"id": 5}
+    open_pulls(forge, 10, 12)
+    template = yaml.safe_load((ROOT / "ci/gitlab.yml").read_text(encoding="utf-8"))
+    job = {**gitlab(forge), "CI_COMMIT_BRANCH": "main", "GITHUB_ACTIONS": ""}
+    del job["CI_MERGE_REQUEST_IID"]
+    done = subprocess.run(  # noqa: S603 - what stands in our own file
+        ["bash", "-eo", "pipefail", "-c", "\n".join(template["archgen_requests"]["script"])],  # noqa: S607 - as GitLab starts it
+        cwd=clone,
+        env={
+            **os.environ,
+            **{key: str(value) for key, value in template["variables"].items()},
+            **job,
+            "PATH": f"{install_program(tmp_path)}:{os.environ['PATH']}",
+        },
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert [comment["at"] for comment in forge.comments] == [
+        "/projects/12/merge_requests/10/notes",
+        "/projects/12/merge_requests/12/notes",
+    ]
+    assert forge.comments[0]["body"].startswith("<!-- archgen: requests/diff -->\n")
 
 
 def test_nothing_open_is_no_failure(forge: Forge, clone: Path, tmp_path: Path) -> None:

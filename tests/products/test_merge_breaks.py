@@ -114,16 +114,19 @@ def test_what_came_to_the_main_line_meanwhile_is_held_against_a_branch(robot: Pa
     assert say(robot, "reader") == ["reader: merges"]
 
 
-def test_two_harmless_delays_go_in_neither_order(tmp_path: Path) -> None:
+@pytest.mark.parametrize(("wcet", "pairs"), [("6 ms", ["sonar + log"]), ("4 ms", [])])
+def test_harmless_delays_go_in_neither_order(tmp_path: Path, wcet: str, pairs: list[str]) -> None:
+    """Two delays are too much for the deadline, or only all three."""
     chain = "chains: {stop: {through: [sense.sonar, safe.guard], deadline: 70 ms}}\n"
     robot = repositories.repository(tmp_path / "robot", FILES | {"groups/chain.yaml": chain})
-    for name in ("sonar", "log"):
+    for name, file in (("sonar", "norsk"), ("log", "norsk"), ("guard", "aegir")):
         line = f"{name}: {{implements: {name}, host: pc, timing: {{rate: 50 Hz, wcet: "
-        branch(robot, name, {"groups/norsk.yaml": (f"{line}1 ms", f"{line}6 ms")})
-    said = say(robot, "sonar", "log")
-    assert said[:2] == ["sonar: merges", "log: merges"]
-    assert "neither order; together" in said[2]
-    assert merge(robot, "sonar", "log")[2].goes_in_no_order
+        branch(robot, name, {f"groups/{file}.yaml": (f"{line}1 ms", f"{line}{wcet}")})
+    merges = merge(robot, "sonar", "log", "guard")
+    assert [each for each in merges[:3] if each.findings] == []
+    assert [" + ".join(each.branches) for each in merges[3:] if each.goes_in_no_order][:1] == (
+        pairs or ["sonar + log + guard"]
+    )
 
 
 def test_what_a_branch_breaks_by_itself_is_told_by_its_own_review(robot: Path) -> None:
@@ -180,6 +183,8 @@ def test_what_cannot_be_read_is_not_judged(robot: Path) -> None:
     assert say(robot, "broken", "reader")[0] == (
         "broken: merges; what it breaks cannot be judged: `groups/norsk.yaml` cannot be read"
     )
+    # As `archgen diff --breaking` has it: what cannot be judged is refused where breaks are.
+    assert [merge.is_refused for merge in merge(robot, "broken", "reader")] == [True, False, True]
 
 
 VARIANT = "  deep: {title: Deep water, description: Below 50 m, changes: {nodes: {log: {timing: {rate: 10 Hz}}}}}\n"
