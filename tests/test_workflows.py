@@ -156,7 +156,7 @@ def run_hook(hook: dict[str, Any], folder: Path, runner: Path) -> subprocess.Com
 
 def test_the_hook_of_pre_commit_shows_only_what_stops_the_commit(tmp_path: Path, runner: Path) -> None:
     hook, _ = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text(encoding="utf-8"))
-    assert (hook["language"], hook["pass_filenames"]) == ("python", False)
+    assert (hook["language"], hook["stages"], hook["pass_filenames"]) == ("python", ["pre-commit"], False)
     assert re.search(hook["files"], "groups/sensing.yaml")
     assert not re.search(hook["files"], "firmware/main.c")
     unserved = f"{ROBOT}requirements: {{R-1: It works}}\n"
