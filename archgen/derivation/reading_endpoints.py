@@ -51,8 +51,9 @@ def derive_reading_endpoints(writer_index: WriterIndex, node_part: NodePart) -> 
     """Yield what a node reads for a component: one endpoint for each input and each topic, service or action."""
     for port in node_part.component.inputs.values():
         uses = filter_uses(node_part.uses_by_port.get(port.id, ()), {"subscribes", "calls"})
+        is_open = all(use.is_open for use in uses)
         # A component's only node reads all of its inputs; several nodes read only what they list.
-        if uses_ros(port) and (uses or node_part.is_only_node):
+        if uses_ros(port) and is_open and (uses or node_part.is_only_node):
             yield from _InputReader(writer_index, node_part, port).derive_endpoints(uses)
 
 
@@ -125,7 +126,11 @@ class _InputReader:
             for (name, flow_kind), topic_writers in writers_by_topic.items():
                 yield self._make_endpoint(use, name, flow_kind, topic_writers)
         elif not self.port.from_written:
-            name = ros_names.default_port_name(self.port.id)
+            name = (
+                ros_names.resolve_ros_name(use.own_name, self.node_part.node)
+                if use.own_name
+                else ros_names.default_port_name(self.port.id)
+            )
             yield self._make_endpoint(use, name, flow_of_use(use.message or self._expected_message(), use), ())
 
     def _written_endpoints(self, use: PortUse, writers: Sequence[Endpoint]) -> Iterator[Endpoint]:

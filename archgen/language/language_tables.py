@@ -176,9 +176,9 @@ KEYS: Mapping[str, Mapping[str, str]] = {
         "image": "text", "generic": "generic_names", "abstract": "flag", "version": "text", "deprecated": "deprecation",
     },
     "component_node": {
-        "name": "text", "namespace": "text", "kind": "node_kinds", "package": "text", "executable": "text",
-        "plugin": "text", "language": "code_language", "command": "command", "arguments": "texts", "remaps": "remaps",
-        "container": "component_node.container", "host": "component_node.host", "threads": "count",
+        "name": "text", "own_name": "text", "namespace": "text", "kind": "node_kinds", "package": "text",
+        "executable": "text", "plugin": "text", "language": "code_language", "command": "command", "arguments": "texts",
+        "remaps": "remaps", "container": "component_node.container", "host": "component_node.host", "threads": "count",
         "scheduling": "executor_order", "reentrant": "flag", "status": "node_status", "publishes": "topics",
         "subscribes": "topics", "serves": "calls", "calls": "calls", "parameters": "component_node.parameters",
         "parameter_files": "texts", "parameter_commands": "parameter_commands", "start": "start", "tags": "tags",
@@ -251,8 +251,8 @@ KEYS: Mapping[str, Mapping[str, str]] = {
     },
     "node": {
         "implements": "node.implements", "title": "text", "description": "prose", "owner": "owners", "name": "text",
-        "namespace": "text", "kind": "node_kinds", "package": "text", "executable": "text", "plugin": "text",
-        "language": "code_language", "command": "command", "arguments": "texts", "remaps": "remaps",
+        "own_name": "text", "namespace": "text", "kind": "node_kinds", "package": "text", "executable": "text",
+        "plugin": "text", "language": "code_language", "command": "command", "arguments": "texts", "remaps": "remaps",
         "container": "node.container", "host": "node.host", "threads": "count", "scheduling": "executor_order",
         "callback_groups": "callback_groups", "reentrant": "flag", "status": "node_status", "publishes": "topics",
         "subscribes": "topics", "serves": "calls", "calls": "calls", "internal": "internal", "timing": "timing",
@@ -264,10 +264,12 @@ KEYS: Mapping[str, Mapping[str, str]] = {
         "calls": "internal_calls",
     },
     "topic_use": {
-        "topic": "topic_names", "own_name": "topic_name_or_nothing", "message": "topic_use.message", "qos": "qos",
+        "topic": "topic_names", "own_name": "topic_name_or_nothing", "named_by": "parameter_template",
+        "when": "port_conditions", "message": "topic_use.message", "qos": "qos",
     },
     "call_use": {
-        "name": "topic_name_or_nothing", "own_name": "topic_name_or_nothing", "message": "call_use.message",
+        "name": "topic_name_or_nothing", "own_name": "topic_name_or_nothing", "named_by": "parameter_template",
+        "when": "port_conditions", "message": "call_use.message",
     },
     "qos": {
         "profile": "qos_profile", "reliability": "qos_reliability", "durability": "qos_durability",
@@ -351,12 +353,12 @@ ENTRIES: Mapping[str, str] = {
     "internal_topics": "topic_use", "libraries": "library", "links": "link", "message_part": "field", "nodes": "node",
     "operation_fields": "operation_fields.*", "operations": "operation", "outputs": "output",
     "parameter_commands": "parameter_commands.*", "parameter_set": "parameter", "parameter_texts": "parameter_texts.*",
-    "partners": "partner", "policies": "policy", "policy_exceptions": "text", "properties": "text",
-    "property_declarations": "property_declaration", "remaps": "remaps.*", "requirements": "requirement",
-    "resources": "resource", "start_environment": "start_environment.*", "timing_calls": "timing_calls.*",
-    "timing_inputs": "timing_input", "timing_outputs": "timing_output", "timing_uses": "timing_use",
-    "topics": "topic_use", "type_inputs": "type_input", "types": "type", "urls": "urls.*", "use_cases": "use_case",
-    "variants": "variant", "views": "view", "rules": "rules.*", "report.abbreviations": "text",
+    "partners": "partner", "policies": "policy", "policy_exceptions": "text", "port_conditions": "port_conditions.*",
+    "properties": "text", "property_declarations": "property_declaration", "remaps": "remaps.*",
+    "requirements": "requirement", "resources": "resource", "start_environment": "start_environment.*",
+    "timing_calls": "timing_calls.*", "timing_inputs": "timing_input", "timing_outputs": "timing_output",
+    "timing_uses": "timing_use", "topics": "topic_use", "type_inputs": "type_input", "types": "type", "urls": "urls.*",
+    "use_cases": "use_case", "variants": "variant", "views": "view", "rules": "rules.*", "report.abbreviations": "text",
     "report.texts": "report.texts.*", "report.pictures": "report.pictures.*", "review.accepted": "accepted",
     "performance": "indicator", "operation.request": "operation.request.*",
     "operation.response": "operation.response.*", "parameter": "parameter",
@@ -369,8 +371,8 @@ ITEMS: Mapping[str, str] = {
     "group_components": "reference_item", "inputs": "port_type_item", "key_paths": "key_path",
     "link_ends": "reference_item", "node_kinds": "node_kind_item", "open_sets": "open_sets[]",
     "outputs": "port_type_item", "owners": "owners[]", "parameter_commands.*": "parameter_commands.*[]",
-    "parameter_set": "parameter_value", "port_list": "port_path", "promised_range": "promised_limit",
-    "references": "reference_item", "requirement_ids": "requirement_ids[]",
+    "parameter_set": "parameter_value", "port_conditions.*": "port_conditions.*[]", "port_list": "port_path",
+    "promised_range": "promised_limit", "references": "reference_item", "requirement_ids": "requirement_ids[]",
     "requirement_parents": "requirement_parents[]", "reviewers": "reviewers[]", "shared_topics": "topic_name",
     "steps": "step", "tags": "tags[]", "texts": "texts[]", "topic_names": "topic_name", "type_inputs": "port_type_item",
     "type_parameters": "type_parameters[]", "variant_ids": "variant_id", "verifications": "verifications[]",
@@ -390,14 +392,15 @@ ITEMS: Mapping[str, str] = {
 LIST_ORDERS: Mapping[str, str] = {
     "component_requirements": "gathered", "core_list": "free", "declared_of": "free", "files": "gathered",
     "group_components": "free", "key_paths": "free", "link_ends": "free", "node_kinds": "free", "open_sets": "gathered",
-    "owners": "headed", "port_list": "free", "references": "free", "requirement_ids": "gathered",
-    "requirement_parents": "gathered", "reviewers": "gathered", "shared_topics": "gathered", "tags": "gathered",
-    "topic_names": "free", "verifications": "gathered", "review.backends": "gathered", "review.passes": "gathered",
-    "accepted": "gathered", "requirement.parent": "gathered", "requirement.verified_by": "gathered",
-    "requirement.use_cases": "gathered", "property_declaration.choices": "free", "input.from": "free", "input": "free",
-    "parameter.choices": "free", "parameter_declaration.choices": "free", "node.implements": "free", "node": "free",
-    "topic_use": "free", "link.connects": "free", "link": "free", "start.after": "free", "start": "free",
-    "trigger": "free", "chain.requirements": "gathered",
+    "owners": "headed", "port_conditions.*": "free", "port_list": "free", "references": "free",
+    "requirement_ids": "gathered", "requirement_parents": "gathered", "reviewers": "gathered",
+    "shared_topics": "gathered", "tags": "gathered", "topic_names": "free", "verifications": "gathered",
+    "review.backends": "gathered", "review.passes": "gathered", "accepted": "gathered",
+    "requirement.parent": "gathered", "requirement.verified_by": "gathered", "requirement.use_cases": "gathered",
+    "property_declaration.choices": "free", "input.from": "free", "input": "free", "parameter.choices": "free",
+    "parameter_declaration.choices": "free", "node.implements": "free", "node": "free", "topic_use": "free",
+    "link.connects": "free", "link": "free", "start.after": "free", "start": "free", "trigger": "free",
+    "chain.requirements": "gathered",
 }
 """Lists whose order says nothing. `gathered`: both sides may begin one; `headed`: the first item says more."""
 BARE_PARTS: frozenset[str] = frozenset({
@@ -406,7 +409,8 @@ BARE_PARTS: frozenset[str] = frozenset({
 })
 """Values that are no text."""
 DATA_PARTS: frozenset[str] = frozenset({
-    "component_node.parameters", "container.parameters", "hints", "node.parameters", "parameter", "ros_parameters",
+    "component_node.parameters", "container.parameters", "hints", "node.parameters", "parameter", "port_conditions",
+    "ros_parameters",
 })
 """What other programs read: it stays as it was written, whatever its keys are called."""
 OFFERS: Mapping[str, tuple[str, ...]] = {

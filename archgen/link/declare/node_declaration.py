@@ -116,7 +116,8 @@ def _declare_node(node_id: str, entry: MappingEntry, context: NodeContext, imple
     ports = _make_port_resolver(node_id, body, context, tuple(dict.fromkeys(port_holders)))
     resolver.diagnostics.extend(_find_shared_own_names(node_id, body))
     status = "planned" if node_id in implemented.planned_ids else None
-    values = {"name": node_id, "status": status, **read_element("node", Node, entry, body)}
+    own_name = mapping_values.get_text(body, "own_name") if mapping_values.get_text(body, "status") == "existing" else None
+    values = {"name": own_name or node_id, "status": status, **read_element("node", Node, entry, body)}
     return Node(
         **values,
         implements=implements,
@@ -202,6 +203,8 @@ def _declare_use(
         port=port,
         topics=tuple(scalar.text for scalar in names),
         own_name=mapping_values.get_text(use_body, "own_name"),
+        named_by=mapping_values.get_text(use_body, "named_by"),
+        when=mapping_values.get_data(use_body, "when"),
         message=mapping_values.get_message(use_body, "message"),
         qos=_read_qos(use, use_body),
         internal=is_internal,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 
+from archgen.derivation.ros_names import resolve_ros_name
 from archgen.model.component_nesting import find_component
 from archgen.model.node import Endpoint, Node
 from archgen.model.port_media import ROS
@@ -100,7 +101,11 @@ def _to_code(text: str) -> Inlines:
 
 def _remap_facts(lookup: Lookup, node: Node) -> Inlines:
     """Return the names that become others when the node starts, those of its ports first."""
-    port_names = {each.own_name: each.name for each in lookup.endpoints_of.get(node.id, ()) if each.own_name}
+    port_names = {
+        each.own_name: each.name
+        for each in lookup.endpoints_of.get(node.id, ())
+        if each.own_name and resolve_ros_name(each.own_name, node) != each.name
+    }
     return inline_text.join_inlines(
         (Text(own_name, code=True), Text(" is "), Text(name, code=True))
         for own_name, name in (port_names | dict(node.remaps)).items()
