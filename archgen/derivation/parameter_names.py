@@ -31,7 +31,8 @@ def name_ports_by_parameters(architecture: Architecture) -> Architecture:
         return architecture
     connected_ports = {*(edge.input for edge in architecture.edges), *(edge.output for edge in architecture.edges)}
     for node in nodes.values():
-        reader = _NameReader(find_effective_parameters(architecture, node), is_complete=not node.unread_files)
+        parameters = find_effective_parameters(architecture, node)
+        reader = _NameReader(parameters, tuple(node.inner_nodes), is_complete=not node.unread_files)
         uses = tuple(named for use in node.uses for named in reader.name_use(use, connected_ports))
         nodes[node.id] = replace(node, uses=uses)
     return replace(architecture, nodes={**architecture.nodes, **nodes})
@@ -51,6 +52,7 @@ class _NameReader:
     """Reads the names of a node's ports. Of a node of which a parameter file cannot be read, none is surely unset."""
 
     parameters: Mapping[str, EffectiveParameter]
+    inner_nodes: tuple[str, ...]
     is_complete: bool
 
     def name_use(self, use: PortUse, connected_ports: set[str]) -> Iterator[PortUse]:
@@ -84,12 +86,15 @@ class _NameReader:
     def _find_names(self, use: PortUse) -> _GivenNames:
         names: list[tuple[str, Span]] = []
         is_known, is_open = True, False
+        is_inner = use.named_by is not None and use.named_by.partition(".")[0] in self.inner_nodes
         for prefix, word in self._list_bindings(use):
-            if self._judge_conditions(use, prefix, word) is False:
+            holds = self._judge_conditions(use, prefix, word)
+            if holds is False:
                 continue
+            is_known &= holds is not None
             parameter = self.parameters.get(_fill_in(use.named_by, prefix, word)) if use.named_by else None
             value = parameter.value if parameter else None
-            if use.named_by is None or (parameter and parameter.origin == "command"):
+            if use.named_by is None or _SUBSTITUTION_MARK in word or (parameter and parameter.origin == "command"):
                 is_known, is_open = False, True
             elif parameter and value not in (None, ""):
                 values = value if isinstance(value, list | tuple) else [value]
@@ -103,6 +108,8 @@ class _NameReader:
                 is_known, is_open = False, True
         if not is_open and not self.is_complete:
             is_known, is_open = False, True
+        # Where relative names of an inner node lead differs by version and program.
+        is_known &= not is_inner or all(name.startswith("/") for name, _ in names)
         return _GivenNames(names, is_known, is_open)
 
     def _list_bindings(self, use: PortUse) -> Iterator[tuple[str, str]]:
@@ -120,8 +127,9 @@ class _NameReader:
                 continue
             listed = self.parameters.get(source.replace("*", prefix))
             value = listed.value if listed else None
-            words = value.split() if isinstance(value, str) else value if isinstance(value, list | tuple) else ()
-            for word in words:
+            if listed and listed.origin == "command":
+                value = _SUBSTITUTION_MARK
+            for word in value.split() if isinstance(value, str) else value if isinstance(value, list | tuple) else ():
                 yield prefix, str(word)
 
     def _judge_conditions(self, use: PortUse, prefix: str, word: str) -> bool | None:

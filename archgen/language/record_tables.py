@@ -80,7 +80,7 @@ RECORD_KEYS: Mapping[str, Mapping[str, str]] = {
         "full_name": "", "kind": "", "command": "", "arguments": "", "remaps": "", "start": "start", "co_owners": "",
         "implements": "", "callback_groups": "", "reentrant": "flag", "derived": "flag", "endpoints": "endpoint[]",
         "timing": "timing{}", "parameters": "", "parameter_files": "", "parameter_commands": "",
-        "effective_parameters": "effective_parameter{}", "own_name": "", "tags": "", "urls": "",
+        "effective_parameters": "effective_parameter{}", "own_name": "", "inner_nodes": "", "tags": "", "urls": "",
         "properties": "annotations", "hints": "annotations",
     },
     "topic": {

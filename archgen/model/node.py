@@ -93,6 +93,8 @@ class Node:
     name: str = ""
     own_name: str | None = None
     """What the program calls its node where nobody names it."""
+    inner_nodes: Mapping[str, str] = field(default_factory=dict)
+    """Names of further nodes that its program makes, by the set of parameters that theirs count as."""
     namespace: str = "/"
     kinds: tuple[NodeKind, ...] = ("node",)
     package: str | None = None

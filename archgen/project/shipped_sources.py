@@ -16,7 +16,7 @@ SOURCE_KINDS = ("documentation", "source text", "recording")
 """Words for what was read: what people wrote about the package, the package's own files, or a running node."""
 
 
-_PROGRAM_KEYS = ("executable", "plugin", "own_name")
+_PROGRAM_KEYS = ("executable", "plugin", "own_name", "inner_nodes")
 _USE_KINDS = ("publishes", "subscribes", "serves", "calls")
 _NAMING_KEYS = ("named_by", "when")
 """What says which parameters name a port of the node, and whether it has the port. Its name itself is at the port's line."""
