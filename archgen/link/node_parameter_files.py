@@ -89,12 +89,12 @@ class _ParameterReader:
                 unread_files.append(scalar.text)
                 continue
             file_values, remark = find_node_values(parameter_text, scalar, node, self._node_names, ros_1=self._ros_1)
-            if remark is not None:
+            inner_values = tuple(self._read_inner_nodes(parameter_text, scalar, node))
+            if remark is not None and not inner_values:
                 unread_files.append(scalar.text)
                 remarks.append(remark)
-            file_values += tuple(self._read_inner_nodes(parameter_text, scalar, node))
-            self._values += len(file_values)
-            values += file_values
+            self._values += len(file_values) + len(inner_values)
+            values += (*file_values, *inner_values)
         return replace(node, file_values=tuple(values), unread_files=tuple(unread_files), file_remarks=tuple(remarks))
 
     def _read_inner_nodes(

@@ -116,8 +116,7 @@ def _declare_node(node_id: str, entry: MappingEntry, context: NodeContext, imple
     ports = _make_port_resolver(node_id, body, context, tuple(dict.fromkeys(port_holders)))
     resolver.diagnostics.extend(_find_shared_own_names(node_id, body))
     status = "planned" if node_id in implemented.planned_ids else None
-    own_name = mapping_values.get_text(body, "own_name") if mapping_values.get_text(body, "status") == "existing" else None
-    values = {"name": own_name or node_id, "status": status, **read_element("node", Node, entry, body)}
+    values = {"name": node_id, "status": status, **read_element("node", Node, entry, body)}
     return Node(
         **values,
         implements=implements,
