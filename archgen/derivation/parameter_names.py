@@ -12,7 +12,7 @@ from dataclasses import replace
 from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
-from archgen.model.node import Node, PortUse
+from archgen.model.node import PortUse
 from archgen.model.parameter import format_parameter
 from archgen.model.parameter_values import EffectiveParameter, find_effective_parameters
 
