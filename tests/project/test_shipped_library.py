@@ -301,6 +301,13 @@ def test_the_pages_of_the_library_are_fresh() -> None:
         assert page.read_text(encoding="utf-8") == format_page(), "run tools/make_ros_library_page.py"
 
 
+def test_programs_are_known_by_what_they_call_their_nodes() -> None:
+    assert shipped_library.find_program_name("ros_gz_bridge", "parameter_bridge") == "ros_gz_bridge"
+    assert shipped_library.find_program_name("image_proc", "image_proc::RectifyNode") == "RectifyNode"
+    for program in ("static_transform_publisher", "unheard_of", ""):
+        assert not shipped_library.find_program_name("tf2_ros", program)
+
+
 def test_it_may_have_any_name_and_more_than_one(tmp_path: Path) -> None:
     text = (
         "ros: {distro: jazzy}\nlibraries: {a: builtin, b: {path: builtin}}\ngroups:\n  g:\n    components:\n"
