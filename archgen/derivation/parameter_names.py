@@ -86,6 +86,7 @@ class _NameReader:
     def _find_names(self, use: PortUse) -> _GivenNames:
         names: list[tuple[str, Span]] = []
         is_known, is_open = True, False
+        is_writing = use.use in {"publishes", "serves"}
         is_inner = use.named_by is not None and use.named_by.partition(".")[0] in self.inner_nodes
         for prefix, word in self._list_bindings(use):
             holds = self._judge_conditions(use, prefix, word)
@@ -104,8 +105,8 @@ class _NameReader:
             elif default := use.own_name or word:
                 names.append((default, use.at))
                 is_open = True
-            elif not self.is_complete and value is None:
-                is_known, is_open = False, True
+            elif value is None and (is_writing or not self.is_complete):
+                is_known, is_open = False, True  # what is written has a name without a parameter, too
         if not is_open and not self.is_complete:
             is_known, is_open = False, True
         # Where relative names of an inner node lead differs by version and program.
