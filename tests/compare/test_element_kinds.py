@@ -158,7 +158,7 @@ NOT_ON_CARDS = {
     "component": "autoconnect components containers description frames from layout node open performance same_as urls",
     "output": "external from to",
     "input": "external from optional",
-    "node": "arguments calls description internal language own_name parameter_commands parameter_files plugin publishes remaps "
+    "node": "arguments calls description inner_nodes internal language own_name parameter_commands parameter_files plugin publishes remaps "
     "serves subscribes tags urls",
     "type": "constants feedback request response status",
     "host": "tags",
@@ -246,6 +246,7 @@ nodes:
     owner: [certh, sssa]
     name: m
     own_name: m_node
+    inner_nodes: {costs: costs/costs}
     namespace: /ns
     kind: [composable, driver]
     package: p

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline
+from archgen.derivation.parameter_names import name_ports_by_parameters
 
 HEAD = "archgen: 1\nproject: {id: robot, title: Robot}\nros: {distro: jazzy}\n"
 FILTER = """
@@ -151,3 +152,10 @@ def test_a_thousand_sources_of_a_thousand_layers_take_no_time(tmp_path: Path) ->
     words = " ".join(f"s{number}" for number in range(1000))
     layers = ", ".join(f"l{number}: {{sources: {words if number == 0 else 'x'}}}" for number in range(1000))
     assert len(list_names(tmp_path, f"parameters: {{{layers}}}")["scan"]) == 1001
+
+
+def test_a_project_without_such_ports_is_left_alone(tmp_path: Path) -> None:
+    list_names(tmp_path, "parameters: {}")
+    (tmp_path / "archgen.yaml").write_text(HEAD + "groups: {g: {components: {it: {}}}}\n", encoding="utf-8")
+    architecture = pipeline.check_project(tmp_path).architecture
+    assert name_ports_by_parameters(architecture) is architecture
