@@ -34,8 +34,9 @@ def name_ports_by_parameters(architecture: Architecture) -> Architecture:
         parameters = find_effective_parameters(architecture, node)
         reader = _NameReader(parameters, tuple(node.inner_nodes), is_complete=not node.unread_files)
         uses = (reader.name_use(use) if use.named_by is not None or use.when else use for use in node.uses)
-        # A design that connects a port wants it: what it lacks is the parameter.
-        opened_uses = (replace(use, is_open=use.is_open or use.port in connected_ports) for use in uses)
+        # A design that connects a port wants it, and lacks the parameter; a node that exists is as it is.
+        wanted_ports = connected_ports if node.status != "existing" else set()
+        opened_uses = (replace(use, is_open=use.is_open or use.port in wanted_ports) for use in uses)
         nodes[node.id] = replace(node, uses=tuple(opened_uses))
     return replace(architecture, nodes={**architecture.nodes, **nodes})
 
