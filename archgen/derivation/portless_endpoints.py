@@ -36,7 +36,7 @@ def count_shared_keys(architecture: Architecture) -> SharedKeyCounts:
 def derive_portless_endpoints(node: Node, shared_keys: SharedKeyCounts) -> Iterator[Endpoint]:
     """Yield the endpoints of a node that have no port. `complete_message` adds the messages of readers later."""
     for use in node.uses:
-        if use.internal or not node.implements:
+        if use.is_open and (use.internal or not node.implements):
             yield from _endpoints_of_use(node, use, shared_keys)
 
 

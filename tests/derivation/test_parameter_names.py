@@ -154,6 +154,17 @@ def test_a_thousand_sources_of_a_thousand_layers_take_no_time(tmp_path: Path) ->
     assert len(list_names(tmp_path, f"parameters: {{{layers}}}")["scan"]) == 1001
 
 
+def test_a_node_without_a_component_follows_its_parameters_too(tmp_path: Path) -> None:
+    text = (
+        "nodes:\n  it: {package: p, executable: e, parameters: {odom: /wheels, publish_tf: false},"
+        " publishes: {tf: {topic: /tf, message: tf2_msgs/msg/TFMessage, when: {publish_tf: true}}},"
+        " subscribes: {odom: {named_by: odom, message: nav_msgs/msg/Odometry}, imu: {named_by: imu}}}\n"
+    )
+    (tmp_path / "archgen.yaml").write_text(HEAD + text, encoding="utf-8")
+    endpoints = pipeline.check_project(tmp_path).architecture.endpoints
+    assert [(each.use, each.name) for each in endpoints] == [("subscribes", "/wheels")]
+
+
 def test_a_project_without_such_ports_is_left_alone(tmp_path: Path) -> None:
     list_names(tmp_path, "parameters: {}")
     (tmp_path / "archgen.yaml").write_text(HEAD + "groups: {g: {components: {it: {}}}}\n", encoding="utf-8")
