@@ -184,7 +184,9 @@ def _find_nameless_input(architecture: Architecture, node: Node, use: PortUse) -
     """Report an input that something feeds, where the parameter that names its topic is not given."""
     name = use.named_by or ""
     if not {"*", "{"}.intersection(name) and name not in find_effective_parameters(architecture, node):
-        message = f"something feeds `{use.port}`, but `{node.id}` reads it only where its parameter `{name}` names a topic"
+        message = (
+            f"something feeds `{use.port}`, but `{node.id}` reads it only where its parameter `{name}` names a topic"
+        )
         help_line = f"write it at the node: `parameters: {{{name}: ...}}`"
         yield Diagnostic("unset-parameter", message, node.at, help=help_line, element=node.id)
 
