@@ -211,6 +211,11 @@ def test_a_robot_of_eleven_nodes_of_the_library_has_all_of_its_names(tmp_path: P
     names = {node: list_program_names(architecture, node) for node in architecture.nodes}
     assert names == STRETCH_NAMES
     assert sum(len(each) for uses in names.values() for each in uses.values()) == 51
+    moved = {(each.node, each.program_name, each.name) for each in architecture.endpoints}
+    assert {each for each in moved if each[1] not in {None, each[2]}} <= {
+        ("teleop_twist_joy_node", "/cmd_vel", "/stretch/cmd_vel"),
+        ("controller_server", "/cmd_vel", "/stretch/cmd_vel"),
+    }
 
 
 def test_what_a_condition_turns_off_is_not_there(tmp_path: Path) -> None:
