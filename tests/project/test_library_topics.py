@@ -236,3 +236,21 @@ def test_a_program_may_be_composed_or_run_by_itself(tmp_path: Path) -> None:
     assert (node.package, node.executable, node.plugin) == ("image_proc", "rectify_node", "image_proc::RectifyNode")
     assert node.own_name == "RectifyNode"
     assert node.name == "it"
+
+
+def test_a_topic_that_an_instance_writes_is_remapped_from_what_the_program_says(tmp_path: Path) -> None:
+    text = (
+        "archgen: 1\nproject: {id: robot, title: Robot}\nros: {distro: jazzy}\nlibraries: {ros: builtin}\n"
+        "groups: {g: {components: {lidar: {is: ros.urg_node, node: {publishes: {scan: /front/scan}}},"
+        " planner: {is: ros.planner_server, node: {serves: {compute_path_to_pose: /plan}, publishes: {plan: [/a, /b]}}},"
+        " filter: {is: ros.laser_filter, inputs: {scan: lidar.scan}}}}}\n"
+        "nodes: {f: {implements: g.filter, publishes: {scan_filtered: {qos: sensor_data}}}}\n"
+    )
+    architecture = check_architecture(tmp_path, text)
+    own_names = {each.port: (each.name, each.own_name) for each in architecture.endpoints}
+    assert own_names["g.lidar.scan"] == ("/front/scan", "scan")
+    assert own_names["g.filter.scan"] == ("/front/scan", "scan")
+    assert own_names["g.planner.compute_path_to_pose"] == ("/plan", "compute_path_to_pose")
+    assert own_names["g.planner.plan"] == ("/b", None)
+    assert own_names["g.filter.scan_filtered"] == ("/scan_filtered", None)
+    assert "conflicting-values" not in {finding.rule for finding in pipeline.check_project(tmp_path).findings}
