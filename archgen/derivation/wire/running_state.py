@@ -8,16 +8,18 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property, partial
-from itertools import groupby, pairwise
+from itertools import groupby
 from operator import attrgetter
 
 from archgen.derivation.derived_parts import DerivedParts
+from archgen.derivation.wire.launch_words import list_parameter_words
 from archgen.derivation.wire.qos_overrides import QosOverride, list_overrides, override_qos
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Container
 from archgen.model.node import Clock, Endpoint, Evidence, Node, RunState
+from archgen.model.parameter import format_parameter
 from archgen.model.parameter_values import EffectiveParameter, find_effective_parameters
 from archgen.model.ros_distro import is_ros_1
 from archgen.model.start_up import NO_START, LifecycleState
@@ -33,8 +35,6 @@ _NUMBER = re.compile(r"\s*([+-]?)(0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)")
 _MAX_DIGITS = 40
 _NO_DOMAIN = 2**64 - 1
 """What rcl takes for "none is set"; `-1` is read as this number."""
-_TRUE_WORDS = frozenset({"y", "yes", "true", "on"})
-_FALSE_WORDS = frozenset({"n", "no", "false", "off"})
 
 
 def find_environment(architecture: Architecture, node: Node | Container) -> Mapping[str, tuple[str, Span]]:
@@ -146,9 +146,10 @@ class RunningStates:
             return None, CLOCK_PARAMETER, given.at
         if node.unread_files:
             return None, f"{node.unread_files[0]} is not at hand", node.at
-        if (word := find_argument_value(node, CLOCK_PARAMETER)) is not None:
-            value = True if word.lower() in _TRUE_WORDS else False if word.lower() in _FALSE_WORDS else None
-            return value, f"-p {CLOCK_PARAMETER}:={word}", node.at
+        words = [] if self._is_ros_1 else [w for w in list_parameter_words(node) if w.name == CLOCK_PARAMETER]
+        if words:
+            rule = f"-p {CLOCK_PARAMETER}:={format_parameter(words[-1].value)}"
+            return words[-1].value, rule, words[-1].at
         return None, "", NO_SPAN
 
     def _find_run_state(
@@ -211,24 +212,6 @@ def find_parameters(architecture: Architecture, node: Node, *names: str) -> Mapp
     if wanted.isdisjoint(given) and all(wanted.isdisjoint(each) for each in components):
         return {}  # of nearly all nodes
     return find_effective_parameters(architecture, node)
-
-
-def find_argument_value(node: Node, name: str) -> str | None:
-    """Return what the words `-p NAME:=VALUE` among the arguments of a node say; of several the last one counts."""
-    words = node.arguments
-    if "--ros-args" not in words:
-        return None
-    found = None
-    for flag, word in pairwise(words):
-        parameter, separator, value = word.partition(":=")
-        whose, _, parameter = parameter.rpartition(":")
-        if flag not in {"-p", "--param"} or not separator or parameter != name:
-            continue
-        if "/" in whose:
-            found = word  # with it, no process starts
-        elif whose in {"", node.full_name[1:]}:
-            found = value
-    return found
 
 
 def complete_states(

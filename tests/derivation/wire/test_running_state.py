@@ -118,12 +118,12 @@ def test_ros_1_has_no_domain_and_one_clock_for_all(derived: Derived) -> None:
         (
             'arguments: ["--ros-args", -p, "a:use_sim_time:=True", -p, "x:=1"]',
             "",
-            "simulated <- written -p use_sim_time:=True 3:3",
+            "simulated <- written -p use_sim_time:=true 3:52",
         ),
         (
             'arguments: ["--ros-args", "--param", "use_sim_time:=maybe"]',
             "",
-            "None <- unknown -p use_sim_time:=maybe 3:3",
+            "None <- unknown -p use_sim_time:=maybe 3:59",
         ),
         ('arguments: [-p, "use_sim_time:=true"]', "", "system"),
         ("kind: program, command: [x], parameters: {use_sim_time: true}", "", "system"),
