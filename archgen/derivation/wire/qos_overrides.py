@@ -6,7 +6,6 @@ A program takes them only where its code says so, and says nothing where it does
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from fractions import Fraction
 from itertools import chain
 from typing import Any
@@ -14,7 +13,7 @@ from typing import Any
 from archgen.derivation.wire.launch_words import list_parameter_words
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.source_span import Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, Evidence, Node, OverrideEffect, UseKind
 from archgen.model.parameter_values import (

@@ -40,17 +40,33 @@ _NO_DOMAIN = 2**64 - 1
 def find_environment(architecture: Architecture, node: Node | Container) -> Mapping[str, tuple[str, Span]]:
     """Return the variables with which the process of a node or container is started, each with its place.
 
-    Later ones win: the project's, the host's, the node's; what a container loads has that of the container's process.
+    Later ones win: the project's, the host's, its own. What a container loads has that of the container's process, of
+    which only imported hints tell more.
     """
     variables = {each.name: (str(each.value), each.at) for each in architecture.ros_environment}
     if host := architecture.hosts.get(node.host or ""):
         variables |= {name: (text, host.environment_places[name]) for name, text in host.environment.items()}
-    if isinstance(node, Node) and node.start is not None and node.container is None:
+    container = node if isinstance(node, Container) else architecture.containers.get(node.container or "")
+    if container is not None:
+        hinted = _read_hint(container, "environment")
+        given = hinted.items() if isinstance(hinted, Mapping) else ()
+        hint_places = container.annotations.hint_places
+        variables |= {
+            name: (str(text), hint_places.get((_LAUNCH_HINT, "environment", name), container.at))
+            for name, text in given
+        }
+    elif isinstance(node, Node) and node.start is not None:
         places = node.start.places
         variables |= {
             name: (text, places.get(f"environment.{name}", node.at)) for name, text in node.start.environment.items()
         }
     return variables
+
+
+def _read_hint(element: Node | Container, key: str) -> object:
+    """Return what an import of launch files says of a node or container beside the model."""
+    hint = element.annotations.hints.get(_LAUNCH_HINT)
+    return hint.get(key) if isinstance(hint, Mapping) else None
 
 
 def read_domain(text: str) -> int | None:
@@ -159,11 +175,12 @@ class RunningStates:
         if node.status == "planned":
             evidence["runs"] = Evidence("written" if node.written else "generated", "status: planned", node.at)
             return "planned", None
-        hint = node.annotations.hints.get(_LAUNCH_HINT)
-        if isinstance(hint, Mapping) and hint.get("by_default") == "off":
-            place = node.annotations.hint_places.get((_LAUNCH_HINT, "by_default"), node.at)
-            evidence["runs"] = Evidence("written", "by_default: off", place)
-            return "off", None
+        container = self._architecture.containers.get(node.container or "")
+        for element in (node, container) if container else (node,):
+            if _read_hint(element, "by_default") == "off":
+                place = element.annotations.hint_places.get((_LAUNCH_HINT, "by_default"), element.at)
+                evidence["runs"] = Evidence("written", "by_default: off", place)
+                return "off", None
         if "lifecycle" not in node.kinds or self._is_ros_1:
             return "active", None
         start = node.start or NO_START

@@ -93,6 +93,15 @@ def test_an_unknown_domain_is_no_usual_one(derived: Derived, start: str, told: s
     assert (tell(endpoint, "domain"), domain_of(endpoint)) == (told, compared)
 
 
+def test_a_container_that_was_imported(derived: Derived) -> None:
+    text = ROBOT % "kind: composable, container: box, start: {environment: {ROS_DOMAIN_ID: 1}}" + (
+        'containers: {box: {hints: {launch: {environment: {ROS_DOMAIN_ID: "2"}, by_default: "off"}}}}'
+    )
+    endpoint = ends_of(derived(text))["publishes"]
+    assert tell(endpoint, "domain") == "2 <- written ROS_DOMAIN_ID=2 5:51"
+    assert tell(endpoint, "runs") == "off <- written by_default: off 5:71"
+
+
 def test_ros_1_has_no_domain_and_one_clock_for_all(derived: Derived) -> None:
     architecture = derived(
         ROBOT % "start: {environment: {ROS_DOMAIN_ID: 3}}, parameters: {use_sim_time: true}" + "ros: {distro: noetic}"
