@@ -99,7 +99,7 @@ def test_a_container_that_was_imported(derived: Derived) -> None:
     )
     endpoint = ends_of(derived(text))["publishes"]
     assert tell(endpoint, "domain") == "2 <- written ROS_DOMAIN_ID=2 5:51"
-    assert tell(endpoint, "runs") == "off <- written by_default: off 5:71"
+    assert tell(endpoint, "runs") == "off <- written by_default: off 5:72"
 
 
 def test_ros_1_has_no_domain_and_one_clock_for_all(derived: Derived) -> None:
