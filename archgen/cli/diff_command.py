@@ -291,7 +291,7 @@ def command(  # noqa: PLR0913 - the options of the verb, each by its name
     else:
         old_version, new_version = _read_versions(before, after, project)
     comparison = _select_changes(
-        compared_versions.compare_named_versions(old_version, new_version, find_request_authors()),
+        compared_versions.compare_named_versions(old_version, new_version, forge_facts=find_request_authors()),
         old_version,
         new_version,
         select,
