@@ -21,7 +21,8 @@ def find_renamed_topics(context: ChangeContext) -> Iterator[PartnerLoss]:
     for (node, port), ends in new_endpoints.items():
         topics = {(endpoint.name, endpoint.flow) for endpoint in ends}
         topics_by_port[port] |= topics
-        if context.after.nodes[node].status != "planned" or ("node", node) in context.versions.elements_before:
+        new_node = context.after.nodes.get(node)
+        if new_node is None or new_node.status != "planned" or ("node", node) in context.versions.elements_before:
             lasting_topics_by_port[port] |= topics
     readers = list_topic_readers(context)
     for node, port in sorted(old_endpoints):
