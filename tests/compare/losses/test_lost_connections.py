@@ -123,7 +123,7 @@ TAKEN = "takes `watch.beacon.beat` from SSSA (`watch.listener.beat`); `autoconne
                     "groups:\n  deck: {owner: certh, components: {beacon: {outputs: {beat: {type: Charge}}}}}\n",
                 ),
             ],
-            [f"deck.beacon sssa: {TAKEN}", f"deck.beacon sssa: {RENAMED_BEACON}"],
+            [f"watch.beacon sssa: {TAKEN}", f"watch.beacon sssa: {RENAMED_BEACON}"],
         ),
         # The reader's own doing.
         ([("inputs: {beat: {type: Charge}}", "inputs: {beat: {type: Level}}")], []),
@@ -159,4 +159,4 @@ def test_who_reads_a_whole_group_loses_what_leaves_it(compared: Compared) -> Non
     horn = "horn: {outputs: {sound: Sound}}"
     edits = [(f", {horn}", ""), ("yard: {owner: certh}", f"yard: {{owner: certh, components: {{{horn}}}}}")]
     told = "takes `deck.horn.sound` from SSSA (`crew.ear.signs`); it reads all of a group, in which that is no more"
-    assert f"yard.horn sssa: {told}" in broken(compared, crew, edits)
+    assert f"deck.horn sssa: {told}" in broken(compared, crew, edits)
