@@ -99,6 +99,8 @@ class ChangeContext:
     def owners_of_change(self, change_index: int) -> frozenset[str]:
         """Return the partner who owns what changed, nobody if nobody owns it."""
         change = self.changes[change_index]
+        if change.element_kind == "type":
+            return frozenset()  # whom it breaks, those say who write what is of the type (`MessageUsers`)
         return self.lasting_owners(
             "input" if change.element_kind == "connection" else change.element_kind, self.common_id(change)
         )
