@@ -44,6 +44,9 @@ class VersionPair:
     link_users: Mapping[str, frozenset[str]] | None = None
     """The partners whose data crosses each link in either version; None where timing does not know."""
 
+    policy_partners: Mapping[str, frozenset[str]] = field(default_factory=dict)
+    """The partners whose components each policy is about in either version, where one changed."""
+
     partner_names: Mapping[str, str] = field(default_factory=dict)
     """What people call each partner of either version (see `title_partners`)."""
 
