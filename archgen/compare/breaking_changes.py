@@ -20,6 +20,7 @@ from archgen.compare.losses.deprecated_types import find_deprecated_types
 from archgen.compare.losses.lost_connections import find_lost_connections, find_renamed_sources, find_unmade_connections
 from archgen.compare.losses.missed_deadlines import find_chains_made_late
 from archgen.compare.losses.overloaded_resources import find_overloaded_cores, find_saturated_links
+from archgen.compare.losses.parted_ends import find_parted_ends
 from archgen.compare.losses.renamed_topics import find_renamed_topics
 from archgen.compare.losses.retyped_topics import find_retyped_topics
 from archgen.compare.losses.timing_causes import TimingCauses
@@ -27,7 +28,6 @@ from archgen.compare.losses.unserved_requirements import find_unserved_requireme
 from archgen.compare.losses.weakened_demands import find_rewritten_requirements, find_weakened_policies
 from archgen.compare.losses.weakened_outputs import find_weakened_outputs
 from archgen.compare.losses.weakened_promises import find_weakened_deadlines
-from archgen.compare.losses.weakened_qos import find_weakened_publishers
 from archgen.compare.losses.weakened_sizes import find_weakened_sizes
 from archgen.compare.losses.weakened_words import find_weakened_words
 from archgen.compare.timing_pair import TimingPair
@@ -42,7 +42,7 @@ _LOSS_FINDERS = (
     find_redefined_messages,
     find_renamed_topics,
     find_retyped_topics,
-    find_weakened_publishers,
+    find_parted_ends,
     find_weakened_outputs,
     find_weakened_words,
     find_deprecated_types,

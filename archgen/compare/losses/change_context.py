@@ -20,6 +20,8 @@ from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint
 from archgen.model.review_settings import BreakCategory
 
+WRITING_USES = frozenset({"publishes", "serves"})
+
 
 @dataclass(frozen=True, slots=True)
 class PartnerLoss:
@@ -245,10 +247,34 @@ class ChangeContext:
     ) -> Mapping[tuple[str, str], list[Endpoint]]:
         endpoints: dict[tuple[str, str], list[Endpoint]] = defaultdict(list)
         for endpoint in architecture.endpoints:
-            if endpoint.use in {"publishes", "serves"} and architecture.nodes[endpoint.node].written:
+            if endpoint.use in WRITING_USES and architecture.nodes[endpoint.node].written:
                 port = matched_ids.common_id("output", endpoint.port) if endpoint.port else ""
                 endpoints[matched_ids.common_id("node", endpoint.node), port].append(endpoint)
         return endpoints
+
+    def find_new_ends(self, end: Endpoint) -> Sequence[Endpoint]:
+        """Return what took the place of an end: at its node, else at the port's node, under its name if there is one."""
+        port = self.common_port(end)
+        found = self._new_ends.get((self.matched_ids.common_id("node", end.node), port), ())
+        if not found and end.port:
+            found = self._new_ends.get(("", self.output_heirs.get(port, port)), ())
+        return [each for each in found if each.name == end.name] or found
+
+    def common_port(self, end: Endpoint) -> str:
+        """Return the common id of the port of an end of the first version, its name where it has none."""
+        kind = "output" if end.use in WRITING_USES else "input"
+        return self.matched_ids.common_id(kind, end.port) if end.port else end.label
+
+    @cached_property
+    def _new_ends(self) -> Mapping[tuple[str, str], list[Endpoint]]:
+        """Return the ends of written nodes by node and port (a topic's name for internal ones), and by the port alone."""
+        ends: dict[tuple[str, str], list[Endpoint]] = defaultdict(list)
+        for end in self.after.endpoints:
+            if self.after.nodes[end.node].written:
+                ends[end.node, end.port or end.label].append(end)
+                if end.port:
+                    ends["", end.port].append(end)
+        return ends
 
     @property
     def guards_margins(self) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
 from archgen.compare.losses.composed_places import find_component_renames
@@ -40,7 +40,8 @@ def find_renamed_topics(context: ChangeContext) -> Iterator[PartnerLoss]:
             users = [
                 endpoint
                 for endpoint in readers.get((name, flow), ())
-                if not port or not endpoint.sources or _reads_output(context, endpoint, port)
+                if (not port or not endpoint.sources or _reads_output(context, endpoint, port))
+                and not _follows_by_launch(context, endpoint, new_topics)
             ]
             new_name_note = (
                 f"it is {tick_sorted_names(replacements)} now"
@@ -70,6 +71,17 @@ def list_topic_readers(context: ChangeContext) -> Mapping[TopicKey, list[Endpoin
             for key in list_known_names([endpoint]):
                 readers[key].append(endpoint)
     return readers
+
+
+def _follows_by_launch(context: ChangeContext, endpoint: Endpoint, topics: Container[TopicKey]) -> bool:
+    """Whether a reader's program is as it was, and what starts it gives it the new name, too."""
+    return any(
+        each.program_name is not None
+        and each.program_name == endpoint.program_name
+        and each.name != each.program_name
+        and (each.name, each.flow) in topics
+        for each in context.find_new_ends(endpoint)
+    )
 
 
 def _reads_output(context: ChangeContext, endpoint: Endpoint, output_id: str) -> bool:

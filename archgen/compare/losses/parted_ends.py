@@ -1,0 +1,241 @@
+"""Ends that met and meet no more: what is offered is less than was asked for, or one of them is in another domain, goes by
+another clock, or no longer runs.
+
+What counts is what is on the wire, after all that launches, parameters and hosts say, and whatever says it is the cause. If
+the reader alone asks for more or turns away, its own partner cuts it off: nobody else loses anything.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from archgen.analyses.qos_compatibility import QosConflict, find_qos_conflicts
+from archgen.compare.compared_elements import ElementKey
+from archgen.compare.kinds import Effect, find_effect
+from archgen.compare.losses.change_context import WRITING_USES, ChangeContext, PartnerLoss
+from archgen.compare.losses.loss_wording import tick_name, tick_sorted_names
+from archgen.derivation.wire.running_state import domain_of
+from archgen.diagnostics.common_wording import join_words
+from archgen.model.architecture import Architecture
+from archgen.model.node import Clock, Endpoint
+from archgen.model.ros_distro import is_ros_1
+
+_CLOCK_TOPIC = "/clock"
+_CLOCK_WORDS: Mapping[Clock | None, str] = {"simulated": "simulated time", "system": "the time of the system"}
+
+
+class _Parting(NamedTuple):
+    """Why two ends meet no more: the changes that part them, and the reason around the topics; `{}` are the readers."""
+
+    indices: tuple[int, ...]
+    lead: str
+    rest: str
+    verb: str
+
+
+class _FollowedEnd(NamedTuple):
+    """An end of the first version, and the ends that took its place in the second."""
+
+    old: Endpoint
+    new: Sequence[Endpoint]
+
+    @property
+    def is_touched(self) -> bool:
+        """Whether anything but its name may be otherwise."""
+        return any(_read_wire(self.old) != _read_wire(each) for each in self.new)
+
+
+def find_parted_ends(context: ChangeContext) -> Iterator[PartnerLoss]:
+    """Find ends that met before the change and do not meet now, or of which nobody knows that any more.
+
+    What a reader asks for now does not matter: otherwise a branch could lower both sides at once.
+    """
+    nodes: dict[tuple[_Parting, str], dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
+    for topic, parting, reader in _Partings(context).list_partings():
+        owner = context.before.nodes[reader.node].owner
+        if owner:
+            partner = context.matched_ids.common_id("partner", owner)
+            nodes[parting, topic][partner].add(context.matched_ids.common_id("node", reader.node))
+    topics: dict[tuple[_Parting, tuple[tuple[str, tuple[str, ...]], ...]], list[str]] = defaultdict(list)
+    for (parting, topic), parts in nodes.items():
+        topics[parting, tuple((partner, tuple(sorted(names))) for partner, names in parts.items())].append(topic)
+    for (parting, parts_of_partners), names in topics.items():
+        reason_text = f"{parting.lead}{tick_sorted_names(names)}{parting.rest}"
+        yield from context.shared_losses(parting.indices, dict(parts_of_partners), reason_text, parting.verb, "wire")
+
+
+class _Partings:
+    """Compares the ends of two versions, pair by pair."""
+
+    def __init__(self, context: ChangeContext) -> None:
+        self._context = context
+        self._has_qos = not is_ros_1(context.before.distro)
+        self._has_clock = any(
+            end.name == _CLOCK_TOPIC and end.use in WRITING_USES and end.runs == "active"
+            for end in context.after.endpoints
+        )
+
+    def list_partings(self) -> Iterator[tuple[str, _Parting, Endpoint]]:
+        """Yield topics, each with why two of its ends meet no more, and the reader."""
+        for topic in self._context.before.topics.values():
+            writers, readers = (self._follow(ends) for ends in (topic.writers, topic.readers))
+            # Nearly all are as they were.
+            if not any(each.is_touched for each in (*writers, *readers)):
+                continue
+            for reader in readers:
+                if reader.old.port and not self._context.needs_source(self._context.common_port(reader.old)):
+                    continue
+                for writer in writers:
+                    partings = [list(self._part(writer.old, new, reader)) for new in writer.new]
+                    if partings and all(partings):
+                        yield from ((writer.new[0].label, parting, reader.old) for parting in partings[0])
+
+    def _follow(self, ends: Iterable[Endpoint]) -> list[_FollowedEnd]:
+        return [
+            _FollowedEnd(end, self._context.find_new_ends(end))
+            for end in ends
+            if self._context.before.nodes[end.node].written
+        ]
+
+    def _part(self, old_writer: Endpoint, writer: Endpoint, reader: _FollowedEnd) -> Iterator[_Parting]:
+        """Yield what parts a writer from the reader that it met."""
+        new_reader = reader.new[0] if reader.new else reader.old
+        if old_writer.flow == "topic" and self._has_qos and _read_qos(writer) != _read_qos(old_writer):
+            yield from self._part_by_qos(old_writer, writer, reader.old)
+        if old_writer.runs != "active" or reader.old.runs != "active":
+            return
+        old_domains, domains = (
+            tuple(map(domain_of, ends)) for ends in ((old_writer, reader.old), (writer, new_reader))
+        )
+        if None in old_domains or old_domains[0] != old_domains[1]:
+            return
+        if domains[0] != domains[1] or (None in domains and domains != old_domains):
+            causes = self._find_causes("domain", (old_writer, writer), (reader.old, new_reader))
+            own_domain, other_domain = map(_name_domain, domains)
+            yield _Parting(
+                causes,
+                "runs what is on ",
+                f" in {own_domain}, where {{}} in {other_domain}: nothing arrives any more",
+                "runs",
+            )
+        if writer.runs in {"inactive", "off"} or (writer.runs is None and writer.runs != old_writer.runs):
+            rule = writer.evidence["runs"].rule if "runs" in writer.evidence else "unknown"
+            yield _Parting(
+                self._find_causes("runs", (old_writer, writer)),
+                f"no longer has {tick_name(writer.node)} run ({tick_name(rule)}), and with it ",
+                "; {} it",
+                "needs",
+            )
+        yield from self._part_by_clock(old_writer, writer, reader.old, new_reader)
+
+    def _part_by_qos(self, old_writer: Endpoint, writer: Endpoint, reader: Endpoint) -> Iterator[_Parting]:
+        if _find_clashes(old_writer, reader):
+            return
+        clashes = _find_clashes(writer, reader)
+        if clashes:
+            offered, requested = (
+                join_words(list(dict.fromkeys(words)))
+                for words in ([each.offered for each in clashes], [each.requested for each in clashes])
+            )
+            policies = [key for key in {**old_writer.evidence, **writer.evidence} if key.startswith("qos.")]
+            indices = tuple(
+                self._context.port_change_indices(writer.node, writer.port or "", "qos")
+            ) or self._find_causes(policies, (old_writer, writer))
+            yield _Parting(
+                indices, f"offers {offered} on ", f", where {{}} for {requested}: nothing arrives any more", "asks"
+            )
+
+    def _part_by_clock(
+        self, old_writer: Endpoint, writer: Endpoint, old_reader: Endpoint, reader: Endpoint
+    ) -> Iterator[_Parting]:
+        if writer.clock == old_writer.clock or old_writer.clock != old_reader.clock:
+            return
+        causes = self._find_causes("clock", (old_writer, writer))
+        words = _CLOCK_WORDS.get(writer.clock, "a clock that nobody knows")
+        if writer.clock != reader.clock:
+            other_words = _CLOCK_WORDS.get(reader.clock, "one that nobody knows")
+            yield _Parting(causes, "runs what is on ", f" by {words}, where {{}} by {other_words}", "runs")
+        elif writer.clock == "simulated" and not self._has_clock:
+            lead = f"runs {tick_name(writer.node)} by {words}, which nobody gives, and with it "
+            yield _Parting(causes, lead, "; {} it", "needs")
+
+    def _find_causes(self, fields: str | Iterable[str], *ends: tuple[Endpoint, Endpoint]) -> tuple[int, ...]:
+        """Return the changes that made fields of ends others: where the evidence names a key, those of that key; else
+        those that name the node, or say something of it.
+        """
+        names = [fields] if isinstance(fields, str) else list(fields)
+        indices: list[int] = []
+        for old, new in ends:
+            for name in names:
+                evidence = new.evidence.get(name), old.evidence.get(name)
+                if evidence[0] != evidence[1] or _read_wire(old) != _read_wire(new):
+                    rule = next((each.rule for each in evidence if each), "")
+                    indices += self._find_changes_of(new, rule)
+        return tuple(dict.fromkeys(indices))
+
+    def _find_changes_of(self, end: Endpoint, rule: str) -> list[int]:
+        elements = _list_holders(self._context.after, end)
+        word = rule.removeprefix("-p ").partition("=")[0].partition(":")[0]
+        named = [
+            index
+            for element in elements
+            for index, change in self._context.find_changes(*element)
+            if word and word in f"{change.key} {change.before} {change.after}"
+        ]
+        if named:
+            return named
+        node = self._context.after.nodes[end.node]
+        # A manager that no longer lists it, say.
+        told = [
+            index
+            for index, change in enumerate(self._context.changes)
+            if change.element_kind == "node" and change.key and node.name in f"{change.before} {change.after}"
+        ]
+        return told or [
+            index
+            for element in elements[:2]
+            for index, change in self._context.find_changes(*element)
+            if not change.key or find_effect(change.element_kind, change.key) is not Effect.TEXT
+        ]
+
+
+def _list_holders(architecture: Architecture, end: Endpoint) -> list[ElementKey]:
+    """Return what may say how an end runs: its node, what contains it, its host, its components, and the project."""
+    node = architecture.nodes[end.node]
+    container = architecture.containers.get(node.container or "")
+    host = node.host or (container.host if container else None)
+    return [
+        ("node", node.id),
+        ("container", node.container or ""),
+        ("host", host or ""),
+        *(("component", name) for name in node.implements),
+        ("project", architecture.project.id),
+    ]
+
+
+def _read_wire(end: Endpoint) -> tuple[object, ...]:
+    return *_read_qos(end), end.domain, end.clock, end.runs, end.evidence.get("domain")
+
+
+def _read_qos(end: Endpoint) -> tuple[object, ...]:
+    return end.qos, end.qos_if_ignored
+
+
+def _find_clashes(writer: Endpoint, reader: Endpoint) -> tuple[QosConflict, ...]:
+    """Return the clashes between what is offered and asked for; where two are possible, with either."""
+    offers, requests = ((end.qos, end.qos_if_ignored or end.qos) for end in (writer, reader))
+    clashes = (
+        clash
+        for offer in dict.fromkeys(offers)
+        for asked in dict.fromkeys(requests)
+        for clash in find_qos_conflicts(offer, asked)
+    )
+    return tuple(dict.fromkeys(clashes))
+
+
+def _name_domain(domain: int | None) -> str:
+    if domain is None:
+        return "a domain that nobody knows"
+    return f"the domain {domain}" if domain else "the usual one"
