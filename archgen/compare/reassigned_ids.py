@@ -13,9 +13,12 @@ from typing import Any
 from archgen.compare.element_relations import ElementRelations
 from archgen.model.component import Component, list_component_ports
 from archgen.model.path_resolver import title_from_id
+from archgen.model.variant import Variant
 
 REASSIGNABLE_KINDS = frozenset({"component", "requirement", "use_case"})
 """The kinds of elements that have texts enough to be known by."""
+_LIKE_VARIANT = 0.8
+"""The share of places at which two variants write if they are the same one."""
 
 
 def find_reassigned_ids(
@@ -46,6 +49,28 @@ def find_reassigned_ids(
     for old_id, new_id in moved_pairs.items():
         if kind_name != "component" or old_id in new_texts or new_id in old_texts:
             yield old_id, new_id
+
+
+def find_refilled_variants(
+    old_variants: Mapping[str, Variant], new_variants: Mapping[str, Variant]
+) -> Iterator[tuple[str, str]]:
+    """Yield the old and new ids of variants that write what they wrote under an id that another variant has now, or none."""
+    for old_id, variant in old_variants.items():
+        if old_id not in new_variants or not _are_alike(variant, new_variants[old_id]):
+            candidates = [
+                new_id
+                for new_id, each in new_variants.items()
+                if _are_alike(variant, each) and not (new_id in old_variants and _are_alike(old_variants[new_id], each))
+            ]
+            if len(candidates) == 1:
+                yield old_id, candidates[0]
+
+
+def _are_alike(first: Variant, second: Variant) -> bool:
+    places, other_places = (
+        {*(change.path for change in each.changes), *each.drop, each.without} - {None} for each in (first, second)
+    )
+    return len(places & other_places) >= _LIKE_VARIANT * max(len(places | other_places), 1)
 
 
 def _read_texts(element: Any) -> tuple[str, ...]:  # noqa: ANN401 - components, requirements, use cases

@@ -7,6 +7,7 @@ the reader alone asks for more or turns away, its own partner cuts it off: nobod
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
@@ -172,32 +173,45 @@ class _Partings:
                 evidence = new.evidence.get(name), old.evidence.get(name)
                 if evidence[0] != evidence[1] or _read_wire(old) != _read_wire(new):
                     rule = next((each.rule for each in evidence if each), "")
-                    indices += self._find_changes_of(new, rule)
+                    indices += self._find_changes_of(new, rule, is_run=name == "runs")
         return tuple(dict.fromkeys(indices))
 
-    def _find_changes_of(self, end: Endpoint, rule: str) -> list[int]:
-        elements = _list_holders(self._context.after, end)
+    def _find_changes_of(self, end: Endpoint, rule: str, *, is_run: bool) -> list[int]:
+        holders = _list_holders(self._context.after, end)
         word = rule.removeprefix("-p ").partition("=")[0].partition(":")[0]
         named = [
             index
-            for element in elements
-            for index, change in self._context.find_changes(*element)
+            for holder in holders
+            for index, change in self._context.find_changes(*holder)
             if word and word in f"{change.key} {change.before} {change.after}"
         ]
-        if named:
-            return named
-        node = self._context.after.nodes[end.node]
-        # A manager that no longer lists it, say.
-        told = [
+        # A manager of life cycles that lists it no longer, or starts no more.
+        told = self._find_mentions(self._context.after.nodes[end.node].name) if is_run and not named else []
+        own = (
+            [
+                index
+                for index, change in self._context.find_changes(*holder)
+                if not change.key or find_effect(change.element_kind, change.key) is not Effect.TEXT
+            ]
+            for holder in holders
+        )
+        return named or told or next(filter(None, own), [])
+
+    def _find_mentions(self, name: str) -> list[int]:
+        """Return the changes of nodes that name another one in what is said of them."""
+        versions = self._context.versions
+        word = re.compile(rf"(?<!\w){re.escape(name)}(?!\w)")
+        return [
             index
             for index, change in enumerate(self._context.changes)
-            if change.element_kind == "node" and change.key and node.name in f"{change.before} {change.after}"
-        ]
-        return told or [
-            index
-            for element in elements[:2]
-            for index, change in self._context.find_changes(*element)
-            if not change.key or find_effect(change.element_kind, change.key) is not Effect.TEXT
+            if change.element_kind == "node"
+            for key in [("node", self._context.common_id(change))]
+            if any(
+                word.search(str(side[key].values))
+                for side in (versions.elements_before, versions.elements_after)
+                if key in side
+            )
+            and change.element_id != name
         ]
 
 
