@@ -17,7 +17,12 @@ from archgen.compare.losses.changed_meanings import find_changed_meanings
 from archgen.compare.losses.changed_parameters import find_changed_parameters
 from archgen.compare.losses.cut_steps import find_cut_steps
 from archgen.compare.losses.deprecated_types import find_deprecated_types
-from archgen.compare.losses.lost_connections import find_lost_connections, find_renamed_sources, find_unmade_connections
+from archgen.compare.losses.lost_connections import (
+    find_lost_connections,
+    find_redirected_connections,
+    find_renamed_sources,
+    find_unmade_connections,
+)
 from archgen.compare.losses.missed_deadlines import find_chains_made_late
 from archgen.compare.losses.overloaded_resources import find_overloaded_cores, find_saturated_links
 from archgen.compare.losses.parted_ends import find_parted_ends
@@ -37,6 +42,7 @@ from archgen.model.review_settings import AcceptedChange, BreakPolicy, ReviewSet
 _LOSS_FINDERS = (
     find_lost_connections,
     find_unmade_connections,
+    find_redirected_connections,
     find_changed_distro,
     find_retyped_outputs,
     find_redefined_messages,

@@ -18,7 +18,7 @@ from archgen.model.variant import Variant
 REASSIGNABLE_KINDS = frozenset({"component", "requirement", "use_case"})
 """The kinds of elements that have texts enough to be known by."""
 _LIKE_VARIANT = 0.8
-"""The share of places at which two variants write if they are the same one."""
+"""The share of its places at which a variant writes still if it is the same one."""
 
 
 def find_reassigned_ids(
@@ -56,21 +56,24 @@ def find_refilled_variants(
 ) -> Iterator[tuple[str, str]]:
     """Yield the old and new ids of variants that write what they wrote under an id that another variant has now, or none."""
     for old_id, variant in old_variants.items():
-        if old_id not in new_variants or not _are_alike(variant, new_variants[old_id]):
+        if old_id not in new_variants or not _writes_as(variant, new_variants[old_id]):
             candidates = [
-                new_id
+                (len(_list_places(each)), new_id)
                 for new_id, each in new_variants.items()
-                if _are_alike(variant, each) and not (new_id in old_variants and _are_alike(old_variants[new_id], each))
+                if _writes_as(variant, each) and not (new_id in old_variants and _writes_as(old_variants[new_id], each))
             ]
-            if len(candidates) == 1:
-                yield old_id, candidates[0]
+            if candidates:
+                yield old_id, min(candidates)[1]
 
 
-def _are_alike(first: Variant, second: Variant) -> bool:
-    places, other_places = (
-        {*(change.path for change in each.changes), *each.drop, each.without} - {None} for each in (first, second)
-    )
-    return len(places & other_places) >= _LIKE_VARIANT * max(len(places | other_places), 1)
+def _writes_as(old: Variant, new: Variant) -> bool:
+    """Whether a variant writes where another one wrote, whatever else it writes."""
+    places = _list_places(old)
+    return bool(places) and len(places & _list_places(new)) >= _LIKE_VARIANT * len(places)
+
+
+def _list_places(variant: Variant) -> set[str | None]:
+    return {*(change.path for change in variant.changes), *variant.drop, variant.without} - {None}
 
 
 def _read_texts(element: Any) -> tuple[str, ...]:  # noqa: ANN401 - components, requirements, use cases

@@ -11,6 +11,7 @@ from archgen.compare.compared_elements import ElementKey
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
 from archgen.compare.losses.composed_places import find_component_renames, needs_other_id
 from archgen.compare.losses.loss_wording import tick_sorted_names
+from archgen.model.component import Connection
 
 _UNMADE_NOTE = "; `autoconnect` joined them, and does no more"
 _MAX_RENAMES = 2
@@ -66,6 +67,38 @@ def find_unmade_connections(context: ChangeContext) -> Iterator[PartnerLoss]:
             yield from (
                 PartnerLoss(index, partner, reason) for index in context.change_indices("connection", input_id)[:1]
             )
+
+
+def find_redirected_connections(context: ChangeContext) -> Iterator[PartnerLoss]:
+    """Find inputs that read something else through a port of a composed component of which they name what they named."""
+    for index, change in enumerate(context.changes):
+        partner = context.owner_before("input", change.element_id)
+        if (change.element_kind, change.kind) != ("connection", "changed") or partner is None:
+            continue
+        old_input = context.before.inputs.get(context.old_id("input", change.element_id))
+        new_input = context.after.inputs.get(change.element_id)
+        if old_input is None or new_input is None or not context.needs_source(change.element_id):
+            continue
+        new_ports = {each.shell_port: each for each in new_input.connections if each.shell_port}
+        for old in old_input.connections:
+            new = new_ports.get(_find_common_port(context, old.shell_port))
+            sources = {context.matched_ids.common_id("output", each) for each in old.outputs}
+            is_gone = any(context.versions.is_removed("output", each) for each in sources)
+            if new is None or is_gone or sources <= set(new.outputs) or partner in _find_shell_owners(context, new):
+                continue
+            old_names, new_names = map(tick_sorted_names, (old.outputs, new.outputs))
+            name = context.name_partner(partner)
+            reason = f"gives {new_names} instead of {old_names} as `{new.shell_port}`, which {name} reads"
+            yield PartnerLoss(index, partner, reason)
+
+
+def _find_common_port(context: ChangeContext, shell_port: str | None) -> str | None:
+    shell, _, name = (shell_port or "").rpartition(".")
+    return f"{context.matched_ids.common_id('composed', shell)}.{name}" if shell else None
+
+
+def _find_shell_owners(context: ChangeContext, connection: Connection) -> frozenset[str]:
+    return context.lasting_owners("composed", (connection.shell_port or "").rpartition(".")[0])
 
 
 def _is_own_edit(context: ChangeContext, input_id: str, sources: Iterable[str]) -> bool:
