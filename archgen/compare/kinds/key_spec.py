@@ -12,6 +12,7 @@ from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.matched_ids import MatchedIds
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
+from archgen.model.component import Component, Group
 from archgen.model.node import Node
 
 
@@ -71,8 +72,13 @@ class ReadContext:
         """Return for each file, and each folder of the project, who owns what stands there."""
         architecture = self.architecture
         nodes = [node for node in architecture.nodes.values() if node.written]
+        elements: list[Group | Component | Node] = [
+            *architecture.groups.values(),
+            *architecture.components.values(),
+            *nodes,
+        ]
         owners_by_place: dict[str, set[str]] = defaultdict(set)
-        for element in (*architecture.groups.values(), *architecture.components.values(), *nodes):
+        for element in elements:
             place = element.at.file
             while place and element.owners:
                 owners_by_place[place].update(element.owners)

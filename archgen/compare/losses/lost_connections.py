@@ -92,9 +92,9 @@ def find_redirected_connections(context: ChangeContext) -> Iterator[PartnerLoss]
             yield PartnerLoss(index, partner, reason)
 
 
-def _find_common_port(context: ChangeContext, shell_port: str | None) -> str | None:
+def _find_common_port(context: ChangeContext, shell_port: str | None) -> str:
     shell, _, name = (shell_port or "").rpartition(".")
-    return f"{context.matched_ids.common_id('composed', shell)}.{name}" if shell else None
+    return f"{context.matched_ids.common_id('composed', shell)}.{name}"
 
 
 def _find_shell_owners(context: ChangeContext, connection: Connection) -> frozenset[str]:
