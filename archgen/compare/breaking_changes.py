@@ -27,7 +27,6 @@ from archgen.compare.losses.missed_deadlines import find_chains_made_late
 from archgen.compare.losses.overloaded_resources import find_overloaded_cores, find_saturated_links
 from archgen.compare.losses.parted_ends import find_parted_ends
 from archgen.compare.losses.renamed_topics import find_renamed_topics
-from archgen.compare.losses.retyped_topics import find_retyped_topics
 from archgen.compare.losses.timing_causes import TimingCauses
 from archgen.compare.losses.unserved_requirements import find_unserved_requirements
 from archgen.compare.losses.weakened_demands import find_rewritten_requirements, find_weakened_policies
@@ -47,7 +46,6 @@ _LOSS_FINDERS = (
     find_retyped_outputs,
     find_redefined_messages,
     find_renamed_topics,
-    find_retyped_topics,
     find_parted_ends,
     find_weakened_outputs,
     find_weakened_words,

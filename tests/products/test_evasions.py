@@ -325,6 +325,23 @@ EVASIONS: dict[str, tuple[list[Edit], set[str]]] = {
         ],
         {LIGUR, TEKNA},
     ),
+    "a parameter of the project makes a reader ask for more": (
+        [
+            (
+                "archgen.yaml",
+                "ros: {distro",
+                "ros: {parameters: {qos_overrides: {/leak: {subscription: {durability: transient_local}}}}, distro",
+            )
+        ],
+        {AEGIR},
+    ),
+    "a parameter of the project, while the reader keeps his clock": (
+        [
+            ("archgen.yaml", "ros: {distro", "ros: {parameters: {use_sim_time: true}, distro"),
+            ("tekna.yaml", "executable: brush,", "executable: brush, parameters: {use_sim_time: false},"),
+        ],
+        {TEKNA},
+    ),
     "a host in another domain": (
         [("aegir.yaml", "    host: pc\n    timing", "    host: rescue\n    timing")],
         {LIGUR, TEKNA},

@@ -1,5 +1,5 @@
-"""Ends that met and meet no more: what is offered is less than was asked for, or one of them is in another domain, goes by
-another clock, or no longer runs.
+"""Ends that met and meet no more: less is offered than was asked for, or one of them sends another message, is in another
+domain, goes by another clock, or no longer runs.
 
 What counts is what is on the wire, after all that launches, parameters and hosts say, and whatever says it is the cause. If
 the reader alone asks for more or turns away, its own partner cuts it off: nobody else loses anything.
@@ -103,8 +103,15 @@ class _Partings:
     def _part(self, old_writer: Endpoint, writer: Endpoint, reader: _FollowedEnd) -> Iterator[_Parting]:
         """Yield what parts a writer from the reader that it met."""
         new_reader = reader.new[0] if reader.new else reader.old
-        if old_writer.flow == "topic" and self._has_qos and _read_qos(writer) != _read_qos(old_writer):
-            yield from self._part_by_qos(old_writer, writer, reader.old)
+        if old_writer.flow == "topic" and self._has_qos and not _find_clashes(old_writer, reader.old):
+            clashes = _find_clashes(writer, reader.old)
+            if clashes:
+                yield self._part_by_qos(clashes, old_writer, writer)
+            else:
+                # Of its own accord it turns away; a parameter of the project may make it do so.
+                clashes = _find_clashes(writer, new_reader)
+                yield from [self._part_by_qos(clashes, reader.old, new_reader)] if clashes else ()
+        yield from self._part_by_message(old_writer, writer, reader.old)
         if old_writer.runs != "active" or reader.old.runs != "active":
             return
         old_domains, domains = (
@@ -112,7 +119,8 @@ class _Partings:
         )
         if None in old_domains or old_domains[0] != old_domains[1]:
             return
-        if domains[0] != domains[1] or (None in domains and domains != old_domains):
+        is_same_unknown = writer.evidence.get("domain") == new_reader.evidence.get("domain")
+        if domains[0] != domains[1] or (None in domains and not is_same_unknown):
             causes = self._find_causes("domain", (old_writer, writer), (reader.old, new_reader))
             own_domain, other_domain = map(_name_domain, domains)
             yield _Parting(
@@ -131,36 +139,45 @@ class _Partings:
             )
         yield from self._part_by_clock(old_writer, writer, reader.old, new_reader)
 
-    def _part_by_qos(self, old_writer: Endpoint, writer: Endpoint, reader: Endpoint) -> Iterator[_Parting]:
-        if _find_clashes(old_writer, reader):
-            return
-        clashes = _find_clashes(writer, reader)
-        if clashes:
-            offered, requested = (
-                join_words(list(dict.fromkeys(words)))
-                for words in ([each.offered for each in clashes], [each.requested for each in clashes])
-            )
-            policies = [key for key in {**old_writer.evidence, **writer.evidence} if key.startswith("qos.")]
-            indices = tuple(
-                self._context.port_change_indices(writer.node, writer.port or "", "qos")
-            ) or self._find_causes(policies, (old_writer, writer))
-            yield _Parting(
-                indices, f"offers {offered} on ", f", where {{}} for {requested}: nothing arrives any more", "asks"
-            )
+    def _part_by_qos(self, clashes: Sequence[QosConflict], old: Endpoint, new: Endpoint) -> _Parting:
+        offered, requested = (
+            join_words(list(dict.fromkeys(words)))
+            for words in ([each.offered for each in clashes], [each.requested for each in clashes])
+        )
+        policies = [key for key in {**old.evidence, **new.evidence} if key.startswith("qos.")]
+        indices = tuple(self._context.port_change_indices(new.node, new.port or "", "qos"))
+        causes = indices or self._find_causes(policies or ["qos"], (old, new))
+        return _Parting(
+            causes, f"offers {offered} on ", f", where {{}} for {requested}: nothing arrives any more", "asks"
+        )
 
     def _part_by_clock(
         self, old_writer: Endpoint, writer: Endpoint, old_reader: Endpoint, reader: Endpoint
     ) -> Iterator[_Parting]:
-        if writer.clock == old_writer.clock or old_writer.clock != old_reader.clock:
+        if old_writer.clock != old_reader.clock:
             return
-        causes = self._find_causes("clock", (old_writer, writer))
         words = _CLOCK_WORDS.get(writer.clock, "a clock that nobody knows")
         if writer.clock != reader.clock:
+            causes = self._find_causes("clock", (old_writer, writer), (old_reader, reader))
             other_words = _CLOCK_WORDS.get(reader.clock, "one that nobody knows")
             yield _Parting(causes, "runs what is on ", f" by {words}, where {{}} by {other_words}", "runs")
-        elif writer.clock == "simulated" and not self._has_clock:
+        elif writer.clock == "simulated" != old_writer.clock and not self._has_clock:
             lead = f"runs {tick_name(writer.node)} by {words}, which nobody gives, and with it "
-            yield _Parting(causes, lead, "; {} it", "needs")
+            yield _Parting(self._find_causes("clock", (old_writer, writer)), lead, "; {} it", "needs")
+
+    def _part_by_message(self, old_writer: Endpoint, writer: Endpoint, reader: Endpoint) -> Iterator[_Parting]:
+        """Yield another message on a topic that belongs to no port, such as /tf; outputs are looked at as such."""
+        before, after = old_writer.message, writer.message
+        if not (before and after) or before == after or old_writer.port or reader.port:
+            return
+        # A message of another name is another message to programs: then its rename is the change.
+        indices = self._context.port_change_indices(writer.node, "", "message") or [
+            index
+            for index, change in enumerate(self._context.changes)
+            if change.element_kind == "message" and change.old_id == before
+        ]
+        lead = f"sends {tick_name(after)} instead of {tick_name(before)} on "
+        yield _Parting(tuple(indices), lead, ", to which {}", "subscribes")
 
     def _find_causes(self, fields: str | Iterable[str], *ends: tuple[Endpoint, Endpoint]) -> tuple[int, ...]:
         """Return the changes that made fields of ends others: where the evidence names a key, those of that key; else
@@ -195,7 +212,13 @@ class _Partings:
             ]
             for holder in holders
         )
-        return named or told or next(filter(None, own), [])
+        anything = (
+            index
+            for index, change in enumerate(self._context.changes)
+            if change.key and find_effect(change.element_kind, change.key) is not Effect.TEXT
+        )
+        # Where nothing leads to it, it is laid at all that may have done it, rather than at nothing.
+        return named or told or next(filter(None, own), []) or list(anything)
 
     def _find_mentions(self, name: str) -> list[int]:
         """Return the changes of nodes that name another one in what is said of them."""
@@ -230,7 +253,7 @@ def _list_holders(architecture: Architecture, end: Endpoint) -> list[ElementKey]
 
 
 def _read_wire(end: Endpoint) -> tuple[object, ...]:
-    return *_read_qos(end), end.domain, end.clock, end.runs, end.evidence.get("domain")
+    return *_read_qos(end), end.message, end.domain, end.clock, end.runs, end.evidence.get("domain")
 
 
 def _read_qos(end: Endpoint) -> tuple[object, ...]:
