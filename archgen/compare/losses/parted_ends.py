@@ -37,15 +37,11 @@ class _Parting(NamedTuple):
 
 
 class _FollowedEnd(NamedTuple):
-    """An end of the first version, and the ends that took its place in the second."""
+    """An end of the first version, the ends that took its place in the second, and whether these are other than by name."""
 
     old: Endpoint
     new: Sequence[Endpoint]
-
-    @property
-    def is_touched(self) -> bool:
-        """Whether anything but its name may be otherwise."""
-        return any(_read_wire(self.old) != _read_wire(each) for each in self.new)
+    is_touched: bool
 
 
 def find_parted_ends(context: ChangeContext) -> Iterator[PartnerLoss]:
@@ -83,22 +79,23 @@ class _Partings:
         for topic in self._context.before.topics.values():
             writers, readers = (self._follow(ends) for ends in (topic.writers, topic.readers))
             # Nearly all are as they were.
-            if not any(each.is_touched for each in (*writers, *readers)):
-                continue
-            for reader in readers:
+            touched_writers = [writer for writer in writers if writer.is_touched]
+            for reader in readers if touched_writers or any(each.is_touched for each in readers) else ():
                 if reader.old.port and not self._context.needs_source(self._context.common_port(reader.old)):
                     continue
-                for writer in writers:
+                for writer in writers if reader.is_touched else touched_writers:
                     partings = [list(self._part(writer.old, new, reader)) for new in writer.new]
                     if partings and all(partings):
                         yield from ((writer.new[0].label, parting, reader.old) for parting in partings[0])
 
     def _follow(self, ends: Iterable[Endpoint]) -> list[_FollowedEnd]:
-        return [
-            _FollowedEnd(end, self._context.find_new_ends(end))
-            for end in ends
-            if self._context.before.nodes[end.node].written
-        ]
+        followed = []
+        for end in ends:
+            if self._context.before.nodes[end.node].written:
+                new_ends = self._context.find_new_ends(end)
+                is_touched = any(_read_wire(end) != _read_wire(each) for each in new_ends)
+                followed.append(_FollowedEnd(end, new_ends, is_touched))
+        return followed
 
     def _part(self, old_writer: Endpoint, writer: Endpoint, reader: _FollowedEnd) -> Iterator[_Parting]:
         """Yield what parts a writer from the reader that it met."""
@@ -262,13 +259,8 @@ def _read_qos(end: Endpoint) -> tuple[object, ...]:
 
 def _find_clashes(writer: Endpoint, reader: Endpoint) -> tuple[QosConflict, ...]:
     """Return the clashes between what is offered and asked for; where two are possible, with either."""
-    offers, requests = ((end.qos, end.qos_if_ignored or end.qos) for end in (writer, reader))
-    clashes = (
-        clash
-        for offer in dict.fromkeys(offers)
-        for asked in dict.fromkeys(requests)
-        for clash in find_qos_conflicts(offer, asked)
-    )
+    offers, requests = ((end.qos, end.qos_if_ignored) if end.qos_if_ignored else (end.qos,) for end in (writer, reader))
+    clashes = (clash for offer in offers for asked in requests for clash in find_qos_conflicts(offer, asked))
     return tuple(dict.fromkeys(clashes))
 
 
