@@ -118,7 +118,7 @@ class _Partings:
             return
         is_same_unknown = writer.evidence.get("domain") == new_reader.evidence.get("domain")
         if domains[0] != domains[1] or (None in domains and not is_same_unknown):
-            causes = self._find_causes("domain", (old_writer, writer), (reader.old, new_reader))
+            causes = self._find_causes(["domain"], (old_writer, writer), (reader.old, new_reader))
             own_domain, other_domain = map(_name_domain, domains)
             yield _Parting(
                 causes,
@@ -129,7 +129,7 @@ class _Partings:
         if writer.runs in {"inactive", "off"} or (writer.runs is None and writer.runs != old_writer.runs):
             rule = writer.evidence["runs"].rule if "runs" in writer.evidence else "unknown"
             yield _Parting(
-                self._find_causes("runs", (old_writer, writer)),
+                self._find_causes(["runs"], (old_writer, writer)),
                 f"no longer has {tick_name(writer.node)} run ({tick_name(rule)}), and with it ",
                 "; {} it",
                 "needs",
@@ -155,12 +155,12 @@ class _Partings:
             return
         words = _CLOCK_WORDS.get(writer.clock, "a clock that nobody knows")
         if writer.clock != reader.clock:
-            causes = self._find_causes("clock", (old_writer, writer), (old_reader, reader))
+            causes = self._find_causes(["clock"], (old_writer, writer), (old_reader, reader))
             other_words = _CLOCK_WORDS.get(reader.clock, "one that nobody knows")
             yield _Parting(causes, "runs what is on ", f" by {words}, where {{}} by {other_words}", "runs")
         elif writer.clock == "simulated" != old_writer.clock and not self._has_clock:
             lead = f"runs {tick_name(writer.node)} by {words}, which nobody gives, and with it "
-            yield _Parting(self._find_causes("clock", (old_writer, writer)), lead, "; {} it", "needs")
+            yield _Parting(self._find_causes(["clock"], (old_writer, writer)), lead, "; {} it", "needs")
 
     def _part_by_message(self, old_writer: Endpoint, writer: Endpoint, reader: Endpoint) -> Iterator[_Parting]:
         """Yield another message on a topic that belongs to no port, such as /tf; outputs are looked at as such."""
@@ -176,14 +176,13 @@ class _Partings:
         lead = f"sends {tick_name(after)} instead of {tick_name(before)} on "
         yield _Parting(tuple(indices), lead, ", to which {}", "subscribes")
 
-    def _find_causes(self, fields: str | Iterable[str], *ends: tuple[Endpoint, Endpoint]) -> tuple[int, ...]:
+    def _find_causes(self, fields: Iterable[str], *ends: tuple[Endpoint, Endpoint]) -> tuple[int, ...]:
         """Return the changes that made fields of ends others: where the evidence names a key, those of that key; else
         those that name the node, or say something of it.
         """
-        names = [fields] if isinstance(fields, str) else list(fields)
         indices: list[int] = []
         for old, new in ends:
-            for name in names:
+            for name in fields:
                 evidence = new.evidence.get(name), old.evidence.get(name)
                 if evidence[0] != evidence[1] or _read_wire(old) != _read_wire(new):
                     rule = next((each.rule for each in evidence if each), "")
@@ -250,11 +249,7 @@ def _list_holders(architecture: Architecture, end: Endpoint) -> list[ElementKey]
 
 
 def _read_wire(end: Endpoint) -> tuple[object, ...]:
-    return *_read_qos(end), end.message, end.domain, end.clock, end.runs, end.evidence.get("domain")
-
-
-def _read_qos(end: Endpoint) -> tuple[object, ...]:
-    return end.qos, end.qos_if_ignored
+    return end.qos, end.qos_if_ignored, end.message, end.domain, end.clock, end.runs, end.evidence.get("domain")
 
 
 def _find_clashes(writer: Endpoint, reader: Endpoint) -> tuple[QosConflict, ...]:

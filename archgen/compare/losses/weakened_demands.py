@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
 
 from archgen.compare.comparison import Change
 from archgen.compare.key_phrases import format_value
@@ -59,51 +59,46 @@ def _list_bound_partners(context: ChangeContext, change: Change) -> set[str]:
     return {owner for owner in owners if owner}
 
 
-@dataclass(frozen=True, slots=True)
-class _PolicyReach:
+class _PolicyReach(NamedTuple):
     """What a policy is about, by common ids: a component that leaves a `kept` set, or enters `let_pass`, has less of it."""
 
-    kept: tuple[frozenset[str], ...] = ()
-    let_pass: frozenset[str] = frozenset()
-
-    def is_weaker_than(self, other: _PolicyReach) -> bool:
-        """Whether it keeps less apart than another one did."""
-        pairs = zip(self.kept, other.kept, strict=False)
-        return (
-            len(self.kept) < len(other.kept)
-            or any(old - new for new, old in pairs)
-            or bool(self.let_pass - other.let_pass)
-        )
+    kept: tuple[frozenset[str], ...]
+    let_pass: frozenset[str]
 
 
 def find_weakened_policies(context: ChangeContext) -> Iterator[PartnerLoss]:
     """Find policies that are gone or keep less apart than before, and the partners whose components they were about."""
-    indices: dict[str, list[int]] = defaultdict(list)
-    for index, change in enumerate(context.changes):
-        if change.element_kind == "policy" and change.kind in {"removed", "changed"}:
-            indices[context.common_id(change)].append(index)
-    for policy_id, causes in indices.items():
-        old_policy = context.before.policies.get(context.old_id("policy", policy_id))
-        new_policy = context.after.policies.get(policy_id)
-        if old_policy is None:
+    if not context.before.policies:
+        return
+    old_evaluator, new_evaluator = SelectorEvaluator(context.before), SelectorEvaluator(context.after)
+    # What is gone needs no policy, and what is new was under none.
+    present = {name for kind, name in context.versions.elements_after if kind == "component"}
+    new_names = {name for _, name in context.versions.elements_after.keys() - context.versions.elements_before.keys()}
+    for old_policy in context.before.policies.values():
+        policy_id = context.matched_ids.common_id("policy", old_policy.id)
+        policy = context.after.policies.get(policy_id)
+        before = _find_reach(old_evaluator, old_policy, context.matched_ids)
+        after = _find_reach(new_evaluator, policy, MatchedIds()) if policy else _PolicyReach((), frozenset())
+        is_whole = len(before.kept) == len(after.kept)
+        left = frozenset[str]().union(*(old - new for old, new in zip(before.kept, after.kept, strict=False))) & present
+        if is_whole and not left and after.let_pass <= before.let_pass | new_names:
             continue
-        old_reach = _find_reach(context.before, old_policy, context.matched_ids)
-        if new_policy is None:
-            verb = "takes away"
-        elif _find_reach(context.after, new_policy, MatchedIds()).is_weaker_than(_keep_present(old_reach, context)):
-            verb = "takes something out of"
-        else:
-            continue
-        parts = _group_by_owner(context, frozenset[str]().union(*old_reach.kept))
+        # A component may leave what a policy selects without a word about the policy; one that moves is another part.
+        causes = context.change_indices("policy", policy_id) or [
+            index for name in sorted(left) for index in context.indices_by_change_kind("component", name, "changed")
+        ]
+        parts: dict[str, list[str]] = defaultdict(list)
+        for component in sorted(frozenset[str]().union(*before.kept)):
+            if owner := context.owner_before("component", component):
+                parts[owner].append(component)
         if len(parts) > 1:
+            verb = "takes something out of" if policy else "takes away"
             title = format_value(old_policy.title)
             reason_text = f"{verb} the policy {tick_name(policy_id)} ({title}); {{}} under it"
-            yield from context.shared_losses(causes, parts, reason_text, "is")
+            yield from context.shared_losses(dict.fromkeys(causes), parts, reason_text, "is")
 
 
-def _find_reach(architecture: Architecture, policy: Policy, matched_ids: MatchedIds) -> _PolicyReach:
-    evaluator = SelectorEvaluator(architecture)
-
+def _find_reach(evaluator: SelectorEvaluator, policy: Policy, matched_ids: MatchedIds) -> _PolicyReach:
     def select(text: str) -> frozenset[str]:
         components = evaluator.evaluate(text)[0].components if text else ()
         return frozenset(matched_ids.common_id("component", each) for each in components)
@@ -115,28 +110,16 @@ def _find_reach(architecture: Architecture, policy: Policy, matched_ids: Matched
     return _PolicyReach((select(policy.require.of),), select(policy.require.inputs_from) | accepted | guard)
 
 
-def list_policy_partners(architecture: Architecture, matched_ids: MatchedIds) -> Mapping[str, frozenset[str]]:
-    """Return for each policy, by common id, the partners whose components it is about."""
-    partners = {}
-    for policy in architecture.policies.values():
-        components = frozenset[str]().union(*_find_reach(architecture, policy, MatchedIds()).kept)
-        owners = {owner for each in components for owner in architecture.components[each].owners}
-        common_id = matched_ids.common_id("policy", policy.id)
-        partners[common_id] = frozenset(matched_ids.common_id("partner", owner) for owner in owners)
+def list_policy_partners(
+    before: Architecture, after: Architecture, matched_ids: MatchedIds
+) -> Mapping[str, frozenset[str]]:
+    """Return for each policy, by common id, the partners whose components it is about in either version."""
+    partners: dict[str, frozenset[str]] = {}
+    for architecture, ids in ((before, matched_ids), (after, MatchedIds())):
+        evaluator = SelectorEvaluator(architecture)
+        for policy in architecture.policies.values():
+            components = frozenset[str]().union(*_find_reach(evaluator, policy, MatchedIds()).kept)
+            owners = {owner for each in components for owner in architecture.components[each].owners}
+            name = ids.common_id("policy", policy.id)
+            partners[name] = partners.get(name, frozenset()) | {ids.common_id("partner", owner) for owner in owners}
     return partners
-
-
-def _keep_present(reach: _PolicyReach, context: ChangeContext) -> _PolicyReach:
-    """Return what a policy was about of all that is still there: what is gone needs no policy."""
-    present = {name for kind, name in context.versions.elements_after if kind == "component"}
-    new_elements = context.versions.elements_after.keys() - context.versions.elements_before.keys()
-    new_names = {name for kind, name in new_elements if kind in {"component", "input"}}
-    return _PolicyReach(tuple(each & present for each in reach.kept), reach.let_pass | new_names)
-
-
-def _group_by_owner(context: ChangeContext, components: Iterable[str]) -> Mapping[str, list[str]]:
-    parts: dict[str, list[str]] = defaultdict(list)
-    for component in sorted(components):
-        if owner := context.owner_before("component", component):
-            parts[owner].append(component)
-    return parts

@@ -94,3 +94,12 @@ def test_a_component_that_is_gone_needs_no_policy(compared: Compared) -> None:
         ("  q: {require: {of: act, inputs_from: drive}, title: Only drive acts}\n", ""),
     ]
     assert not [each for each in broken(compared, ROBOT, edits) if each.startswith("p")]
+
+
+def test_who_leaves_what_a_policy_selects_without_a_word_about_it(compared: Compared) -> None:
+    tagged = ROBOT.replace("to: sense}", "to: 'tag:quiet'}").replace("eye: {outputs", "eye: {tags: [quiet], outputs")
+    said = broken(compared, tagged, [("tags: [quiet], ", "")])
+    words = POLICY_P.replace("p/{}", "sense.eye/tags").replace(
+        "`sense.eye` of A, `drive.base` of B", "`drive.base` of B"
+    )
+    assert said == [words.format(each) for each in ("b", "c")]
