@@ -211,6 +211,7 @@ VALUE_READERS: Mapping[str, ValueReader | None] = {
             "parameter_declaration.from",
             "forge",
             "repository_address",
+            "version_digits",
         ),
         mapping_values.get_text,
     ),

@@ -10,10 +10,10 @@ from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
 
 AGREEMENT_FOLDER, AGREEMENT_SUFFIX = "review", ".yaml"
-BreakCategory = Literal["wire", "promise", "meaning", "source"]
-"""What a partner loses: what programs send each other, what was promised of it, what it means, or only the ids and files
-that its own files name."""
-BREAK_CATEGORIES: tuple[BreakCategory, ...] = ("wire", "promise", "meaning", "source")
+BreakCategory = Literal["wire", "promise", "meaning", "source", "agreement"]
+"""What a partner loses: what programs send each other, what was promised of it, what it means, only the ids and files
+that its own files name, or what it signed."""
+BREAK_CATEGORIES: tuple[BreakCategory, ...] = ("wire", "promise", "meaning", "source", "agreement")
 
 
 def agreement_file(partner_id: str) -> str:
@@ -35,6 +35,7 @@ class BreakPolicy:
     promise: Severity = Severity.WARNING
     meaning: Severity = Severity.WARNING
     source: Severity = Severity.NOTE
+    agreement: Severity = Severity.WARNING
 
     @classmethod
     def from_severity(cls, severity: Severity) -> BreakPolicy:
@@ -42,7 +43,7 @@ class BreakPolicy:
 
         Files that say `error` may be older than these categories: no job may turn red over a text because of them.
         """
-        return cls(severity, severity, min(severity, cls().meaning), min(severity, cls().source))
+        return cls(severity, severity, min(severity, cls().meaning), min(severity, cls().source), severity)
 
     @property
     def gravest(self) -> Severity:
