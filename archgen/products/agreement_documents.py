@@ -72,7 +72,7 @@ def make_project_agreement(  # noqa: PLR0913 - what may be printed instead of wh
         signed_version = signed_agreements.read_signed_version(checked_project, signed_tags[0])
     is_readable = signed_version is not None and not signed_version.checked_project.structural_errors
     earlier_revision = (
-        (earlier_version.title, _make_timed_lookup(earlier_version.checked_project)) if earlier_version else None
+        (earlier_version.title, make_timed_lookup(earlier_version.checked_project)) if earlier_version else None
     )
     signed_revision = None
     if signed_version and is_readable:
@@ -80,9 +80,9 @@ def make_project_agreement(  # noqa: PLR0913 - what may be printed instead of wh
         signed_revision = (
             earlier_revision
             if is_earlier
-            else (signed_version.title, _make_timed_lookup(signed_version.checked_project))
+            else (signed_version.title, make_timed_lookup(signed_version.checked_project))
         )
-    lookup = _make_timed_lookup(checked_project)
+    lookup = make_timed_lookup(checked_project)
     partner_agreement = make_agreement(
         lookup,
         first,
@@ -102,6 +102,8 @@ def make_project_agreement(  # noqa: PLR0913 - what may be printed instead of wh
         ),
         find_budget=_make_budget_finder(lookup),
         observations=observations,
+        standing=checked_project.steps,
+        variants={name: make_timed_lookup(variant) for name, variant in checked_project.variants.items()},
     )
     # Without interfaces there may still be removed ones to agree on.
     if not partner_agreement.interface_count and not (
@@ -124,7 +126,7 @@ def parse_issue_date(text: str) -> str:
     return text
 
 
-def _make_timed_lookup(checked_project: CheckedProject) -> Lookup:
+def make_timed_lookup(checked_project: CheckedProject) -> Lookup:
     """Build the look-ups of the whole project, with timing."""
     return replace(
         project_views.make_scoped_lookup(checked_project, OutputOptions()),

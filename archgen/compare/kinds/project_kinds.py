@@ -38,7 +38,10 @@ def _read_agreements(_project: ProjectInfo, context: ReadContext) -> Mapping[str
         }
         if agreement.signed:
             values[f"{agreement.id}.signed"] = ", ".join(
-                [agreement.signed.tag or "without a tag", *(f"{each} by {who}" for each, who in agreement.signed.by.items())]
+                [
+                    agreement.signed.tag or "without a tag",
+                    *(f"{each} by {who}" for each, who in agreement.signed.by.items()),
+                ]
             )
     return values
 

@@ -5,13 +5,13 @@ Titles, ids, order, hosts, nodes and what is only expected are no part of it. Th
 
 from __future__ import annotations
 
-import hashlib
-import json
 from collections.abc import Iterable, Iterator
 
+from archgen.diagnostics.source_span import Span
+from archgen.model.agreed_terms import RULES, hash_text
 from archgen.model.declared_timing import OutputTiming
-from archgen.model.known_interfaces import Interface, Interfaces
-from archgen.model.node import Endpoint
+from archgen.model.known_interfaces import Interface, InterfaceField, Interfaces
+from archgen.model.node import Endpoint, Evidence
 from archgen.model.partner_interfaces import PartnerInterface, list_givers
 from archgen.model.quantity import Quantity
 from archgen.model.ros_distro import is_ros_1
@@ -21,18 +21,19 @@ from archgen.views.agreement.output_promises import identify_words, list_counted
 from archgen.views.agreement.promise_rows import identify_qos
 from archgen.views.lookup import Lookup
 
-_DIGITS = 6
+_CLOCK_WORDS = {"simulated": "simulated time", None: "an unknown clock"}
+_NO_EVIDENCE = Evidence("unknown")
 
 
-def hash_interface(lookup: Lookup, interface: PartnerInterface) -> str:
-    """Return the version of an interface, six hexadecimal digits."""
+def hash_interface(lookup: Lookup, interface: PartnerInterface, rules: int = RULES) -> str:
+    """Return the version of an interface, six hexadecimal digits. By the first rules the launch has no say in it."""
     architecture = lookup.architecture
     with_qos = interface.flow == "topic" and not is_ros_1(architecture.distro)
     givers = list_givers(lookup.architecture, interface)
     message_type = architecture.types.get(interface.type or "")
     content = {
         "flow": interface.flow,
-        "names": sorted(interface.topic_names),
+        "names": sorted({_name_in_program(endpoint) for endpoint in interface.giver_endpoints}),
         # The type is a name of the project's own; without a message it is all that says what flows.
         "carried": interface.message or f"type {interface.type}",
         "definitions": list(_list_definitions(architecture.interfaces, interface.message)),
@@ -51,7 +52,42 @@ def hash_interface(lookup: Lookup, interface: PartnerInterface) -> str:
     content |= {"frame": frame_name} if frame_name else {}
     words = identify_words(list_counted_ports(lookup, interface))
     content |= {"words": words} if words else {}
-    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:_DIGITS]
+    content |= _describe_launch(interface) if rules > 1 else {}
+    return hash_text(content)
+
+
+def _describe_launch(interface: PartnerInterface) -> dict[str, object]:
+    """Return what the launch makes of both sides, where that is not what the programs say: nothing for most interfaces."""
+    givers, takers = interface.giver_endpoints, interface.taker_endpoints
+    sides = [(side, endpoint) for side, endpoints in (("gives", givers), ("takes", takers)) for endpoint in endpoints]
+    parts: dict[str, set[str]] = {
+        "wire": {f"{side} {each.name}" for side, each in sides if each.name != _name_in_program(each)},
+        "domain": {f"{side} {each.domain}" for side, each in sides if each.domain is not None},
+        "clock": {f"{side} {each.clock}" for side, each in sides if each.clock != "system"},
+        "runs": {f"{side} {each.runs}" for side, each in sides if each.runs in {"inactive", "off"}},
+    }
+    return {key: sorted(values) for key, values in parts.items() if values}
+
+
+def list_launch_words(interface: PartnerInterface) -> Iterator[tuple[str, Span]]:
+    """Yield sentences on what the launch makes of an interface, each with where that is written."""
+    for endpoint in (*interface.giver_endpoints, *interface.taker_endpoints):
+        node = f"`{endpoint.node}`"
+        sentences = {
+            "name": f"`{endpoint.program_name}` of {node} runs on `{endpoint.name}`"
+            if endpoint.name != _name_in_program(endpoint)
+            else "",
+            "domain": f"{node} runs in the domain {endpoint.domain}" if endpoint.domain is not None else "",
+            "clock": f"{node} follows {_CLOCK_WORDS[endpoint.clock]}" if endpoint.clock != "system" else "",
+            "runs": f"{node} is {endpoint.runs}" if endpoint.runs in {"inactive", "off"} else "",
+        }
+        for name, sentence in sentences.items():
+            if sentence:
+                yield sentence, endpoint.evidence.get(name, _NO_EVIDENCE).at
+
+
+def _name_in_program(endpoint: Endpoint) -> str:
+    return endpoint.program_name or endpoint.name
 
 
 def _list_definitions(interfaces: Interfaces, message: str | None) -> Iterator[object]:
@@ -69,10 +105,18 @@ def _list_definitions(interfaces: Interfaces, message: str | None) -> Iterator[o
 
 def _write_definition(definition: Interface) -> Iterator[object]:
     for part in definition.parts:
-        yield [[field.name, field.type + field.array, field.default, _collapse_blanks(field.comment)] for field in part]
+        yield [
+            [field.name, field.type + field.array, field.default, _read_comment(definition, field)] for field in part
+        ]
     # Constants have no place on the wire: their order says nothing.
     for constants in definition.constants:
         yield sorted([item.name, item.type, item.value, _collapse_blanks(item.comment)] for item in constants)
+
+
+def _read_comment(definition: Interface, field: InterfaceField) -> str:
+    """Return what is said of a field. An introduction counted as said of the header: signed versions stay what they are."""
+    introduction = definition.introduction if field.name == "header" else ""
+    return _collapse_blanks(f"{introduction} {field.comment}")
 
 
 def _list_qos(lookup: Lookup, endpoints: Iterable[Endpoint]) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from archgen.compare.match_elements import match_elements
 from archgen.compare.matched_ids import MatchedIds
@@ -27,12 +27,13 @@ from archgen.views.shapes import Outline, Paragraph
 
 @dataclass(frozen=True, slots=True)
 class PartnerAgreement:
-    """An agreement: its outline, its picture, the number of interfaces, and the changes (None: not asked for)."""
+    """An agreement: its outline, its picture, the number of interfaces, the changes (None: not asked for), its content."""
 
     outline: Outline
     graph: Graph
     interface_count: int
     changes: AgreementChanges | None
+    content: AgreementContent
 
 
 def make_agreement(  # noqa: PLR0913 - what a document is made of
@@ -48,12 +49,15 @@ def make_agreement(  # noqa: PLR0913 - what a document is made of
     notices: Sequence[Paragraph] = (),
     find_budget: BudgetFinder | None = None,
     observations: Sequence[Observation] = (),
+    standing: tuple[str, ...] = (),
+    variants: Mapping[str, Lookup] | None = None,
 ) -> PartnerAgreement:
     """Make the agreement of two partners.
 
     `earlier_revision`, with which it is compared, and `signed_revision`, whose versions of interfaces it tells, are the
     names of revisions with their look-ups. `find_budget` is asked for each chain between the two. `observations` are
-    shown beside what is promised.
+    shown beside what is promised. `standing` are the variants that are laid over what `lookup` shows, `variants` the
+    look-ups of the project in each of its others.
     """
     # The later revision is listed under its own ids: an empty `MatchedIds` renames nothing.
     records = _record_interfaces(lookup, (first, second), MatchedIds())
@@ -85,8 +89,15 @@ def make_agreement(  # noqa: PLR0913 - what a document is made of
         issue_date,
         find_crossing_budgets(records, find_budget) if find_budget else {},
         signatures,
+        standing,
+        {name: compare_lookups(("", lookup), each, (first, second)) for name, each in (variants or {}).items()},
     )
-    return PartnerAgreement(outline_agreement(content), graph, len(records), changes)
+    return PartnerAgreement(outline_agreement(content), graph, len(records), changes, content)
+
+
+def compare_lookups(earlier_revision: tuple[str, Lookup], lookup: Lookup, pair: PartnerPair) -> AgreementChanges:
+    """Compare what is between two partners, by their later ids, with what was at an earlier revision."""
+    return _compare_with(earlier_revision, lookup, pair, _record_interfaces(lookup, pair, MatchedIds()))
 
 
 def _add_measured(lookup: Lookup, record: InterfaceRecord, observations: Sequence[Observation]) -> InterfaceRecord:
