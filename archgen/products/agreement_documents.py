@@ -32,13 +32,14 @@ from archgen.views.shapes import Paragraph, Section
 from archgen.views.tables.finding_tables import describe_severities
 from archgen.views.timing.timing_lookup import complete_with_chains
 
-AgreementFormat = Literal["docx", "markdown", "html"]
+AgreementFormat = Literal["docx", "markdown", "html", "json"]
 FORMAT_BY_ENDING: Mapping[str, AgreementFormat] = {
     ".docx": "docx",
     ".md": "markdown",
     ".markdown": "markdown",
     ".html": "html",
     ".htm": "html",
+    ".json": "json",
 }
 """The format by the ending of a file's name."""
 _MAX_LISTED = 8
@@ -221,6 +222,15 @@ def render_agreement_markdown(partner_agreement: PartnerAgreement) -> str:
     return written_files.files["agreement.md"].decode()
 
 
+def render_agreement_text(partner_agreement: PartnerAgreement, agreement_format: AgreementFormat) -> str:
+    """Write an agreement as Markdown or JSON."""
+    if agreement_format == "markdown":
+        return render_agreement_markdown(partner_agreement)
+    from archgen.emit.data.agreement_json import write_agreement_json
+
+    return write_agreement_json(partner_agreement.content)
+
+
 def _walk_sections(sections: tuple[Section, ...]) -> Iterator[Section]:
     """Yield all sections, each before those below it."""
     for section in sections:
@@ -261,8 +271,8 @@ def write_agreement(
 ) -> None:
     """Write an agreement into a file."""
     options = options or OutputOptions()
-    if agreement_format == "markdown":
-        file_tree.write_file(target, render_agreement_markdown(partner_agreement).encode())
+    if agreement_format in {"markdown", "json"}:
+        file_tree.write_file(target, render_agreement_text(partner_agreement, agreement_format).encode())
     else:
         file_tree.write_file(
             target,

@@ -206,6 +206,11 @@ def compare_named_versions(before: ProjectVersion, after: ProjectVersion) -> Com
         comparison = add_variant_breaks(
             comparison, _compare_variants(comparison, before.checked_project, after.checked_project)
         )
+    versions = before.checked_project, after.checked_project
+    if comparison.changes and any(each.architecture.agreements for each in versions):
+        from archgen.products.agreement_gate import add_agreement_breaks
+
+        comparison = add_agreement_breaks(comparison, *versions)
     return replace(comparison, cured_findings=()) if after.checked_project.structural_errors else comparison
 
 

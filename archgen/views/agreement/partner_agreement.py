@@ -59,8 +59,7 @@ def make_agreement(  # noqa: PLR0913 - what a document is made of
     shown beside what is promised. `standing` are the variants that are laid over what `lookup` shows, `variants` the
     look-ups of the project in each of its others.
     """
-    # The later revision is listed under its own ids: an empty `MatchedIds` renames nothing.
-    records = _record_interfaces(lookup, (first, second), MatchedIds())
+    records = record_interfaces(lookup, (first, second))
     changes = _compare_with(earlier_revision, lookup, (first, second), records) if earlier_revision else None
     signatures = SignatureRecord(tuple(signed_tags))
     if signed_revision:
@@ -97,7 +96,7 @@ def make_agreement(  # noqa: PLR0913 - what a document is made of
 
 def compare_lookups(earlier_revision: tuple[str, Lookup], lookup: Lookup, pair: PartnerPair) -> AgreementChanges:
     """Compare what is between two partners, by their later ids, with what was at an earlier revision."""
-    return _compare_with(earlier_revision, lookup, pair, _record_interfaces(lookup, pair, MatchedIds()))
+    return _compare_with(earlier_revision, lookup, pair, record_interfaces(lookup, pair))
 
 
 def _add_measured(lookup: Lookup, record: InterfaceRecord, observations: Sequence[Observation]) -> InterfaceRecord:
@@ -115,11 +114,15 @@ def _compare_with(
     matched_ids = match_elements(earlier_lookup.architecture, lookup.architecture)
     old_partners = matched_ids.old_ids.get("partner", {})
     old_pair = old_partners.get(pair[0], pair[0]), old_partners.get(pair[1], pair[1])
-    old_records = _record_interfaces(earlier_lookup, old_pair, matched_ids)
+    old_records = record_interfaces(earlier_lookup, old_pair, matched_ids)
     return compare_revisions(name, old_records, records, matched_ids)
 
 
-def _record_interfaces(lookup: Lookup, pair: PartnerPair, matched_ids: MatchedIds) -> tuple[InterfaceRecord, ...]:
+def record_interfaces(
+    lookup: Lookup, pair: PartnerPair, matched_ids: MatchedIds | None = None
+) -> tuple[InterfaceRecord, ...]:
+    """Return the interfaces between two partners, by the ids of a later revision where these are given."""
+    matched_ids = matched_ids or MatchedIds()
     activity_names = activity_builder.name_activities(lookup.architecture)
     all_terms = [
         gather_terms(lookup, activity_names, interface)

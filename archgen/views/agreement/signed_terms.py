@@ -28,18 +28,27 @@ def has_departures(changes: AgreementChanges) -> bool:
     return any(list_departures(changes))
 
 
-def list_departures(changes: AgreementChanges) -> Iterator[str]:
-    """Yield lines on each interface that is not as it was signed: what is gone or promises less first."""
-    for record in changes.removed_records:
-        yield f"`{record.key[0]}` was signed, and is gone"
+def group_departures(changes: AgreementChanges) -> dict[InterfaceKey, tuple[str, ...]]:
+    """Return what is not as it was signed, by interface: what is gone or promises less first."""
+    departures: dict[InterfaceKey, tuple[str, ...]] = {
+        record.key: ("was signed, and is gone",) for record in changes.removed_records
+    }
     terms_by_key = {key: _list_binding_terms(changes, key) for key in changes.changes_by_key}
     changed_keys = sorted(key for key, terms in terms_by_key.items() if terms)
     for key in sorted(changed_keys, key=lambda key: not any(term.is_weaker for term in terms_by_key[key])):
-        yield f"`{key[0]}` ({_describe_versions(changes, key)})"
-        for term in sorted(terms_by_key[key], key=lambda term: not term.is_weaker):
-            yield f"  {'weaker: ' if term.is_weaker else ''}{_describe_term(term)}"
-    for key in sorted(changes.added_keys):
-        yield f"`{key[0]}` was not signed"
+        terms = sorted(terms_by_key[key], key=lambda term: not term.is_weaker)
+        departures[key] = tuple(f"{'weaker: ' if term.is_weaker else ''}{_describe_term(term)}" for term in terms)
+    return departures | dict.fromkeys(sorted(changes.added_keys), ("was not signed",))
+
+
+def list_departures(changes: AgreementChanges) -> Iterator[str]:
+    """Yield lines on each interface that is not as it was signed."""
+    for key, lines in group_departures(changes).items():
+        if key in changes.changes_by_key:
+            yield f"`{key[0]}` ({_describe_versions(changes, key)})"
+            yield from (f"  {line}" for line in lines)
+        else:
+            yield f"`{key[0]}` {lines[0]}"
 
 
 def list_expected_changes(changes: AgreementChanges) -> Iterator[str]:
