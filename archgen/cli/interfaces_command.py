@@ -137,7 +137,7 @@ def _exit_by_terms(
     """End with the status of the findings; with 1 where terms are not as signed, which is said on the error stream."""
     from archgen.diagnostics.safe_text import make_visible
     from archgen.git.project_revision import find_revision
-    from archgen.views.agreement.signed_terms import has_departures, write_verdict
+    from archgen.views.agreement.signed_terms import has_departures, list_launch_notes, write_verdict
 
     if signed_version is None or agreement.changes is None:
         command_support.exit_by_findings(checked_project)
@@ -147,6 +147,8 @@ def _exit_by_terms(
         click.echo("note: this is about the working tree, which has changes that are not committed", err=True)
     for line in write_verdict(agreement.changes):
         click.echo(make_visible(line), err=True)
+    for note in list_launch_notes(agreement.content):
+        command_support.print_warning(note)
     sys.exit(1 if has_departures(agreement.changes) else command_support.exit_status(checked_project.findings))
 
 

@@ -54,8 +54,8 @@ KEYS: Mapping[str, Mapping[str, str]] = {
         "validity": "text", "other": "text",
     },
     "signature": {
-        "rules": "count", "tag": "text", "revision": "text", "terms": "version_digits", "by": "signature.by",
-        "versions": "signature.versions",
+        "rules": "count", "tag": "text", "revision": "signature.revision", "terms": "version_digits",
+        "by": "signature.by", "versions": "signature.versions",
     },
     "ros": {
         "distro": "ros.distro", "interfaces": "files", "shared_topics": "shared_topics", "parameters": "ros_parameters",

@@ -82,9 +82,10 @@ class Agreement:
         return first, second
 
     @property
-    def binds(self) -> bool:
-        """Whether both partners signed."""
-        return self.signed is not None and all(partner in self.signed.by for partner in self.pair)
+    def binding_signature(self) -> Signature | None:
+        """Return what both partners signed, None where one of them did not."""
+        signed = self.signed
+        return signed if signed and all(partner in signed.by for partner in self.pair) else None
 
     def find_term(self, name: str, interface: str) -> str | None:
         """Return a term of an interface, or that of all interfaces."""

@@ -13,6 +13,7 @@ from archgen.emit import file_tree
 from archgen.emit.picture import Picture
 from archgen.git.project_revision import find_revision, find_revision_date
 from archgen.link.timing_overrides import apply_overrides
+from archgen.model.agreed_terms import Signature, find_agreement
 from archgen.model.partner_interfaces import find_interfaces_between
 from archgen.pipeline import CheckedProject
 from archgen.products import project_views, signed_agreements
@@ -26,6 +27,7 @@ from archgen.timing.search.change_trials import ChangeTrials
 from archgen.views import inline_text
 from archgen.views.agreement.budget_section import BudgetFinder
 from archgen.views.agreement.partner_agreement import PartnerAgreement, make_agreement
+from archgen.views.agreement.signature_record import SignedTag
 from archgen.views.graph_shapes import Graph
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Paragraph, Section
@@ -69,8 +71,10 @@ def make_project_agreement(  # noqa: PLR0913 - what may be printed instead of wh
     """
     _check_partners(checked_project, first, second)
     signed_tags = signed_agreements.find_signed_tags(checked_project.root, first, second)
-    if signed_version is None and signed_tags:
-        signed_version = signed_agreements.read_signed_version(checked_project, signed_tags[0])
+    signature = find_agreement(checked_project.architecture.agreements, first, second).binding_signature
+    if signed_version is None:
+        signed_version = signed_agreements.read_last_signed(checked_project, signature, signed_tags)
+    is_recorded = signature is not None and signed_version is not None and signed_version.commit == signature.revision
     is_readable = signed_version is not None and not signed_version.checked_project.structural_errors
     earlier_revision = (
         (earlier_version.title, make_timed_lookup(earlier_version.checked_project)) if earlier_version else None
@@ -97,9 +101,10 @@ def make_project_agreement(  # noqa: PLR0913 - what may be printed instead of wh
         else issue_date,
         signed_tags=signed_tags,
         signed_revision=signed_revision,
+        signed_rules=signature.rules if signature and is_recorded else 1,
         notices=(
             *_error_notices(checked_project, earlier_version),
-            *([] if is_readable or not signed_tags else [_unreadable_notice(signed_tags[0].name)]),
+            *([] if is_readable or not (signature or signed_tags) else [_unreadable_notice(signature, signed_tags)]),
         ),
         find_budget=_make_budget_finder(lookup),
         observations=observations,
@@ -199,7 +204,8 @@ def _error_notices(checked_project: CheckedProject, earlier_version: ProjectVers
             yield Paragraph(inline_text.to_inlines(message), "error")
 
 
-def _unreadable_notice(tag_name: str) -> Paragraph:
+def _unreadable_notice(signature: Signature | None, signed_tags: Sequence[SignedTag]) -> Paragraph:
+    tag_name = signature.tag if signature else signed_tags[0].name
     message = f"What was signed at {tag_name} cannot be read, so nothing is said of its versions."
     return Paragraph(inline_text.to_inlines(message), "warning")
 

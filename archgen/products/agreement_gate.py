@@ -6,7 +6,6 @@ are new are held against the commit that they name, so that nobody signs by edit
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Mapping
 
 from archgen.compare import Change, Comparison
@@ -26,9 +25,8 @@ from archgen.products.signed_agreements import read_agreed_version
 from archgen.project import ProjectNotFoundError
 from archgen.views.agreement.partner_agreement import compare_lookups, record_interfaces
 from archgen.views.agreement.signed_terms import group_departures
-from archgen.views.agreement.term_changes import AgreementChanges
+from archgen.views.lookup import Lookup
 
-_HASH = re.compile(r"[0-9a-f]{40}|[0-9a-f]{64}")
 _MAX_TOLD = 4
 """So many interfaces are told of an agreement that is left; the others are counted."""
 Departures = Mapping[str, tuple[str, ...]]
@@ -55,14 +53,15 @@ def _list_pairs(comparison: Comparison, before: CheckedProject, after: CheckedPr
     old_agreements, new_agreements = (side.architecture.agreements for side in (before, after))
     matched_partners = {old: new for new, old in comparison.matched_ids.old_ids.get("partner", {}).items()}
     seen: set[str] = set()
+    lookups: dict[int, tuple[CheckedProject, Lookup]] = {}
     for old in old_agreements.values():
         first, second = (matched_partners.get(partner, partner) for partner in old.pair)
         new = find_agreement(new_agreements, first, second)
         seen.add(new.id)
-        yield _AgreementPair(comparison, before, after, old, new)
+        yield _AgreementPair(comparison, before, after, old, new, lookups)
     for new in new_agreements.values():
         if new.id not in seen:
-            yield _AgreementPair(comparison, before, after, Agreement(new.id), new)
+            yield _AgreementPair(comparison, before, after, Agreement(new.id), new, lookups)
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,18 +73,20 @@ class _AgreementPair:
     after: CheckedProject
     old: Agreement
     new: Agreement
+    lookups: dict[int, tuple[CheckedProject, Lookup]]
+    """The look-ups of versions that were asked for, which all agreements share."""
 
     def find_breaks(self) -> Iterator[Change]:
         """Yield a change for each thing by which the second version leaves what was signed."""
         old, new = self.old.signed, self.new.signed
-        if not (self.old.binds or new):
+        if not (self.old.binding_signature or new):
             return
         if new is None:
             yield self._tell_withdrawal()
             return
         faults = list(self._find_faults(new, is_new=old != new))
         yield from (self._make_change(path, text, "is no signature") for path, text in faults)
-        if self.new.binds and not faults:
+        if self.new.binding_signature and not faults:
             yield from self._find_departures(new)
 
     def _tell_withdrawal(self) -> Change:
@@ -97,10 +98,13 @@ class _AgreementPair:
     def _find_faults(self, signed: Signature, *, is_new: bool) -> Iterator[tuple[tuple[str, ...], str]]:
         """Yield by which key a signature is none, and why."""
         revision = signed.revision or ""
+        if self.old.binding_signature and not self.new.binding_signature:
+            missing = next(each for each in self.new.pair if each not in signed.by)
+            yield ("by",), f"`{missing}` did not sign what takes the place of {self._name(self.old.signed)}"
         if signed.rules not in range(1, RULES + 1):
             yield ("rules",), f"the signature is by rules {signed.rules}, which this version of archgen does not know"
-        elif not _HASH.fullmatch(revision):
-            yield ("revision",), "the signature names no commit by its whole hash"
+        elif not revision:
+            yield ("revision",), "the signature names no commit"
         elif (tagged := self._find_tagged(signed)) not in {"", revision}:
             yield (
                 ("tag",),
@@ -123,9 +127,6 @@ class _AgreementPair:
                 (),
                 f"the signature stands in `{self.new.at.file}`: it counts in `{signature_file(self.new.id)}` alone",
             )
-        if self.old.binds and not self.new.binds:
-            missing = next(each for each in self.new.pair if each not in signed.by)
-            yield ("by",), f"`{missing}` did not sign what takes the place of {self._name(self.old.signed)}"
         there = self._read_signed(signed)
         if there is None:
             name = shorten_hash(signed.revision or "")
@@ -134,7 +135,7 @@ class _AgreementPair:
                 f"what was signed cannot be read: the commit {name} is not here, or holds no sound project",
             )
             return
-        versions = _list_versions(there, self.new.pair, signed.rules)
+        versions = self._list_versions(there, signed.rules)
         for giver, key in sorted({(g, k) for each in (versions, signed.versions) for g in each for k in each[g]}):
             written, found = (each.get(giver, {}).get(key) for each in (signed.versions, versions))
             if written != found:
@@ -156,12 +157,12 @@ class _AgreementPair:
 
     def _find_departures(self, signed: Signature) -> Iterator[Change]:
         """Yield a change for the project, and for each variant, that is not as signed and was so before."""
-        first = compare_standings(self.before, self.after, self.new)
+        first = self._compare_standings(self.before, self.after)
         names = [name for name in self.after.variants if name in self.before.variants]
         variants = {
             name: departures
             for name in names
-            if (departures := compare_standings(self.before.variants[name], self.after.variants[name], self.new))
+            if (departures := self._compare_standings(self.before.variants[name], self.after.variants[name]))
         }
         # What is as it was before is as signed as it was before.
         if not first and not variants and self.old.signed == signed:
@@ -180,7 +181,7 @@ class _AgreementPair:
         self, signed: Signature, then: CheckedProject | None, before: CheckedProject, after: CheckedProject, name: str
     ) -> Iterator[Change]:
         old, new = (
-            compare_standings(then, side, self.new) if then else _compare_digits(signed, side, self.new)
+            self._compare_standings(then, side) if then else self._compare_digits(signed, side)
             for side in (before, after)
         )
         is_new = self.old.signed != signed
@@ -208,33 +209,35 @@ class _AgreementPair:
         project_id = self.after.architecture.project.id
         return Change(kind, "project", project_id, key=key, breaks=breaks, text=text)  # type: ignore[arg-type]
 
+    def _compare_standings(self, signed: CheckedProject, now: CheckedProject) -> Departures:
+        """Return by interface what of a version is not as it was signed, and what of the terms in words."""
+        changes = compare_lookups(("", self._look_at(signed)), self._look_at(now), self.new.pair)
+        departures: dict[str, tuple[str, ...]] = {}
+        for key, lines in group_departures(changes).items():
+            departures[f"`{key[0]}`"] = (*departures.get(f"`{key[0]}`", ()), *lines)
+        then, there = (side.architecture.agreements.get(self.new.id, self.new).terms for side in (signed, now))
+        words = dict.fromkeys(name for name in (*then, *there) if then.get(name) != there.get(name))
+        return departures | ({"the terms in words": tuple(words)} if words else {})
 
-def compare_standings(signed: CheckedProject, now: CheckedProject, agreement: Agreement) -> Departures:
-    """Return by interface what of a version is not as it was signed, and what of the terms in words."""
-    changes: AgreementChanges = compare_lookups(("", make_timed_lookup(signed)), make_timed_lookup(now), agreement.pair)
-    departures: dict[str, tuple[str, ...]] = {}
-    for key, lines in group_departures(changes).items():
-        departures[f"`{key[0]}`"] = (*departures.get(f"`{key[0]}`", ()), *lines)
-    then = signed.architecture.agreements.get(agreement.id, agreement).terms
-    words = dict.fromkeys(name for name in (*then, *agreement.terms) if then.get(name) != agreement.terms.get(name))
-    return departures | ({"the terms in words": tuple(words)} if words else {})
+    def _compare_digits(self, signed: Signature, now: CheckedProject) -> Departures:
+        """Return what is not as it was signed by the versions alone, where the signed commit is not here."""
+        versions = self._list_versions(now, signed.rules)
+        pairs = {(giver, key) for each in (versions, signed.versions) for giver in each for key in each[giver]}
+        return {
+            f"`{key}`": (f"version {found or 'none'}, {written or 'none'} was signed",)
+            for giver, key in sorted(pairs)
+            if (found := versions.get(giver, {}).get(key)) != (written := signed.versions.get(giver, {}).get(key))
+        }
+
+    def _list_versions(self, version: CheckedProject, rules: int) -> dict[str, dict[str, str]]:
+        return list_versions(record_interfaces(self._look_at(version), self.new.pair), rules)
+
+    def _look_at(self, version: CheckedProject) -> Lookup:
+        if id(version) not in self.lookups:
+            self.lookups[id(version)] = version, make_timed_lookup(version)
+        return self.lookups[id(version)][1]
 
 
 def _name_terms(lines: Iterable[str]) -> set[str]:
     """Return which terms lines speak of, whatever they were and are."""
     return {line.removeprefix("weaker: ").partition(" was ")[0] for line in lines}
-
-
-def _compare_digits(signed: Signature, now: CheckedProject, agreement: Agreement) -> Departures:
-    """Return what is not as it was signed by the versions alone, where the signed commit is not here."""
-    versions = _list_versions(now, agreement.pair, signed.rules)
-    pairs = {(giver, key) for each in (versions, signed.versions) for giver in each for key in each[giver]}
-    return {
-        f"`{key}`": (f"version {found or 'none'}, {written or 'none'} was signed",)
-        for giver, key in sorted(pairs)
-        if (found := versions.get(giver, {}).get(key)) != (written := signed.versions.get(giver, {}).get(key))
-    }
-
-
-def _list_versions(version: CheckedProject, pair: tuple[str, str], rules: int) -> dict[str, dict[str, str]]:
-    return list_versions(record_interfaces(make_timed_lookup(version), pair), rules)

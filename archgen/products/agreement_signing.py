@@ -51,8 +51,7 @@ def list_versions(records: Iterable[InterfaceRecord], rules: int = RULES) -> dic
     """Return the version of each interface, by giver and key."""
     versions: dict[str, dict[str, str]] = {}
     for record in sorted(records, key=lambda each: each.key):
-        version = record.terms.version if rules > 1 else record.terms.first_version
-        versions.setdefault(record.key[1][0], {})[record.key[0]] = version
+        versions.setdefault(record.key[1][0], {})[record.key[0]] = record.terms.find_version(rules)
     return versions
 
 
@@ -81,7 +80,7 @@ def prepare_signature(
     versions, terms = list_versions(records), agreement.hash_terms()
     by, revision = {name: f"{who}, {day}" for name, who in signers.items()}, head
     earlier = agreement.signed
-    if earlier and not agreement.binds and set(earlier.by).isdisjoint(by):
+    if earlier and not agreement.binding_signature and set(earlier.by).isdisjoint(by):
         if (earlier.versions, earlier.terms, earlier.rules) != (versions, terms, RULES):
             msg = (
                 f"`{next(iter(earlier.by), '')}` signed something else at `{earlier.tag}`: sign it there (`git checkout "
@@ -109,7 +108,8 @@ def record_signature(checked_project: CheckedProject, prepared: PreparedSignatur
     tag, revision = prepared.signature.tag or "", prepared.signature.revision or ""
     result = run_git(prepared.repository.top, "tag", "-a", "--no-sign", "-m", prepared.message, tag, revision)
     if result.status:
-        msg = f"git makes no tag `{tag}`: {result.error_text.removeprefix('fatal: ')}"
+        reason = result.error_text.removeprefix("fatal: ").partition("\n")[0]
+        msg = f"git makes no tag `{tag}`: {reason}"
         raise GitError(msg)
     file_tree.write_file(checked_project.root / prepared.file, prepared.text.encode())
 

@@ -207,7 +207,8 @@ def compare_named_versions(before: ProjectVersion, after: ProjectVersion) -> Com
             comparison, _compare_variants(comparison, before.checked_project, after.checked_project)
         )
     versions = before.checked_project, after.checked_project
-    if comparison.changes and any(each.architecture.agreements for each in versions):
+    agreements = [each.architecture.agreements for each in versions]
+    if any(agreements) and (comparison.changes or agreements[0] != agreements[1]):
         from archgen.products.agreement_gate import add_agreement_breaks
 
         comparison = add_agreement_breaks(comparison, *versions)

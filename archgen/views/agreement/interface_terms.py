@@ -84,6 +84,10 @@ class InterfaceTerms:
     first_version: str
     """Its version by the first rules: those of older signatures."""
 
+    def find_version(self, rules: int) -> str:
+        """Return its version by the rules of a signature."""
+        return self.version if rules > 1 else self.first_version
+
     @property
     def open_terms(self) -> tuple[str, ...]:
         """Return the names of the terms that are still to be settled."""

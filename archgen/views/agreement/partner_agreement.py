@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from archgen.compare.match_elements import match_elements
 from archgen.compare.matched_ids import MatchedIds
 from archgen.frozen import dataclass, replace
+from archgen.model.agreed_terms import RULES
 from archgen.model.partner_interfaces import PartnerPair, find_interfaces_between
 from archgen.timing.chains.measured_comparison import Observation
 from archgen.timing.system import activity_builder
@@ -46,6 +47,7 @@ def make_agreement(  # noqa: PLR0913 - what a document is made of
     issue_date: str = "",
     signed_tags: Sequence[SignedTag] = (),
     signed_revision: tuple[str, Lookup] | None = None,
+    signed_rules: int = RULES,
     notices: Sequence[Paragraph] = (),
     find_budget: BudgetFinder | None = None,
     observations: Sequence[Observation] = (),
@@ -60,16 +62,18 @@ def make_agreement(  # noqa: PLR0913 - what a document is made of
     look-ups of the project in each of its others.
     """
     records = record_interfaces(lookup, (first, second))
-    changes = _compare_with(earlier_revision, lookup, (first, second), records) if earlier_revision else None
+    rules = signed_rules if signed_revision == earlier_revision else RULES
+    changes = _compare_with(earlier_revision, lookup, (first, second), records, rules) if earlier_revision else None
     signatures = SignatureRecord(tuple(signed_tags))
     if signed_revision:
         # Asked for both, they are one comparison.
         signed_changes = (
             changes
             if changes and signed_revision == earlier_revision
-            else _compare_with(signed_revision, lookup, (first, second), records)
+            else _compare_with(signed_revision, lookup, (first, second), records, signed_rules)
         )
-        signatures = replace(signatures, revision=signed_revision[0], versions=signed_changes.earlier_versions)
+        versions = signed_changes.earlier_versions
+        signatures = replace(signatures, revision=signed_revision[0], versions=versions, rules=signed_rules)
     if observations:
         records = tuple(_add_measured(lookup, record, observations) for record in records)
     graph = draw_agreement(
@@ -107,7 +111,11 @@ def _add_measured(lookup: Lookup, record: InterfaceRecord, observations: Sequenc
 
 
 def _compare_with(
-    earlier_revision: tuple[str, Lookup], lookup: Lookup, pair: PartnerPair, records: Sequence[InterfaceRecord]
+    earlier_revision: tuple[str, Lookup],
+    lookup: Lookup,
+    pair: PartnerPair,
+    records: Sequence[InterfaceRecord],
+    rules: int = RULES,
 ) -> AgreementChanges:
     """Compare with an earlier revision, in which the partners may have had other ids."""
     name, earlier_lookup = earlier_revision
@@ -115,7 +123,7 @@ def _compare_with(
     old_partners = matched_ids.old_ids.get("partner", {})
     old_pair = old_partners.get(pair[0], pair[0]), old_partners.get(pair[1], pair[1])
     old_records = record_interfaces(earlier_lookup, old_pair, matched_ids)
-    return compare_revisions(name, old_records, records, matched_ids)
+    return compare_revisions(name, old_records, records, matched_ids, rules)
 
 
 def record_interfaces(

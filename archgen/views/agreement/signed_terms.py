@@ -8,7 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from archgen.model.partner_interfaces import find_interfaces_between
+from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.interface_record import InterfaceKey
+from archgen.views.agreement.interface_versions import list_launch_words
 from archgen.views.agreement.plain_terms import CONTRADICTION_KIND
 from archgen.views.agreement.term_changes import AgreementChanges, TermChange
 
@@ -21,6 +24,19 @@ def write_verdict(changes: AgreementChanges) -> Iterator[str]:
     if expected_changes:
         yield "expected otherwise now, promised by nobody:"
         yield from (f"  {line}" for line in expected_changes)
+
+
+def list_launch_notes(content: AgreementContent) -> Iterator[str]:
+    """Yield what the launch made of what was signed by rules that did not see it."""
+    if content.signatures.rules > 1 or content.earlier_lookup is None:
+        return
+    words = (
+        f"{sentence}{f' ({place})' if place.file else ''}"
+        for interface in find_interfaces_between(content.earlier_lookup.architecture, *content.pair)
+        for sentence, place in list_launch_words(interface)
+    )
+    for each in dict.fromkeys(words):
+        yield f"as signed by the words; since then it is known that {each}, in the signed version too"
 
 
 def has_departures(changes: AgreementChanges) -> bool:
