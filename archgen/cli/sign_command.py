@@ -60,7 +60,9 @@ def command(  # noqa: PLR0913 - one for each option
     options = OutputOptions(progress=command_support.make_progress_printer(), warn=command_support.print_warning)
     try:
         day = agreement_documents.parse_issue_date(day) if day else datetime.now().astimezone().date().isoformat()
-        agreement = agreement_documents.make_project_agreement(checked_project, first, second, issue_date=day)
+        agreement = agreement_documents.make_project_agreement(
+            checked_project, first, second, issue_date=day, signers=dict(signers)
+        )
         prepared = agreement_signing.prepare_signature(
             checked_project, (first, second), agreement.content.records, dict(signers), day
         )

@@ -62,11 +62,12 @@ def make_project_agreement(  # noqa: PLR0913 - what may be printed instead of wh
     issue_date: str | None = None,
     signed_version: ProjectVersion | None = None,
     observations: Sequence[Observation] = (),
+    signers: Mapping[str, str] | None = None,
 ) -> PartnerAgreement:
     """Make the agreement of two partners.
 
     Changes since `earlier_version` are marked; `printed_revision` and `issue_date` are printed instead of git's last commit
-    and its day. `observations` stand beside what is promised. `signed_version` is what was signed; without it, that is looked for among the repository's tags. Raise
+    and its day. `signers` are named where they sign. `observations` stand beside what is promised. `signed_version` is what was signed; without it, that is looked for among the repository's tags. Raise
     PartnersError where there can be no agreement.
     """
     _check_partners(checked_project, first, second)
@@ -108,6 +109,7 @@ def make_project_agreement(  # noqa: PLR0913 - what may be printed instead of wh
         ),
         find_budget=_make_budget_finder(lookup),
         observations=observations,
+        signers=signers,
         standing=checked_project.steps,
         variants={name: make_timed_lookup(variant) for name, variant in checked_project.variants.items()},
     )

@@ -80,10 +80,10 @@ def prepare_signature(
     versions, terms = list_versions(records), agreement.hash_terms()
     by, revision = {name: f"{who}, {day}" for name, who in signers.items()}, head
     earlier = agreement.signed
-    if earlier and not agreement.binding_signature and set(earlier.by).isdisjoint(by):
+    if earlier and earlier.by and not agreement.binding_signature and set(earlier.by).isdisjoint(by):
         if (earlier.versions, earlier.terms, earlier.rules) != (versions, terms, RULES):
             msg = (
-                f"`{next(iter(earlier.by), '')}` signed something else at `{earlier.tag}`: sign it there (`git checkout "
+                f"`{next(iter(earlier.by))}` signed something else at `{earlier.tag}`: sign it there (`git checkout "
                 f"{earlier.tag}`), or let both sign what is here"
             )
             raise SigningError(msg)

@@ -310,7 +310,7 @@ def test_json(run: Run, both: Path) -> None:
     assert change["said"] == [{"file": "more.yaml", "key": "type", "reason": "because"}]
     assert data["breaking"] == {
         "severity": "error",
-        "policy": {"wire": "error", "promise": "error", "meaning": "warning", "source": "note"},
+        "policy": {"wire": "error", "promise": "error", "meaning": "warning", "source": "note", "agreement": "error"},
         "fails": True,
         "judged": True,
         "idle": [{"element": ENTRY, "key": "qos", "reason": "why not"}],

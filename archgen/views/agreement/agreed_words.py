@@ -66,14 +66,14 @@ def _describe_stamps(lookup: Lookup, interface: PartnerInterface) -> tuple[tuple
     if definition is None:
         return (), _NOTHING
     names = [
-        f"`{field.name}{_STAMP_TYPES[field.type]}`"
+        f"{field.name}{_STAMP_TYPES[field.type]}"
         for part in definition.parts
         for field in part
         if field.type in _STAMP_TYPES
     ]
     if not names:
         return ("The message holds no time stamp.",), ""
-    return (), f"{join_words(names).replace('`', '')}: of measuring or of sending, nothing is said"
+    return (), f"nothing is said of whether {join_words(names)} is of measuring or of sending"
 
 
 def _describe_clock(lookup: Lookup, interface: PartnerInterface, *, is_agreed: bool) -> tuple[tuple[str, ...], str]:
@@ -97,7 +97,7 @@ def _describe_clock(lookup: Lookup, interface: PartnerInterface, *, is_agreed: b
         return (), "which computers the ends run on is not decided, and nothing is said of their clocks"
     if len(titles) == 1:
         return (f"That of {titles[0]}, on which both sides run.",), ""
-    unsaid = "" if is_agreed else "how far they may differ, nothing is said"
+    unsaid = "" if is_agreed else "nothing is said of how far they may differ"
     return (f"Those of {join_words(titles)}.",), unsaid
 
 

@@ -203,7 +203,13 @@ def _signatures_section(content: AgreementContent) -> Section:
         )
     ]
     blank = inline_text.join_lines([inline_text.to_inlines("\u00a0")] * 3)
-    rows = tuple((inline_text.to_inlines(title), blank, blank, blank) for title in content.pair_titles)
+    signers = [content.signers.get(partner_id) for partner_id in content.pair]
+    rows = tuple(
+        (inline_text.to_inlines(title), *(map(inline_text.to_inlines, (name, content.issue_date))), blank)
+        if name
+        else (inline_text.to_inlines(title), blank, blank, blank)
+        for title, name in zip(content.pair_titles, signers, strict=True)
+    )
     columns = (Column("Partner", 1.2), Column("Name", 1.3), Column("Date", 0.8), Column("Signature", 1.5))
     blocks.append(Table("table:signatures", "Signatures", columns, rows, numbered=False))
     if content.signatures.tags:

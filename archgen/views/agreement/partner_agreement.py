@@ -51,6 +51,7 @@ def make_agreement(  # noqa: PLR0913 - what a document is made of
     notices: Sequence[Paragraph] = (),
     find_budget: BudgetFinder | None = None,
     observations: Sequence[Observation] = (),
+    signers: Mapping[str, str] | None = None,
     standing: tuple[str, ...] = (),
     variants: Mapping[str, Lookup] | None = None,
 ) -> PartnerAgreement:
@@ -58,7 +59,8 @@ def make_agreement(  # noqa: PLR0913 - what a document is made of
 
     `earlier_revision`, with which it is compared, and `signed_revision`, whose versions of interfaces it tells, are the
     names of revisions with their look-ups. `find_budget` is asked for each chain between the two. `observations` are
-    shown beside what is promised. `standing` are the variants that are laid over what `lookup` shows, `variants` the
+    shown beside what is promised. `signers` are the names of those
+    who sign, by partner. `standing` are the variants that are laid over what `lookup` shows, `variants` the
     look-ups of the project in each of its others.
     """
     records = record_interfaces(lookup, (first, second))
@@ -92,6 +94,7 @@ def make_agreement(  # noqa: PLR0913 - what a document is made of
         issue_date,
         find_crossing_budgets(records, find_budget) if find_budget else {},
         signatures,
+        signers or {},
         standing,
         {name: compare_lookups(("", lookup), each, (first, second)) for name, each in (variants or {}).items()},
     )

@@ -8,8 +8,12 @@ from archgen.model.agreed_terms import GENERAL_TERMS, find_agreement
 from archgen.views import inline_text
 from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.term_changes import AgreementChanges
-from archgen.views.shapes import Column, Facts, Inlines, Section, Table, Text
+from archgen.views.shapes import Column, Facts, Inlines, Paragraph, Section, Table, Text
 
+_LEAD = (
+    "What the two agree on in words, for all interfaces; each interface's own section has the rest. Where it says that nothing "
+    "is said, neither of the two owes the other one anything in this respect."
+)
 _ALWAYS = "The project has no variants: what stands here holds always."
 _OTHERS = "What holds in others, documents of their own say."
 
@@ -23,7 +27,8 @@ def write_terms_section(content: AgreementContent) -> Section:
         for name, title in GENERAL_TERMS.items()
     ]
     rows.append(("Variants", inline_text.to_inlines(" ".join(_describe_variants(content)))))
-    return Section("page:terms", "Terms", (Facts(tuple(rows)), *_write_variant_table(content)))
+    lead = Paragraph(inline_text.to_inlines(_LEAD))
+    return Section("page:terms", "Terms", (lead, Facts(tuple(rows)), *_write_variant_table(content)))
 
 
 def describe_standing(content: AgreementContent) -> str:
