@@ -31,7 +31,7 @@ def hash_interface(lookup: Lookup, interface: PartnerInterface, rules: int = RUL
     with_qos = interface.flow == "topic" and not is_ros_1(architecture.distro)
     givers = list_givers(lookup.architecture, interface)
     message_type = architecture.types.get(interface.type or "")
-    content = {
+    content: dict[str, object] = {
         "flow": interface.flow,
         "names": sorted({_name_in_program(endpoint) for endpoint in interface.giver_endpoints}),
         # The type is a name of the project's own; without a message it is all that says what flows.
