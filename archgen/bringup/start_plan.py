@@ -19,7 +19,7 @@ from archgen.bringup.start_commands import (
 )
 from archgen.bringup.start_waits import StartWaits, group_by_waiting, name_container
 from archgen.bringup.wait_circles import keep_acyclic
-from archgen.derivation.ros_names import resolve_ros_name
+from archgen.derivation.wire.remap_rules import NodeNames
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Container
 from archgen.model.node import Node
@@ -184,7 +184,7 @@ def _make_node_step(
         ros=launch,
         preparations=list_preparations(architecture, launch),
         command=build_command(architecture, node, launch),
-        ready=resolve_conditions(start.ready, node),
+        ready=resolve_conditions(start.ready, node, architecture.distro),
         once=start.once,
         transitions=list_transitions(node),
         state=start.wanted_state if "lifecycle" in node.kinds else None,
@@ -199,12 +199,13 @@ def _make_node_step(
     )
 
 
-def resolve_conditions(ready: ReadyConditions, node: Node) -> ReadyConditions:
-    """Return what shows that a node is up, with the absolute names of its topic and service."""
+def resolve_conditions(ready: ReadyConditions, node: Node, distro: str | None) -> ReadyConditions:
+    """Return what shows that a node is up, with the names on the wire of its topic and service."""
     if ready.topic is None and ready.service is None:
         return ready
+    names = NodeNames(node, distro)
     return replace(
         ready,
-        topic=resolve_ros_name(ready.topic, node) if ready.topic is not None else None,
-        service=resolve_ros_name(ready.service, node) if ready.service is not None else None,
+        topic=(names.resolve(ready.topic, "topic") or ready.topic) if ready.topic is not None else None,
+        service=(names.resolve(ready.service, "service") or ready.service) if ready.service is not None else None,
     )

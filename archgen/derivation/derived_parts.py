@@ -44,10 +44,11 @@ class DerivedParts:
         self._topics: dict[FlowKind, KnownParts[Topic]] = {}
 
     def start_version(self, architecture: Architecture, shared_topics: frozenset[str]) -> None:
-        """Forget everything where types are mapped to other messages, or other topics are shared by all nodes."""
+        """Forget everything where types are mapped to other messages, other topics are shared by all nodes, or ROS is another."""
         types = {name: (each.message, each.size and each.size.text) for name, each in architecture.types.items()}
-        if self._settings != (types, shared_topics):
-            self._settings = (types, shared_topics)
+        settings = (types, shared_topics, architecture.distro)
+        if self._settings != settings:
+            self._settings = settings
             self._forget_parts()
 
     def find_planned(self, component: Component, node_id: str) -> Node | None:
@@ -140,4 +141,4 @@ def _list_feeds(index: WriterIndex, parts: Iterable[NodePart]) -> Iterator[objec
 
 def _list_topic_ports(index: WriterIndex, endpoints: Iterable[Endpoint]) -> tuple[tuple[str | None, ...], ...]:
     by_name = index.by_name
-    return tuple(tuple([w.port for w in by_name.get((each.name, each.flow), ())]) for each in endpoints)
+    return tuple(tuple([w.port for w in by_name.get((each.name or "", each.flow), ())]) for each in endpoints)

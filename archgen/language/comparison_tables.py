@@ -274,6 +274,7 @@ KEY_FACTS: Mapping[str, Mapping[str, KeyFacts]] = {
         "callback_groups.": {"form": "mapping", "worse": "always"},
         "reentrant": {"form": "flag", "worse": "always"},
         "status": {"effect": "system", "verb": "is"},
+        "observed": {"form": "flag", "effect": "system"},
         "timing.": {"inner": "timing", "worse": "always"},
         "parameters.": {"form": "data", "effect": "system"},
         "parameter_files": {"form": "list", "effect": "system"},

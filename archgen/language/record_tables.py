@@ -80,8 +80,8 @@ RECORD_KEYS: Mapping[str, Mapping[str, str]] = {
         "full_name": "", "kind": "", "command": "", "arguments": "", "remaps": "", "start": "start", "co_owners": "",
         "implements": "", "callback_groups": "", "reentrant": "flag", "derived": "flag", "endpoints": "endpoint[]",
         "timing": "timing{}", "parameters": "", "parameter_files": "", "parameter_commands": "",
-        "effective_parameters": "effective_parameter{}", "tags": "", "urls": "", "properties": "annotations",
-        "hints": "annotations",
+        "effective_parameters": "effective_parameter{}", "observed": "flag", "tags": "", "urls": "",
+        "properties": "annotations", "hints": "annotations",
     },
     "topic": {
         "name": "", "flow": "", "messages": "", "types": "", "writers": "", "readers": "", "size": "B",
@@ -159,8 +159,8 @@ RECORD_KEYS: Mapping[str, Mapping[str, str]] = {
         "directory": "", "user": "", "once": "flag", "state": "", "by": "",
     },
     "endpoint": {
-        "use": "", "name": "", "own_name": "", "flow": "", "message": "", "type": "", "port": "", "internal": "flag",
-        "sources": "", "qos": "qos",
+        "use": "", "name": "", "own_name": "", "program_name": "", "from": "evidence{}", "unknown": "", "flow": "",
+        "message": "", "type": "", "port": "", "internal": "flag", "sources": "", "qos": "qos",
     },
     "effective_parameter": {
         "origin": "", "value": "",
@@ -197,6 +197,9 @@ RECORD_KEYS: Mapping[str, Mapping[str, str]] = {
     },
     "start_ready": {
         "port": "", "file": "", "topic": "", "service": "", "log": "", "wait": "ns", "within": "ns",
+    },
+    "evidence": {
+        "by": "", "rule": "", "at": "",
     },
     "qos": {
         "profile": "", "reliability": "", "durability": "", "history": "", "depth": "", "liveliness": "",

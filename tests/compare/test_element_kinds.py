@@ -160,7 +160,7 @@ NOT_ON_CARDS = {
     "component": "autoconnect components containers description frames from layout node open performance same_as urls",
     "output": "external from to",
     "input": "external from optional",
-    "node": "arguments calls description internal language parameter_commands parameter_files plugin publishes remaps "
+    "node": "arguments calls description internal language observed parameter_commands parameter_files plugin publishes remaps "
     "serves subscribes tags urls",
     "type": "constants feedback request response status",
     "host": "tags",
@@ -272,7 +272,7 @@ nodes:
     properties: {q: 1}
     hints: {x: {a: 1}}
     publishes: {o: {topic: /o, own_name: w}}
-  m: b
+  m: {implements: b, observed: true}
   r: [whole, copy]
   s: {timing: {rate: 1 Hz}}
   t: [d, e]

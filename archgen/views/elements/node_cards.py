@@ -44,7 +44,7 @@ def make_node_card(lookup: Lookup, node: Node) -> ElementCard:
         ),
     ]
     lines = tuple(
-        f"{inline_text.ENDPOINT_USE_WORDS[endpoint.use]} {_describe_endpoint(endpoint)}"
+        f"{inline_text.ENDPOINT_USE_WORDS[endpoint.use]} {_describe_endpoint(endpoint)}{describe_move(endpoint)}"
         for endpoint in lookup.endpoints_of.get(node.id, ())
     )
     lists = (
@@ -58,8 +58,17 @@ def make_node_card(lookup: Lookup, node: Node) -> ElementCard:
 def _describe_endpoint(endpoint: Endpoint) -> str:
     """Return the name of what a node uses with its message; over another medium than ROS, with its type."""
     if endpoint.medium == ROS:
-        return f"{endpoint.name} ({endpoint.message or '?'})"
+        return f"{endpoint.label} ({endpoint.message or '?'})"
     return f"{name_on_medium(endpoint)} ({name_medium(endpoint.medium)}: {endpoint.type or '?'})"
+
+
+def describe_move(endpoint: Endpoint) -> str:
+    """Return what a launch makes of the name that the program says, with the place of the rule; nothing where it is the same."""
+    if not endpoint.is_moved:
+        return ""
+    at = endpoint.evidence["name"].at
+    place = f" by {at.file}:{at.line}" if at.line else ""
+    return f"; says `{endpoint.program_name}`, is on `{endpoint.label}`{place}"
 
 
 def make_topic_card(lookup: Lookup, topic: Topic) -> ElementCard:
