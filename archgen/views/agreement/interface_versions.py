@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from archgen.derivation.ros_names import default_port_name
 from archgen.diagnostics.source_span import Span
 from archgen.model.agreed_terms import RULES, hash_text
 from archgen.model.declared_timing import OutputTiming
@@ -33,7 +34,7 @@ def hash_interface(lookup: Lookup, interface: PartnerInterface, rules: int = RUL
     message_type = architecture.types.get(interface.type or "")
     content: dict[str, object] = {
         "flow": interface.flow,
-        "names": sorted({_name_in_program(endpoint) for endpoint in interface.giver_endpoints}),
+        "names": sorted({_find_first_name(endpoint) for endpoint in interface.giver_endpoints}),
         # The type is a name of the project's own; without a message it is all that says what flows.
         "carried": interface.message or f"type {interface.type}",
         "definitions": list(_list_definitions(architecture.interfaces, interface.message)),
@@ -58,36 +59,41 @@ def hash_interface(lookup: Lookup, interface: PartnerInterface, rules: int = RUL
 
 def _describe_launch(interface: PartnerInterface) -> dict[str, object]:
     """Return what the launch makes of both sides, where that is not what the programs say: nothing for most interfaces."""
-    givers, takers = interface.giver_endpoints, interface.taker_endpoints
-    sides = [(side, endpoint) for side, endpoints in (("gives", givers), ("takes", takers)) for endpoint in endpoints]
-    parts: dict[str, set[str]] = {
-        "wire": {f"{side} {each.name}" for side, each in sides if each.name != _name_in_program(each)},
-        "domain": {f"{side} {each.domain}" for side, each in sides if each.domain is not None},
-        "clock": {f"{side} {each.clock}" for side, each in sides if each.clock != "system"},
-        "runs": {f"{side} {each.runs}" for side, each in sides if each.runs in {"inactive", "off"}},
-    }
-    return {key: sorted(values) for key, values in parts.items() if values}
+    parts: dict[str, set[str]] = {}
+    for side, endpoints in (("gives", interface.giver_endpoints), ("takes", interface.taker_endpoints)):
+        for endpoint in endpoints:
+            for name, value, _ in _list_launch_parts(endpoint):
+                parts.setdefault(name, set()).add(f"{side} {value}")
+    return {name: sorted(values) for name, values in parts.items()}
 
 
 def list_launch_words(interface: PartnerInterface) -> Iterator[tuple[str, Span]]:
     """Yield sentences on what the launch makes of an interface, each with where that is written."""
     for endpoint in (*interface.giver_endpoints, *interface.taker_endpoints):
-        node = f"`{endpoint.node}`"
-        sentences = {
-            "name": f"`{endpoint.program_name}` of {node} runs on `{endpoint.name}`"
-            if endpoint.name != _name_in_program(endpoint)
-            else "",
-            "domain": f"{node} runs in the domain {endpoint.domain}" if endpoint.domain is not None else "",
-            "clock": f"{node} follows {_CLOCK_WORDS[endpoint.clock]}" if endpoint.clock != "system" else "",
-            "runs": f"{node} is {endpoint.runs}" if endpoint.runs in {"inactive", "off"} else "",
-        }
-        for name, sentence in sentences.items():
-            if sentence:
-                yield sentence, endpoint.evidence.get(name, _NO_EVIDENCE).at
+        for name, _, sentence in _list_launch_parts(endpoint):
+            yield sentence, endpoint.evidence.get(name, _NO_EVIDENCE).at
 
 
-def _name_in_program(endpoint: Endpoint) -> str:
-    return endpoint.program_name or endpoint.name
+def _list_launch_parts(endpoint: Endpoint) -> Iterator[tuple[str, str, str]]:
+    """Yield the fields of an end that the launch has a say in, with the value and a sentence on it."""
+    node, said = f"`{endpoint.node}`", endpoint.program_name or endpoint.label
+    if endpoint.is_moved:
+        yield "name", str(endpoint.name), f"`{said}` of {node} runs on `{endpoint.label}`"
+    elif endpoint.name is None and endpoint.evidence.get("name", _NO_EVIDENCE).rule:
+        yield "name", "unknown", f"nobody knows on what `{said}` of {node} runs"
+    if endpoint.domain is not None:
+        yield "domain", str(endpoint.domain), f"{node} runs in the domain {endpoint.domain}"
+    if endpoint.clock != "system":
+        yield "clock", str(endpoint.clock), f"{node} follows {_CLOCK_WORDS[endpoint.clock]}"
+    if endpoint.runs in {"inactive", "off"}:
+        yield "runs", str(endpoint.runs), f"{node} is {endpoint.runs}"
+
+
+def _find_first_name(endpoint: Endpoint) -> str:
+    """Return the name of an end by the first rules: a launch moved nothing, and one that nobody says was made of the port."""
+    if endpoint.is_moved and endpoint.program_name:
+        return endpoint.program_name
+    return endpoint.name or default_port_name(endpoint.port or endpoint.label)
 
 
 def _list_definitions(interfaces: Interfaces, message: str | None) -> Iterator[object]:
