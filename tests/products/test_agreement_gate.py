@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -249,3 +250,41 @@ def test_where_it_is_off_nobody_is_asked(robot: Path, sign: Sign) -> None:
     git(robot, "branch", "base")
     edit(robot, "rate: 10 Hz", "rate: 8 Hz")
     assert judge(robot) == []
+
+
+EDITS = (
+    ("Alpha", "Alpha Ltd"),
+    ("lidar_driver", "driver"),
+    ("wcet: 20 ms", "wcet: 21 ms"),
+    ("wcet: 20 ms", "wcet: 200 ms"),
+    ("rate: 10 Hz", "rate: 9 Hz"),
+    ("rate: 10 Hz", "rate: 11 Hz"),
+    ("max_gap: 9 s", "max_gap: 10 s"),
+    ("deadline: 300 ms", "deadline: 100 ms"),
+    ("deadline: 200 ms", "deadline: 100 ms"),
+    ("topic: /scan", "topic: /laser"),
+    ("size: 40 B", "size: 41 B"),
+    ("Stops in time", "Stops at once"),
+    ("alarm: bell.alarm, ", ""),
+    ("scan: lidar.scan}}}}", "scan: {from: lidar.scan, freshness: 1 s}}}}}"),
+    ("cores: 4", "cores: 1"),
+    ("qos: sensor_data}}}", "qos: default}}}"),
+    ("eye: {inputs", "eye: {title: Eyes, inputs"),
+    ("message: std_msgs/msg/Header", "message: std_msgs/msg/Bool"),
+)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_whoever_leaves_what_was_signed_is_told(run: Run, robot: Path, sign: Sign, seed: int) -> None:  # noqa: F811
+    """Where the base is as signed and the head is not, the change breaks an agreement; and nowhere else."""
+    sign()
+    chance, statuses = random.Random(seed), []  # noqa: S311 - the edits of a test
+    for name, edits in (("base", chance.sample(EDITS[:3], 1)), ("head", chance.sample(EDITS, 2))):
+        for old, new in edits:
+            text = (robot / "archgen.yaml").read_text(encoding="utf-8")
+            (robot / "archgen.yaml").write_text(text.replace(old, new, 1), encoding="utf-8")
+        git(robot, "commit", "-q", "--allow-empty", "-am", name)
+        git(robot, "branch", name)
+        signed = run("interfaces", robot, "--between", "a", "b", "--signed", "signed/a-b/2026-03-01", "--keep-going")
+        statuses.append("not as signed" in signed.err)
+    assert [statuses[0], bool(judge(robot))] == [False, statuses[1]]
