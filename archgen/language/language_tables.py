@@ -114,17 +114,18 @@ KEYS: Mapping[str, Mapping[str, str]] = {
         "pictures": "report.pictures",
     },
     "review.breaking": {
-        "wire": "severity", "promise": "severity", "meaning": "severity", "source": "severity", "agreement": "severity",
+        "wire": "severity", "promise": "severity", "meaning": "severity", "source": "severity", "foreign": "severity",
+        "agreement": "severity",
     },
     "review": {
         "main": "text", "breaking": "review.breaking", "accepted": "review.accepted", "backends": "review.backends",
         "passes": "review.passes",
     },
     "accepted": {
-        "reason": "text", "key": "text",
+        "reason": "text", "key": "text", "was": "text",
     },
     "accepted_key": {
-        "reason": "text", "key": "text",
+        "reason": "text", "key": "text", "was": "text",
     },
     "site": {
         "repository": "repository_address", "branch": "text", "folder": "text", "forge": "forge",

@@ -8,7 +8,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from archgen.compare import Change, Comparison, PartnerBreak
-from archgen.compare.agreements import agreement_key, find_partner_id
+from archgen.compare.agreements import AgreementJudge, find_partner_id
+from archgen.compare.change_hashes import agreement_key
 from archgen.compare.sentence_words import tick_names
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Severity
@@ -73,7 +74,7 @@ def write_missing_entries(comparison: Comparison) -> tuple[str, ...]:
     files_by_entries: dict[str, list[str]] = {}
     for partner, changes in sorted(_find_refused_changes(comparison).items()):
         file = agreement_file(find_partner_id(partner, comparison.matched_ids))
-        files_by_entries.setdefault(_write_entries(changes), []).append(file)
+        files_by_entries.setdefault(_write_entries(changes, partner), []).append(file)
     return tuple(
         f"# {join_words(files)}{', each' if len(files) > 1 else ''}\n{entries}"
         for entries, files in files_by_entries.items()
@@ -99,7 +100,8 @@ def describe_remedy(change: Change, comparison: Comparison) -> str:
     partners = change.unheard_partners
     partner_ids = [find_partner_id(partner, comparison.matched_ids) for partner in partners]
     files = join_words([f"`{agreement_file(partner_id)}`" for partner_id in partner_ids])
-    return f"mend it, or {_say_why(partners, comparison)}, in {files}: {_write_entry(change, 'THE REASON')}"
+    entries = dict.fromkeys(_write_entry(change, partner, "THE REASON") for partner in partners)
+    return f"mend it, or {_say_why(partners, comparison)}, in {files}: {join_words(list(entries))}"
 
 
 def _say_why(partners: Sequence[str], comparison: Comparison) -> str:
@@ -123,15 +125,17 @@ def write_policy(comparison: Comparison) -> str:
 
 
 def _is_refused(partner_break: PartnerBreak, comparison: Comparison) -> bool:
-    return comparison.policy.severity_of(partner_break.category) is Severity.ERROR
+    return comparison.severity_of(partner_break) is Severity.ERROR
 
 
 def describe_agreements(change: Change, comparison: Comparison) -> Iterator[str]:
     """Yield which partners agreed on a breaking change and why, then the entries about it that excuse nothing."""
-    agreements = {each.partner: each.agreement for each in change.breaks if each.agreement is not None}
+    agreements = {each.partner: each for each in change.breaks if each.agreement is not None}
     partner_names = name_partners(comparison)
-    for partner, reason in sorted(agreements.items()):
-        yield f"accepted by {join_words(name_each([partner], partner_names))}: {reason}"
+    for partner, agreed in sorted(agreements.items()):
+        yield f"accepted by {join_words(name_each([partner], partner_names))}: {agreed.agreement}"
+        if not agreed.agreed_hash:
+            yield f"which says no hash, and so accepts what had changed when it was written: add `was: {agreed.hash}`"
     for entry in change.claims:
         yield _describe_claim(entry, change, comparison)
     # Where only breaking changes are shown, the verdict lists all idle entries.
@@ -144,12 +148,18 @@ def _describe_claim(entry: AcceptedChange, change: Change, comparison: Compariso
     """Describe an entry that excuses nothing: why not, and what to write where."""
     partners = [find_partner_id(partner, comparison.matched_ids) for partner in change.broken_partners]
     place = _describe_place(entry)
-    if entry.partner not in partners:
+    flaw = AgreementJudge.from_comparison(comparison).find_flaw(entry, change)
+    if flaw == "foreign file":
         names = join_words(name_each(change.broken_partners, name_partners(comparison)))
         return f"said in {place}, not by {names}: {entry.reason}"
-    if entry.key is None:
-        needed_entry = _write_entry(change, entry.reason)
+    needed_entry = _write_entry(change, change.broken_partners[partners.index(entry.partner or "")], entry.reason)
+    if flaw == "no key":
         return f"said in {place} without a `key`, which would accept whatever changes: write {needed_entry}"
+    if flaw == "other change":
+        return f"said in {place}, which agreed to another change than this one: now it would be {needed_entry}"
+    if flaw == "other author":
+        names = join_words(name_each([entry.partner or ""], name_partners(comparison)))
+        return f"said in {place}, not by {names}: none of its `reviewers` wrote it: {entry.reason}"
     return f"said in {place} before this change, of another one: {entry.reason}"
 
 
@@ -157,25 +167,28 @@ def _describe_place(entry: AcceptedChange) -> str:
     return f"`{entry.at.file}`" if entry.at.file else "the project"
 
 
-def _write_entry(change: Change, reason: str) -> str:
+def _write_entry(change: Change, partner: str, reason: str) -> str:
     """Return the entry that accepts a change, as it has to stand in a file."""
-    return f"`review: {{accepted: {{{_quote_text(change.element_id)}: {_write_body(agreement_key(change), reason)}}}}}`"
+    return f"`review: {{accepted: {{{_quote_text(change.element_id)}: {_write_body(change, partner, reason)}}}}}`"
 
 
-def _write_entries(changes: Iterable[Change]) -> str:
+def _write_entries(changes: Iterable[Change], partner: str) -> str:
     """Return the section that accepts changes, a line for each element."""
-    keys_by_element: dict[str, dict[str, None]] = {}
+    bodies_by_element: dict[str, dict[str, None]] = {}
     for change in changes:
-        keys_by_element.setdefault(change.element_id, {})[agreement_key(change)] = None
+        body = _write_body(change, partner, "THE REASON")
+        bodies_by_element.setdefault(change.element_id, {})[body] = None
     lines = ["review:", "  accepted:"]
-    for element_id, keys in keys_by_element.items():
-        bodies = ", ".join(_write_body(key, "THE REASON") for key in keys)
-        lines.append(f"    {_quote_text(element_id)}: {bodies if len(keys) == 1 else f'[{bodies}]'}")
+    for element_id, bodies in bodies_by_element.items():
+        text = ", ".join(bodies)
+        lines.append(f"    {_quote_text(element_id)}: {text if len(bodies) == 1 else f'[{text}]'}")
     return "\n".join(lines)
 
 
-def _write_body(key: str, reason: str) -> str:
-    return f"{{key: {_quote_text(key)}, reason: {_quote_text(reason)}}}"
+def _write_body(change: Change, partner: str, reason: str) -> str:
+    change_hash = next(each.hash for each in change.breaks if each.partner == partner)
+    key = _quote_text(agreement_key(change))
+    return f"{{key: {key}, was: {_quote_text(change_hash)}, reason: {_quote_text(reason)}}}"
 
 
 def _quote_text(text: str) -> str:
