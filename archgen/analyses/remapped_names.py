@@ -10,6 +10,7 @@ from archgen.derivation.wire.remap_rules import (
     NodeNames,
     RemapRule,
     find_rule_fault,
+    may_have_rules,
     moves_whole_actions,
     read_arguments,
     read_remaps,
@@ -34,12 +35,8 @@ class _RuledNodes:
     """The nodes that have rules, with their names and what they use."""
 
     def __init__(self, architecture: Architecture) -> None:
-        nodes = (each for each in architecture.nodes.values() if each.remaps or each.arguments)
-        self.names = {
-            each.id: names
-            for each in nodes
-            if not each.is_program and (names := NodeNames(each, architecture.distro)).rules
-        }
+        nodes = filter(may_have_rules, architecture.nodes.values())
+        self.names = {each.id: names for each in nodes if (names := NodeNames(each, architecture.distro)).rules}
         self.endpoints: dict[str, list[Endpoint]] = {each: [] for each in self.names}
         for endpoint in architecture.endpoints if self.names else ():
             if endpoint.node in self.endpoints and endpoint.medium == "ros":
@@ -49,9 +46,7 @@ class _RuledNodes:
 def invalid_remap(architecture: Architecture) -> Iterator[Diagnostic]:
     """A rule for names is none that ROS takes."""
     ros_1 = is_ros_1(architecture.distro)
-    for node in architecture.nodes.values():
-        if node.is_program or not (node.remaps or node.arguments):
-            continue
+    for node in filter(may_have_rules, architecture.nodes.values()):
         for text, at, rule in (*read_arguments(node, ros_1=ros_1), *read_remaps(node, ros_1=ros_1)):
             if rule is None:
                 fault = find_rule_fault(text, ros_1=ros_1)

@@ -245,3 +245,8 @@ class Topic:
     def label(self) -> str:
         """What people call it, as of an endpoint."""
         return self.name
+
+    @property
+    def is_known(self) -> bool:
+        """Whether its name is known: else it stands for connections of the model alone."""
+        return any(each.name is not None for each in (*self.writers, *self.readers))

@@ -75,6 +75,16 @@ class WireName(NamedTuple):
     evidence: Mapping[str, Evidence]
 
 
+def may_have_rules(node: Node) -> bool:
+    """Whether anything that a node is started with may be a rule for names: a program that is no node takes none."""
+    return bool(node.remaps or node.arguments) and not node.is_program
+
+
+def list_written_remaps(node: Node) -> dict[str, str]:
+    """Return a node's `remaps` for who writes them down again; what comes of them, endpoints say."""
+    return dict(node.remaps)
+
+
 def list_rules(node: Node, *, ros_1: bool) -> Iterator[RemapRule]:
     """Yield the rules of a node that ROS takes, the one that counts first in front."""
     arguments = [rule for _, _, rule in read_arguments(node, ros_1=ros_1) if rule]
@@ -191,7 +201,7 @@ class NodeNames:
         self._topics: dict[str, RemapRule | None] = {}
         self._services: dict[str, RemapRule | None] = {}
         self._rules_by_name: dict[str, list[RemapRule]] = {}
-        if node.remaps or node.arguments:
+        if may_have_rules(node):
             rules = list_rules(node, ros_1=self._ros_1)
             self.rules = tuple(each for each in rules if not each.is_for_node and each.node_name in {"", node.name})
             self._index_rules()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 
+from archgen.derivation.wire.remap_rules import list_written_remaps
 from archgen.model.component_nesting import find_component
 from archgen.model.node import Endpoint, Node
 from archgen.model.port_media import ROS
@@ -100,10 +101,13 @@ def _to_code(text: str) -> Inlines:
 
 def _remap_facts(lookup: Lookup, node: Node) -> Inlines:
     """Return the names that become others when the node starts, those of its ports first."""
-    port_names = {each.own_name: each.label for each in lookup.endpoints_of.get(node.id, ()) if each.own_name}
+    ends = lookup.endpoints_of.get(node.id, ())
+    port_names = {each.own_name: each.label for each in ends if each.own_name}
+    port_names |= {each.evidence["name"].rule.partition(":=")[0]: each.label for each in ends if each.is_moved}
+    others = {own_name: name for own_name, name in list_written_remaps(node).items() if own_name not in port_names}
     return inline_text.join_inlines(
         (Text(own_name, code=True), Text(" is "), Text(name, code=True))
-        for own_name, name in (port_names | dict(node.remaps)).items()
+        for own_name, name in (port_names | others).items()
     )
 
 

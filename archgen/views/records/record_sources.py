@@ -200,7 +200,6 @@ _PARTS: Mapping[str, Mapping[str, Source]] = {
     },
     "evidence": {
         "by": lambda reason, _: reason.kind,
-        "rule": lambda reason, _: reason.rule or None,
         "at": lambda reason, _: str(reason.at) if reason.at.line else None,
     },
     "topic": _CARRIER,
