@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from archgen.compare import Change, Comparison
-from archgen.compare.agreements import judge_agreements
+from archgen.compare.agreements import AgreementJudge
 from archgen.compare.breaking_changes import sort_breaks_first
 from archgen.compare.comparison import PartnerBreak
 from archgen.diagnostics.common_wording import join_words, shorten_hash
@@ -92,8 +92,7 @@ class _AgreementPair:
     def _tell_withdrawal(self) -> Change:
         text = f"the agreement {self._name(self.old.signed)} is withdrawn"
         change = self._make_change((), text, "ends what both signed", kind="removed")
-        reviews = (side.architecture.review.accepted for side in (self.before, self.after))
-        return judge_agreements(change, change.breaks, (next(reviews), next(reviews)), self.comparison.matched_ids)
+        return AgreementJudge.from_comparison(self.comparison).judge(change, change.breaks)
 
     def _find_faults(self, signed: Signature, *, is_new: bool) -> Iterator[tuple[tuple[str, ...], str]]:
         """Yield by which key a signature is none, and why."""

@@ -311,8 +311,12 @@ def test_json(run: Run, both: Path) -> None:
     assert data["breaking"] == {
         "severity": "error",
         "policy": {
-            **{"wire": "error", "promise": "error", "meaning": "warning", "source": "note"},
-            **{"foreign": "off", "agreement": "error"},
+            "wire": "error",
+            "promise": "error",
+            "meaning": "warning",
+            "source": "note",
+            "foreign": "off",
+            "agreement": "error",
         },
         "fails": True,
         "judged": True,
