@@ -14,16 +14,11 @@ from archgen.model.code_names import make_camel_name, make_identifier_in, make_r
 from archgen.model.node import Endpoint, Node
 
 
-def is_generated(node: Node) -> bool:
-    """Whether generators make the program of a node: nobody says that it exists, and nothing else starts it."""
-    return node.status in {None, "planned"} and not (node.is_program or node.command)
-
-
 def list_generated_nodes(architecture: Architecture) -> list[Node]:
     """Return the nodes whose programs generators make: none that exists already, since another node says so."""
     nodes = architecture.nodes.values()
-    made_programs = {(each.package, each.executable) for each in nodes if not is_generated(each) and each.executable}
-    return [each for each in nodes if is_generated(each) and (each.package, each.executable) not in made_programs]
+    made_programs = {(each.package, each.executable) for each in nodes if not each.is_generated and each.executable}
+    return [each for each in nodes if each.is_generated and (each.package, each.executable) not in made_programs]
 
 
 def name_package(architecture: Architecture, node: Node) -> str:

@@ -20,6 +20,7 @@ from archgen.bringup.start_commands import (
 from archgen.bringup.start_waits import StartWaits, group_by_waiting, name_container
 from archgen.bringup.wait_circles import keep_acyclic
 from archgen.derivation.wire.remap_rules import NodeNames
+from archgen.derivation.wire.running_state import find_environment
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Container
 from archgen.model.node import Node
@@ -165,7 +166,13 @@ def _make_container_step(architecture: Architecture, container: Container, phase
         preparations=list_preparations(architecture, launch),
         command=build_container_command(architecture, container, launch),
         container=container.id,
+        environment=_list_variables(architecture, container),
     )
+
+
+def _list_variables(architecture: Architecture, started: Node | Container) -> dict[str, str]:
+    """Return the variables with which a process is started, by name."""
+    return {name: text for name, (text, _) in find_environment(architecture, started).items()}
 
 
 def _make_node_step(
@@ -192,7 +199,7 @@ def _make_node_step(
         container=node.container,
         respawn=start.respawn,
         respawn_delay=start.respawn_delay,
-        environment=start.environment,
+        environment={} if node.container is not None else _list_variables(architecture, node),
         directory=start.directory,
         user=start.user,
         needs_rights=list_needed_rights(node),

@@ -12,6 +12,7 @@ from archgen.derivation.inner_memory import mark_inner_memory
 from archgen.derivation.media_channels import derive_channels
 from archgen.derivation.portless_endpoints import complete_message, count_shared_keys, derive_portless_endpoints
 from archgen.derivation.reading_endpoints import derive_reading_endpoints, index_writers
+from archgen.derivation.wire.running_state import complete_states
 from archgen.derivation.writing_endpoints import NodePart, derive_writing_endpoints, find_node_parts
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
@@ -35,6 +36,7 @@ def derive_low_level(architecture: Architecture, memory: DerivedParts | None = N
         memory.start_version(architecture, shared_topics)
         node_parts = memory.recall_parts(node_parts)
     endpoints = _derive_endpoints(with_planned, node_parts, shared_topics, memory)
+    endpoints = complete_states(with_planned, endpoints, memory)
     return replace(
         with_planned,
         endpoints=endpoints,

@@ -291,6 +291,7 @@ KEY_FACTS: Mapping[str, Mapping[str, KeyFacts]] = {
         "scheduling": {"worse": "always"},
         "scheduling.": {"form": "mapping", "worse": "always"},
         "description": {"form": "prose", "effect": "text"},
+        "environment.": {"form": "mapping", "effect": "system"},
         "tags": {"form": "set", "effect": "text", "verbs": ("now has the tag", "no longer has the tag")},
         "properties.": {"form": "properties", "effect": "system"},
         "hints.": {"form": "hints", "effect": "system"},

@@ -59,7 +59,7 @@ KEYS: Mapping[str, Mapping[str, str]] = {
     },
     "ros": {
         "distro": "ros.distro", "interfaces": "files", "shared_topics": "shared_topics", "parameters": "ros_parameters",
-        "definitions": "definitions", "parameter_texts": "parameter_texts",
+        "environment": "start_environment", "definitions": "definitions", "parameter_texts": "parameter_texts",
     },
     "rules.large-jitter": {
         "severity": "severity", "limit": "percentage",
@@ -293,8 +293,8 @@ KEYS: Mapping[str, Mapping[str, str]] = {
         "liveliness": "qos_liveliness", "lease_duration": "duration",
     },
     "host": {
-        "title": "text", "cores": "count", "scheduling": "host_scheduling", "description": "prose", "tags": "tags",
-        "properties": "properties", "hints": "hints",
+        "title": "text", "cores": "count", "scheduling": "host_scheduling", "description": "prose",
+        "environment": "start_environment", "tags": "tags", "properties": "properties", "hints": "hints",
     },
     "container": {
         "title": "text", "namespace": "text", "name": "text", "package": "text", "executable": "text",
@@ -505,8 +505,9 @@ ATTRIBUTES: Mapping[str, tuple[str, ...]] = {
     "parameter_declaration.from": ("handed_from",), "parameter_declaration.hints": ("hints", "hint_places"),
     "frame.by": ("by", "by_kind", "by_written"), "node.kind": ("kinds",),
     "host.scheduling": ("scheduling", "core_scheduling", "core_places"),
-    "link.connects": ("connects", "devices", "unresolved"), "link.latency": ("best", "worst"),
-    "start.by": ("by", "by_written"), "policy.forbid": ("forbid_from", "forbid_to", "from_at", "to_at"),
+    "host.environment": ("environment", "environment_places"), "link.connects": ("connects", "devices", "unresolved"),
+    "link.latency": ("best", "worst"), "start.by": ("by", "by_written"),
+    "policy.forbid": ("forbid_from", "forbid_to", "from_at", "to_at"),
     "policy.accepted": ("accepted", "accepted_places"), "forbid.from": ("forbid_from",), "forbid.to": ("forbid_to",),
     "timing.wcet": ("wcet", "measured_times"), "timing_input.stored": ("stored_at_once",),
     "chain.through": ("through", "unresolved"), "chain.requirements": ("requirements", "requirement_places"),

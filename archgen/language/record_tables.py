@@ -26,6 +26,7 @@ LASTING_SECTIONS: frozenset[str] = frozenset({
 RECORD_KEYS: Mapping[str, Mapping[str, str]] = {
     "project": {
         "id": "", "title": "", "version": "", "description": "", "middleware": "", "distro": "", "parameters": "",
+        "environment": "",
     },
     "partner": {
         "title": "", "description": "", "contact": "", "reviewers": "", "properties": "annotations",
@@ -95,8 +96,8 @@ RECORD_KEYS: Mapping[str, Mapping[str, str]] = {
         "part_fields": "part_fields", "constants": "constant{}", "properties": "annotations", "hints": "annotations",
     },
     "host": {
-        "title": "", "description": "", "cores": "", "tags": "", "scheduling": "", "properties": "annotations",
-        "hints": "annotations",
+        "title": "", "description": "", "cores": "", "tags": "", "scheduling": "", "environment": "",
+        "properties": "annotations", "hints": "annotations",
     },
     "container": {
         "title": "", "host": "", "threads": "", "scheduling": "", "name": "", "package": "", "executable": "",
@@ -160,7 +161,8 @@ RECORD_KEYS: Mapping[str, Mapping[str, str]] = {
     },
     "endpoint": {
         "use": "", "name": "", "own_name": "", "program_name": "", "from": "evidence{}", "unknown": "", "flow": "",
-        "message": "", "type": "", "port": "", "internal": "flag", "sources": "", "qos": "qos",
+        "message": "", "type": "", "port": "", "internal": "flag", "sources": "", "qos": "qos", "qos_override": "",
+        "qos_if_ignored": "qos", "domain": "", "clock": "", "runs": "",
     },
     "effective_parameter": {
         "origin": "", "value": "",

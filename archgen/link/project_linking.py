@@ -94,6 +94,7 @@ def link_project(  # noqa: PLR0913 - all by name
         distro_at=mapping_values.get_span(ros_section, "distro"),
         shared_topics=mapping_values.get_texts(ros_section, "shared_topics"),
         ros_parameters=tuple(flatten_parameters(mapping_values.get_mapping(ros_section, "parameters"))),
+        ros_environment=tuple(mapping_values.list_placed_texts(ros_section, "environment")),
         layout=mapping_values.get_layout(root, "layout"),
         **declared_sections,
         use_cases=use_cases,

@@ -149,6 +149,11 @@ class Node:
         return "program" in self.kinds
 
     @property
+    def is_generated(self) -> bool:
+        """Whether generators make its program: nobody says that it exists, and nothing else starts it."""
+        return self.status in {None, "planned"} and not (self.is_program or self.command)
+
+    @property
     def full_name(self) -> str:
         """The namespace and name as ROS shows them: `/perception/object_recognizer`."""
         return f"{self.namespace.rstrip('/')}/{self.name}"
@@ -199,6 +204,8 @@ class Endpoint:
     """What the program says, made absolute, before remaps; None where that is unknown."""
     qos_override: OverrideEffect | None = None
     """What parameters named `qos_overrides` do to its `qos`; None where there are none for it."""
+    qos_if_ignored: Qos | None = None
+    """Where it is unknown whether its program takes overrides: what counts if it does not, beside `qos`."""
     domain: int | None = None
     """Its `ROS_DOMAIN_ID`, where something sets one; None is the usual one, the same for all."""
     clock: Clock | None = "system"

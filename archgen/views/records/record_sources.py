@@ -59,7 +59,12 @@ def _list_endpoints(node: Node, lookup: Lookup) -> list[object]:
 def _list_reasons(endpoint: Endpoint, _lookup: Lookup) -> dict[str, Evidence]:
     """Return where fields come from that are not as the program, or the model of its port, has them."""
     told = {key: each for key, each in endpoint.evidence.items() if each.kind not in {"default", "unknown"}}
-    return {key: each for key, each in told.items() if key != "name" or endpoint.is_moved}
+    # That a node is planned stands at the node.
+    return {
+        key: each
+        for key, each in told.items()
+        if (key != "name" or endpoint.is_moved) and (key != "runs" or endpoint.runs != "planned")
+    }
 
 
 def _name_activities(node: Node, _lookup: Lookup) -> dict[str, Timing]:
@@ -138,6 +143,7 @@ _PARTS: Mapping[str, Mapping[str, Source]] = {
         "distro": lambda _, lookup: lookup.architecture.distro,
         # Of one name the last value counts.
         "parameters": lambda _, lookup: {each.name: each.value for each in lookup.architecture.ros_parameters},
+        "environment": lambda _, lookup: {each.name: each.value for each in lookup.architecture.ros_environment},
     },
     "use_case": {
         "actors": lambda use_case, _: {actor.id: actor.title for actor in use_case.actors.values()},
@@ -197,6 +203,8 @@ _PARTS: Mapping[str, Mapping[str, Source]] = {
         "from": _list_reasons,
         "unknown": lambda endpoint, _: [key for key, each in endpoint.evidence.items() if each.kind == "unknown"],
         "qos": lambda endpoint, _: endpoint.qos if endpoint.flow == "topic" else None,
+        "clock": lambda endpoint, _: endpoint.clock if endpoint.clock != "system" else None,
+        "runs": lambda endpoint, _: endpoint.runs if endpoint.runs != "active" else None,
     },
     "evidence": {
         "by": lambda reason, _: reason.kind,
