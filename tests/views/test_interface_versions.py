@@ -168,4 +168,9 @@ def test_what_was_signed_reads_the_same_for_ever(tmp_path: Path) -> None:
 def test_only_what_the_launch_changes_has_other_digits_now(tmp_path: Path) -> None:
     lookup = view(checked(tmp_path, EARLIER))
     now = {each.key: hash_interface(lookup, each) for each in find_interfaces_between(lookup.architecture, "a", "b")}
-    assert [key for key, version in EARLIER_VERSIONS.items() if now[key] != version] == ["sense.guard.safety"]
+    # `plain` alone has no remap, no override, no domain and no simulated time.
+    assert [key for key, version in EARLIER_VERSIONS.items() if now[key] != version] == [
+        "sense.guard.safety",
+        "sense.eye.rows",
+        "sense.old.odd",
+    ]

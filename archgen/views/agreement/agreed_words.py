@@ -85,7 +85,7 @@ def _describe_clock(lookup: Lookup, interface: PartnerInterface, *, is_agreed: b
         words = {
             "system": "the clock of its computer",
             "simulated": "simulated time (`/clock`)",
-            None: "an unknown clock",
+            None: "a clock that is not known",
         }
         return tuple(
             f"{join_words([f'`{node}`' for node in nodes])}: {words[clock]}." for clock, nodes in nodes_by_clock.items()

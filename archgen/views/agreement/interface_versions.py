@@ -12,7 +12,7 @@ from archgen.diagnostics.source_span import Span
 from archgen.model.agreed_terms import RULES, hash_text
 from archgen.model.declared_timing import OutputTiming
 from archgen.model.known_interfaces import Interface, InterfaceField, Interfaces
-from archgen.model.node import Endpoint, Evidence
+from archgen.model.node import Endpoint, Evidence, Qos
 from archgen.model.partner_interfaces import PartnerInterface, list_givers
 from archgen.model.quantity import Quantity
 from archgen.model.ros_distro import is_ros_1
@@ -20,9 +20,9 @@ from archgen.timing.figures.tick_unit import written_period
 from archgen.views.agreement.interface_timing import find_giver_timing
 from archgen.views.agreement.output_promises import identify_words, list_counted_ports
 from archgen.views.agreement.promise_rows import identify_qos
+from archgen.views.inline_text import format_qos
 from archgen.views.lookup import Lookup
 
-_CLOCK_WORDS = {"simulated": "simulated time", None: "an unknown clock"}
 _NO_EVIDENCE = Evidence("unknown")
 
 
@@ -40,7 +40,7 @@ def hash_interface(lookup: Lookup, interface: PartnerInterface, rules: int = RUL
         "definitions": list(_list_definitions(architecture.interfaces, interface.message)),
         "meaning": _collapse_blanks((interface.output.description if interface.output else None) or ""),
         # To write down what counted before promises it.
-        "promises qos": any(endpoint.qos.written for endpoint in interface.giver_endpoints) and with_qos,
+        "promises qos": any(_find_first_qos(lookup, each).written for each in interface.giver_endpoints) and with_qos,
         "offered": _list_qos(lookup, interface.giver_endpoints) if with_qos else [],
         "asked": _list_qos(lookup, interface.taker_endpoints) if with_qos else [],
         "promised": sorted(_list_promises(lookup, endpoint) for endpoint in givers),
@@ -71,7 +71,8 @@ def list_launch_words(interface: PartnerInterface) -> Iterator[tuple[str, Span]]
     """Yield sentences on what the launch makes of an interface, each with where that is written."""
     for endpoint in (*interface.giver_endpoints, *interface.taker_endpoints):
         for name, _, sentence in _list_launch_parts(endpoint):
-            yield sentence, endpoint.evidence.get(name, _NO_EVIDENCE).at
+            reasons = (each for key, each in endpoint.evidence.items() if key.partition(".")[0] == name)
+            yield sentence, next(reasons, _NO_EVIDENCE).at
 
 
 def _list_launch_parts(endpoint: Endpoint) -> Iterator[tuple[str, str, str]]:
@@ -81,12 +82,26 @@ def _list_launch_parts(endpoint: Endpoint) -> Iterator[tuple[str, str, str]]:
         yield "name", str(endpoint.name), f"`{said}` of {node} runs on `{endpoint.label}`"
     elif endpoint.name is None and endpoint.evidence.get("name", _NO_EVIDENCE).rule:
         yield "name", "unknown", f"nobody knows on what `{said}` of {node} runs"
+    if endpoint.qos_override in {"obeyed", "unknown"}:
+        doubt = ", if its program allows that" if endpoint.qos_override == "unknown" else ""
+        words = f"the QoS of {node} is overridden{doubt}: {format_qos(endpoint.qos)}"
+        yield "qos", f"{endpoint.qos_override} {identify_qos(endpoint.qos)}", words
     if endpoint.domain is not None:
         yield "domain", str(endpoint.domain), f"{node} runs in the domain {endpoint.domain}"
-    if endpoint.clock != "system":
-        yield "clock", str(endpoint.clock), f"{node} follows {_CLOCK_WORDS[endpoint.clock]}"
+    # One that is not known is no other one: a parameter file that is not at hand is no word of the launch.
+    if endpoint.clock == "simulated":
+        yield "clock", "simulated", f"{node} follows simulated time"
     if endpoint.runs in {"inactive", "off"}:
         yield "runs", str(endpoint.runs), f"{node} is {endpoint.runs}"
+
+
+def _find_first_qos(lookup: Lookup, endpoint: Endpoint) -> Qos:
+    """Return the quality of service of an end by the first rules: what is written at it, whatever parameters make of that."""
+    if endpoint.qos_override != "obeyed":
+        return endpoint.qos_if_ignored or endpoint.qos
+    uses = lookup.architecture.nodes[endpoint.node].uses
+    named = (each for each in uses if (each.use, each.port) == (endpoint.use, endpoint.port) and each.qos)
+    return next((each.qos for each in named if each.qos), Qos())
 
 
 def _find_first_name(endpoint: Endpoint) -> str:
@@ -128,7 +143,7 @@ def _read_comment(definition: Interface, field: InterfaceField) -> str:
 def _list_qos(lookup: Lookup, endpoints: Iterable[Endpoint]) -> list[str]:
     """Return the distinct qualities of service of written nodes, sorted."""
     nodes = lookup.architecture.nodes
-    return sorted({identify_qos(endpoint.qos) for endpoint in endpoints if nodes[endpoint.node].written})
+    return sorted({identify_qos(_find_first_qos(lookup, each)) for each in endpoints if nodes[each.node].written})
 
 
 def _list_promises(lookup: Lookup, endpoint: Endpoint) -> list[str]:
