@@ -121,11 +121,9 @@ class _AgreementPair:
 
     def _verify(self, signed: Signature) -> Iterator[tuple[tuple[str, ...], str]]:
         """Yield what a signature that is new says otherwise than the commit that it names."""
-        if self.new.at.file != signature_file(self.new.id) and len(self.after.yaml_files) > 1:
-            yield (
-                (),
-                f"the signature stands in `{self.new.at.file}`: it counts in `{signature_file(self.new.id)}` alone",
-            )
+        file, own_file = self.new.at.file, signature_file(self.new.id)
+        if file != own_file and len(self.after.yaml_files) > 1:
+            yield (), f"the signature stands in `{file}`: it counts in `{own_file}` alone"
         there = self._read_signed(signed)
         if there is None:
             name = shorten_hash(signed.revision or "")
@@ -156,48 +154,37 @@ class _AgreementPair:
 
     def _find_departures(self, signed: Signature) -> Iterator[Change]:
         """Yield a change for the project, and for each variant, that is not as signed and was so before."""
-        first = self._compare_standings(self.before, self.after)
-        names = [name for name in self.after.variants if name in self.before.variants]
-        variants = {
-            name: departures
-            for name in names
-            if (departures := self._compare_standings(self.before.variants[name], self.after.variants[name]))
-        }
-        # What is as it was before is as signed as it was before.
-        if not first and not variants and self.old.signed == signed:
-            return
-        there = self._read_signed(signed)
-        for name in ("", *names):
-            if name and name not in variants and self.old.signed == signed:
-                continue
-            then, before, after = (
-                side.variants.get(name) if name and side else side for side in (there, self.before, self.after)
-            )
-            if before and after and (then or not there):
-                yield from self._tell_departures(signed, then, before, after, name)
-
-    def _tell_departures(
-        self, signed: Signature, then: CheckedProject | None, before: CheckedProject, after: CheckedProject, name: str
-    ) -> Iterator[Change]:
-        old, new = (
-            self._compare_standings(then, side) if then else self._compare_digits(signed, side)
-            for side in (before, after)
-        )
         is_new = self.old.signed != signed
-        left = {
-            key: lines for key, lines in new.items() if is_new or _name_terms(lines) - _name_terms(old.get(key, ()))
-        }
-        if not left:
-            return
+        there: CheckedProject | None = None
+        for name in ("", *(name for name in self.after.variants if name in self.before.variants)):
+            before, after = (side.variants[name] if name else side for side in (self.before, self.after))
+            # What is as it was before is as signed as it was before.
+            if not is_new and not self._compare_standings(before, after):
+                continue
+            there = there or self._read_signed(signed)
+            then = there.variants.get(name) if there and name else there
+            if there and not then:
+                continue
+            old, new = (
+                self._compare_standings(then, side) if then else self._compare_digits(signed, side)
+                for side in (before, after)
+            )
+            left = {
+                key: lines for key, lines in new.items() if is_new or _name_terms(lines) - _name_terms(old.get(key, ()))
+            }
+            if left:
+                yield self._tell_departures(signed, left, name)
+
+    def _tell_departures(self, signed: Signature, left: Departures, variant: str) -> Change:
         count = sum(len(versions) for versions in signed.versions.values())
-        in_variant = f", in the variant `{name}`" if name else ""
         text = (
-            f"of the agreement {self._name(signed)} {len(left)} of {count} interfaces would be left{in_variant}: mend it, "
-            f"or let both sign again (`archgen sign {' '.join(self.new.pair)}`)"
+            f"of the agreement {self._name(signed)} {len(left)} of {count} interfaces would be left"
+            f"{f', in the variant `{variant}`' if variant else ''}: mend it, or let both sign again (`archgen sign "
+            f"{' '.join(self.new.pair)}`)"
         )
         told = [f"{key}: {'; '.join(lines)}" for key, lines in list(left.items())[:_MAX_TOLD]]
         told += [f"{len(left) - _MAX_TOLD} more"] if len(left) > _MAX_TOLD else []
-        yield self._make_change(("versions",), text, f"leaves what was signed of {join_words(told)}")
+        return self._make_change(("versions",), text, f"leaves what was signed of {join_words(told)}")
 
     def _name(self, signed: Signature | None) -> str:
         return f"`{self.new.id}` of {signed.day}" if signed and signed.day else f"`{self.new.id}`"

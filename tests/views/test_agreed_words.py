@@ -50,7 +50,7 @@ def test_what_is_known_and_what_nobody_said(tmp_path: Path) -> None:
             "A promises that what is read is no older than 2 s."
         ),
         "Time stamps": "nothing is said of whether header.stamp is of measuring or of sending",
-        "Clock": "That of PC, on which both sides run.",
+        "Clock": "The clock of PC, on which both sides run.",
         "After power-up": "nothing is said of it",
         "Duties of readers": "Base uses nothing older than 3 s as scan.",
     }
@@ -67,7 +67,7 @@ def test_what_is_known_and_what_nobody_said(tmp_path: Path) -> None:
         (
             ("base, host: pc", "base, host: other"),
             "Clock",
-            "Those of PC and Other PC.\nnothing is said of how far they may differ",
+            "The clocks of PC and Other PC.\nnothing is said of how far they may differ",
         ),
         (
             ("base, host: pc", "base"),
@@ -133,8 +133,8 @@ variants:
     assert terms_of(project)[3:] == [
         "Variants: This document holds for the project without its variants.",
         (
-            "Slow | sense.eye.scan: Rate (promised) is at most 5 Hz, here at most 10 Hz.\n"
-            "sense.eye.stop: Rate (promised) is 5 Hz · 200 ms, here 10 Hz · 100 ms."
+            "Slow | sense.eye.scan: Rate (promised): at most 5 Hz; here: at most 10 Hz.\n"
+            "sense.eye.stop: Rate (promised): 5 Hz · 200 ms; here: 10 Hz · 100 ms."
         ),
         "Blind | sense.eye.scan is not there.\nsense.eye.stop is not there.",
         "Same | Nothing: it is as here.",

@@ -189,7 +189,7 @@ def test_what_an_interface_says(tmp_path: Path) -> None:
         "Message: geometry_msgs/msg/PoseArray",
         "When late or missing: nothing is promised for this case",
         "Time stamps: nothing is said of whether header.stamp is of measuring or of sending",
-        "Clock: That of Pc, on which both sides run.",
+        "Clock: The clock of Pc, on which both sides run.",
         "After power-up: nothing is said of it",
         "Duties of readers: nothing is said of it",
         "Requirements: R-1 The arm grasps what lies on the table (Finder, Planner)",

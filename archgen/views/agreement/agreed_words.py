@@ -96,9 +96,9 @@ def _describe_clock(lookup: Lookup, interface: PartnerInterface, *, is_agreed: b
     if not endpoints or None in hosts:
         return (), "which computers the ends run on is not decided, and nothing is said of their clocks"
     if len(titles) == 1:
-        return (f"That of {titles[0]}, on which both sides run.",), ""
+        return (f"The clock of {titles[0]}, on which both sides run.",), ""
     unsaid = "" if is_agreed else "nothing is said of how far they may differ"
-    return (f"Those of {join_words(titles)}.",), unsaid
+    return (f"The clocks of {join_words(titles)}.",), unsaid
 
 
 def _describe_starts(interface: PartnerInterface, lookup: Lookup, steps: Mapping[str, StartStep]) -> Iterator[str]:

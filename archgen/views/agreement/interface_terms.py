@@ -122,11 +122,13 @@ def gather_terms(
     chains = tuple(interface_timing.find_chains_through(lookup, activity_names, interface))
     giver, taker = (join_owner_titles(lookup, [partner]) for partner in interface.pair)
     ports = output_promises.list_counted_ports(lookup, interface)
+    version = interface_versions.hash_interface(lookup, interface)
+    is_launched = any(interface_versions.list_launch_words(interface))
     agreement = find_agreement(lookup.architecture.agreements, *interface.pair)
     return InterfaceTerms(
         interface,
         interface_title(lookup, interface),
-        interface_versions.hash_interface(lookup, interface),
+        version,
         (*_list_facts(lookup, interface), *output_promises.list_word_facts(ports)),
         tuple(_list_promises(lookup, activity_names, interface, ports)),
         tuple(_list_ends(lookup, interface)),
@@ -143,7 +145,7 @@ def gather_terms(
         tuple(find_late_chains(lookup, chains)),
         tuple(_shared_sentences(lookup, interface)),
         {name: text for name in INTERFACE_TERMS if (text := agreement.find_term(name, interface.key))},
-        interface_versions.hash_interface(lookup, interface, rules=1),
+        interface_versions.hash_interface(lookup, interface, rules=1) if is_launched else version,
     )
 
 

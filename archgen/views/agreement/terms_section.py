@@ -45,7 +45,7 @@ def list_variant_differences(changes: AgreementChanges) -> Iterator[str]:
     for key in sorted(changes.changes_by_key):
         for term in changes.terms_of(key):
             if not term.is_expected and term.term_kind != "title":
-                yield f"`{key[0]}`: {term.name} is {term.after or 'nothing'}, here {term.before or 'nothing'}."
+                yield f"`{key[0]}`: {term.name}: {term.after or 'nothing'}; here: {term.before or 'nothing'}."
 
 
 def _describe_variants(content: AgreementContent) -> Iterator[str]:

@@ -34,7 +34,7 @@ agreements:
             "follows": [],
             "unsaid": "nothing is said of whether header.stamp is of measuring or of sending",
         },
-        "clock": {"agreed": None, "follows": ["That of Pc, on which both sides run."], "unsaid": None},
+        "clock": {"agreed": None, "follows": ["The clock of Pc, on which both sides run."], "unsaid": None},
         "start": {"agreed": None, "follows": [], "unsaid": "nothing is said of it"},
         "duties": {"agreed": None, "follows": [], "unsaid": "nothing is said of it"},
     }
