@@ -156,6 +156,7 @@ class _AgreementPair:
         """Yield a change for the project, and for each variant, that is not as signed and was so before."""
         is_new = self.old.signed != signed
         there: CheckedProject | None = None
+        told: dict[str, set[str]] = {}
         for name in ("", *(name for name in self.after.variants if name in self.before.variants)):
             before, after = (side.variants[name] if name else side for side in (self.before, self.after))
             # What is as it was before is as signed as it was before.
@@ -169,9 +170,10 @@ class _AgreementPair:
                 self._compare_standings(then, side) if then else self._compare_digits(signed, side)
                 for side in (before, after)
             )
-            left = {
-                key: lines for key, lines in new.items() if is_new or _name_terms(lines) - _name_terms(old.get(key, ()))
-            }
+            # What was left before is no news, nor is what the project itself leaves in its variants.
+            known = {key: _name_terms(() if is_new else old.get(key, ())) | told.get(key, set()) for key in new}
+            left = {key: lines for key, lines in new.items() if _name_terms(lines) - known[key]}
+            told = told or {key: _name_terms(lines) for key, lines in left.items()}
             if left:
                 yield self._tell_departures(signed, left, name)
 
@@ -182,7 +184,7 @@ class _AgreementPair:
             f"{f', in the variant `{variant}`' if variant else ''}: mend it, or let both sign again (`archgen sign "
             f"{' '.join(self.new.pair)}`)"
         )
-        told = [f"{key}: {'; '.join(lines)}" for key, lines in list(left.items())[:_MAX_TOLD]]
+        told = [f"{key} ({'; '.join(lines)})" for key, lines in list(left.items())[:_MAX_TOLD]]
         told += [f"{len(left) - _MAX_TOLD} more"] if len(left) > _MAX_TOLD else []
         return self._make_change(("versions",), text, f"leaves what was signed of {join_words(told)}")
 

@@ -74,7 +74,7 @@ def test_a_change_leaves_what_was_signed_until_both_sign_again(robot: Path, sign
         (
             f"error {FILE}:13 breaks Alpha and Beta (agreement): of the agreement `a-b` of 2026-03-01 1 of 3 interfaces "
             "would be left: mend it, or let both sign again (`archgen sign a b`); this leaves what was signed of "
-            "`sense.lidar.scan`: weaker: Rate (promised) was signed as 10 Hz · 100 ms, and is 8 Hz · 125 ms"
+            "`sense.lidar.scan` (weaker: Rate (promised) was signed as 10 Hz · 100 ms, and is 8 Hz · 125 ms)"
         )
     ]
     sign(day="2026-04-01")
@@ -104,7 +104,7 @@ def test_what_leaves_nothing_is_silent(robot: Path, sign: Sign, old: str, new: s
     [
         ("deadline: 300 ms", "deadline: 400 ms", "weaker: Deadline of Halt"),
         ("wcet: 20 ms", "wcet: 200 ms", "weaker: Deadline of Halt was signed as 300 ms, and is 300 ms, missed"),
-        ("{stop: eye.stop, alarm", "{alarm", "`sense.eye.stop`: was signed, and is gone"),
+        ("{stop: eye.stop, alarm", "{alarm", "`sense.eye.stop` (was signed, and is gone)"),
         ("outputs: {stop: Stop}", "outputs: {stop: {type: Stop, description: Halts}}", "Meaning was not signed: Halts"),
         ("topic: /stop", "topic: /halt", "Topic was signed as /stop, and is /halt"),
     ],
@@ -134,7 +134,7 @@ def test_words_are_signed_too(robot: Path, sign: Sign) -> None:
     git(robot, "branch", "base")
     edit(robot, "30 days", "3 days", FILE)
     (finding,) = judge(robot)
-    assert "leaves what was signed of the terms in words: notice" in finding
+    assert "leaves what was signed of the terms in words (notice)" in finding
 
 
 def test_a_variant_is_held_as_well(robot: Path, sign: Sign) -> None:
@@ -145,6 +145,35 @@ def test_a_variant_is_held_as_well(robot: Path, sign: Sign) -> None:
     (finding,) = judge(robot)
     assert "would be left, in the variant `slow`" in finding
     assert "5 Hz · 200 ms, and is 4 Hz" in finding
+
+
+def test_a_variant_is_not_told_what_the_project_leaves_already(robot: Path, sign: Sign) -> None:
+    edit(robot, "hosts:", "variants: {slow: {changes: {nodes: {lidar_driver: {timing: {rate: 5 Hz}}}}}}\nhosts:")
+    sign()
+    git(robot, "branch", "base")
+    edit(robot, "topic: /stop", "topic: /halt")
+    assert len(judge(robot)) == 1
+
+
+def test_a_signature_counts_in_its_own_file_alone(robot: Path, sign: Sign) -> None:
+    git(robot, "branch", "base")
+    sign()
+    git(robot, "mv", FILE, "more.yaml")
+    git(robot, "commit", "-qm", "moved")
+    (finding,) = judge(robot)
+    assert finding.startswith("error more.yaml:5 ")
+    assert f"the signature stands in `more.yaml`: it counts in `{FILE}` alone" in finding
+
+
+def test_a_partner_with_another_id_signs_again(robot: Path, sign: Sign) -> None:
+    sign()
+    git(robot, "branch", "base")
+    edit(robot, "a: Alpha", "alpha: Alpha")
+    edit(robot, "owner: a", "owner: alpha")
+    git(robot, "mv", FILE, "agreements/alpha-b.yaml")
+    edit(robot, "a-b:", "alpha-b:", "agreements/alpha-b.yaml")
+    (finding,) = judge(robot)
+    assert "`alpha` did not sign what takes the place of `alpha-b` of 2026-03-01" in finding
 
 
 def test_a_signature_of_one_binds_nobody(robot: Path, sign: Sign) -> None:
@@ -227,7 +256,7 @@ def test_without_the_signed_commit_the_versions_count(robot: Path, sign: Sign) -
     git(robot, "branch", "base")
     edit(robot, "rate: 10 Hz", "rate: 8 Hz")
     (finding,) = judge(robot)
-    assert "leaves what was signed of `sense.lidar.scan`: version V, V was signed" in finding
+    assert "leaves what was signed of `sense.lidar.scan` (version V, V was signed)" in finding
 
 
 def test_a_withdrawal_needs_the_word_of_both(robot: Path, sign: Sign) -> None:
