@@ -50,6 +50,8 @@ def list_rule_words(node: Node, *, ros_1: bool) -> Iterator[RuleWord]:
             if JOINT in text and not (text.startswith("_") and not text.startswith("__"))
         )
         return
+    if node.container is not None:
+        return  # what a container loads has no command line of its own
     is_for_ros = False
     for text, at in words:
         if text == "--ros-args":
