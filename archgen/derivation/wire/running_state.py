@@ -205,7 +205,7 @@ class RunningStates:
         # What lists nothing itself is told, in launch files that archgen writes, who names it in `by`.
         named = {node.start.by.id for node in self._architecture.nodes.values() if node.start and node.start.by}
         for node in self._architecture.nodes.values():
-            if _MANAGER_PROGRAM not in f"{node.package} {node.executable} {node.plugin}":
+            if node.status == "planned" or _MANAGER_PROGRAM not in f"{node.package} {node.executable} {node.plugin}":
                 continue
             parameters = find_parameters(self._architecture, node, "node_names", "autostart")
             names = parameters["node_names"].value if "node_names" in parameters else None
