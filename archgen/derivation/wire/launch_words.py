@@ -80,6 +80,8 @@ def list_parameter_words(node: Node) -> Iterator[ParameterValue]:
     """
     words, places = node.arguments, node.argument_places or (NO_SPAN,) * len(node.arguments)
     is_for_ros = False
+    if node.container is not None:
+        return  # as above
     for flag, (word, at) in zip(words, list(zip(words, places, strict=True))[1:], strict=False):
         is_for_ros = flag == "--ros-args" or (is_for_ros and flag != "--")
         parameter, joint, text = word.partition(JOINT)
