@@ -62,12 +62,16 @@ class BranchMerge:
     commit holds no project. `sides` are the branches of what was merged: none of them is the main line.
     """
 
-    branches: tuple[str, ...]
+    sides: tuple[tuple[str, ...], tuple[str, ...]]
     conflicts: tuple[FileConflict, ...] = ()
     new_findings: tuple[Diagnostic, ...] = ()
     checked_project: CheckedProject | None = None
-    sides: tuple[tuple[str, ...], tuple[str, ...]] = ((), ())
     joint_breaks: JointBreaks = field(default_factory=JointBreaks)
+
+    @property
+    def branches(self) -> tuple[str, ...]:
+        """All branches that are merged."""
+        return self.sides[0] + self.sides[1]
 
     @property
     def goes_in_no_order(self) -> bool:
@@ -176,16 +180,16 @@ class BranchMerger:
             if problem is None:
                 settled_contents[conflict.path] = (conflict.mode, content)
         if any(conflict.problem for conflict in conflicts):
-            return BranchMerge(branches, tuple(conflicts), sides=sides), None
+            return BranchMerge(sides, tuple(conflicts)), None
         tree = self._merge_folder.replace_files(tree_merge.tree, settled_contents)
         checked_project = self._check_commit(tree, " + ".join(branches)) if is_checked else ours.checked_project
         joint_breaks, double_renames = self._judge_merge(ours, theirs, checked_project)
         if double_renames:
-            return BranchMerge(branches, (*conflicts, *double_renames), sides=sides), None
+            return BranchMerge(sides, (*conflicts, *double_renames)), None
         known_findings = ours.known_findings | theirs.known_findings
         findings = checked_project.findings if checked_project else ()
         new_findings = tuple(each for each in findings if identify_finding(each) not in known_findings)
-        branch_merge = BranchMerge(branches, tuple(conflicts), new_findings, checked_project, sides, joint_breaks)
+        branch_merge = BranchMerge(sides, tuple(conflicts), new_findings, checked_project, joint_breaks)
         commit = self._merge_folder.commit_tree(tree, (ours.commit, theirs.commit))
         known_findings |= _identify_findings(checked_project)
         parts = (*(ours.parts or (ours,)), theirs)
@@ -345,7 +349,7 @@ def preview_merges(
             except GitError as error:
                 if not leaves_out_unmergeable:
                     raise
-                yield BranchMerge((branch,), (FileConflict("", str(error)),), sides=((), (branch,)))
+                yield BranchMerge(((), (branch,)), (FileConflict("", str(error)),))
                 continue
             yield branch_merge
             if merged_state is not None:
