@@ -148,12 +148,16 @@ class BranchMerger:
         checked_project = self._check_commit(commit, revision)
         return _MergeState(branches, commit, _identify_findings(checked_project), checked_project)
 
-    def _check_commit(self, commit: str, name: str) -> CheckedProject | None:
-        # A branch that has all of the main line is what it is merged into: one tree, checked once.
+    def _check_commit(self, commit: str, name: str, *, is_kept: bool = True) -> CheckedProject | None:
+        # A branch that has all of the main line is what it is merged into: one tree, checked once. What several branches
+        # are together comes up once, and may be large.
         tree = look_up_tree(self._merge_folder.objects.repository, commit) or commit
-        if tree not in self._checked_trees:
-            self._checked_trees[tree] = self._check_tree(commit, name)
-        return self._checked_trees[tree]
+        if tree in self._checked_trees:
+            return self._checked_trees[tree]
+        checked_project = self._check_tree(commit, name)
+        if is_kept:
+            self._checked_trees[tree] = checked_project
+        return checked_project
 
     def _check_tree(self, commit: str, name: str) -> CheckedProject | None:
         try:
@@ -182,7 +186,9 @@ class BranchMerger:
         if any(conflict.problem for conflict in conflicts):
             return BranchMerge(sides, tuple(conflicts)), None
         tree = self._merge_folder.replace_files(tree_merge.tree, settled_contents)
-        checked_project = self._check_commit(tree, " + ".join(branches)) if is_checked else ours.checked_project
+        checked_project = ours.checked_project
+        if is_checked:
+            checked_project = self._check_commit(tree, " + ".join(branches), is_kept=not ours.branches)
         joint_breaks, double_renames = self._judge_merge(ours, theirs, checked_project)
         if double_renames:
             return BranchMerge(sides, (*conflicts, *double_renames)), None
@@ -202,7 +208,7 @@ class BranchMerger:
             joined = self.merge_states(joined, state, is_checked=False)[1] if joined else None
         if joined is None or joined is states[0]:
             return joined
-        checked_project = self._check_commit(joined.commit, " + ".join(joined.branches))
+        checked_project = self._check_commit(joined.commit, " + ".join(joined.branches), is_kept=False)
         known_findings = joined.known_findings | _identify_findings(checked_project)
         return replace(joined, checked_project=checked_project, known_findings=known_findings)
 
