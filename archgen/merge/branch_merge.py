@@ -360,34 +360,44 @@ def preview_merges(
             yield branch_merge
             if merged_state is not None:
                 merged_states.append(replace(merged_state, parts=()))
-        yield from _merge_together(merger, merged_states)
+        yield from _merge_together(merger, main_state, merged_states)
 
 
-def _merge_together(merger: BranchMerger, states: Sequence[_MergeState]) -> Iterator[BranchMerge]:
-    """Merge branches one after the other; yield where one does not go with those before it, and at last all of them if
-    they do.
+def _merge_together(
+    merger: BranchMerger, main_state: _MergeState, states: Sequence[_MergeState]
+) -> Iterator[BranchMerge]:
+    """Merge branches one after the other; yield where one does not go with those before it, and at last those that go
+    together.
 
-    A branch that conflicts with those before it begins a line of its own, and each branch is merged into each line: so every
-    pair is seen, and pairs are merged by themselves only where a line says that something is wrong.
+    A branch that conflicts with those before it, or brings errors that would hide what later ones do, begins a line of its
+    own, and each branch is merged into each line: so every pair is seen, and pairs are merged by themselves only where a line
+    says that something is wrong.
     """
     lines: list[_MergeState] = []
-    whole_merge, is_sound = None, True
+    # By line; None where its branches do not go together.
+    whole_merges: dict[int, BranchMerge | None] = {}
     for state in states:
         home = None
         for number, line in enumerate(lines):
             branch_merge, merged_state = merger.merge_states(line, state)
             if branch_merge.has_news:
                 yield from _find_partners(merger, line, state, branch_merge)
-            if number == 0 and merged_state is not None:
-                whole_merge = replace(branch_merge, conflicts=())
-                is_sound &= not whole_merge.has_news
-            if home is None and merged_state is not None:
-                home = number
-                lines[number] = merged_state
+            if home is None and merged_state is not None and not _hides_more(main_state, merged_state):
+                home, lines[number] = number, merged_state
+                is_sound = not branch_merge.findings and whole_merges.get(number, branch_merge) is not None
+                whole_merges[number] = replace(branch_merge, conflicts=()) if is_sound else None
         if home is None:
             lines.append(state)
-    if whole_merge is not None and is_sound:
-        yield whole_merge
+    yield from filter(None, whole_merges.values())
+
+
+def _hides_more(main_state: _MergeState, merged_state: _MergeState) -> bool:
+    """Whether there are errors of reading or linking that the main line has not: what they are about is judged no more."""
+    old_errors, new_errors = (
+        {identify_finding(error) for error in (each.checked_project.structural_errors if each.checked_project else ())}
+        for each in (main_state, merged_state)
+    )
+    return not new_errors <= old_errors
 
 
 def _find_partners(
