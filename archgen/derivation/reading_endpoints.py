@@ -148,6 +148,7 @@ class _InputReader:
                 yield self._make_endpoint(use, wire, flow_kind, topic_writers)
         elif not self.port.from_written:
             flow_kind = flow_of_use(use.message or self._expected_message(), use)
+            # What a program calls its port is its name where nothing feeds it.
             is_invented = is_generated and not use.own_name
             default_name = ros_names.default_port_name(self.port.id) if is_invented else None
             wire = names.name_end(default_name, use.own_name, flow_kind, use.at)

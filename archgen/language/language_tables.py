@@ -11,29 +11,30 @@ from collections.abc import Mapping
 from typing import Literal
 
 KindName = Literal[
-    "slice", "project", "partner", "ros", "rules", "layout", "report", "review", "accepted", "accepted_key", "site",
-    "variant", "variant_changes", "library", "use_case", "actor", "step", "requirement", "property_declaration", "view",
-    "group", "component", "component_type", "component_node", "input", "output", "type_input", "performance",
-    "indicator", "operation", "parameter", "parameter_declaration", "type", "field", "constant", "frame", "promise",
-    "deprecation", "node", "internal", "topic_use", "call_use", "qos", "host", "container", "resource", "link", "start",
-    "start_ready", "policy", "require", "forbid", "timing", "timing_input", "timing_output", "timing_use", "trigger",
-    "execution_time", "latency", "chain",
+    "slice", "project", "partner", "agreement", "interface_terms", "agreed_terms", "signature", "ros", "rules",
+    "layout", "report", "review", "accepted", "accepted_key", "site", "variant", "variant_changes", "library",
+    "use_case", "actor", "step", "requirement", "property_declaration", "view", "group", "component", "component_type",
+    "component_node", "input", "output", "type_input", "performance", "indicator", "operation", "parameter",
+    "parameter_declaration", "type", "field", "constant", "frame", "promise", "deprecation", "node", "internal",
+    "topic_use", "call_use", "qos", "host", "container", "resource", "link", "start", "start_ready", "policy",
+    "require", "forbid", "timing", "timing_input", "timing_output", "timing_use", "trigger", "execution_time",
+    "latency", "chain",
 ]
 SectionName = Literal[
-    "archgen", "project", "sources", "partners", "ros", "rules", "layout", "report", "use_cases", "requirements",
-    "properties", "glossary", "component_types", "libraries", "groups", "nodes", "types", "hosts", "containers",
-    "resources", "links", "frames", "chains", "views", "policies", "review", "site", "variants",
+    "archgen", "project", "sources", "partners", "agreements", "ros", "rules", "layout", "report", "use_cases",
+    "requirements", "properties", "glossary", "component_types", "libraries", "groups", "nodes", "types", "hosts",
+    "containers", "resources", "links", "frames", "chains", "views", "policies", "review", "site", "variants",
 ]
 
 KEYS: Mapping[str, Mapping[str, str]] = {
     "slice": {
-        "archgen": "slice.archgen", "project": "project", "sources": "files", "partners": "partners", "ros": "ros",
-        "rules": "rules", "layout": "layout", "report": "report", "use_cases": "use_cases",
-        "requirements": "requirements", "properties": "property_declarations", "glossary": "glossary",
-        "component_types": "component_types", "libraries": "libraries", "groups": "groups", "nodes": "nodes",
-        "types": "types", "hosts": "hosts", "containers": "containers", "resources": "resources", "links": "links",
-        "frames": "frames", "chains": "chains", "views": "views", "policies": "policies", "review": "review",
-        "site": "site", "variants": "variants",
+        "archgen": "slice.archgen", "project": "project", "sources": "files", "partners": "partners",
+        "agreements": "agreements", "ros": "ros", "rules": "rules", "layout": "layout", "report": "report",
+        "use_cases": "use_cases", "requirements": "requirements", "properties": "property_declarations",
+        "glossary": "glossary", "component_types": "component_types", "libraries": "libraries", "groups": "groups",
+        "nodes": "nodes", "types": "types", "hosts": "hosts", "containers": "containers", "resources": "resources",
+        "links": "links", "frames": "frames", "chains": "chains", "views": "views", "policies": "policies",
+        "review": "review", "site": "site", "variants": "variants",
     },
     "project": {
         "id": "id", "title": "text", "version": "text", "description": "prose", "middleware": "project.middleware",
@@ -41,6 +42,20 @@ KEYS: Mapping[str, Mapping[str, str]] = {
     "partner": {
         "title": "text", "description": "prose", "contact": "text", "reviewers": "reviewers",
         "properties": "properties", "hints": "hints",
+    },
+    "agreement": {
+        "terms": "agreed_terms", "interfaces": "agreement.interfaces", "signed": "signature",
+    },
+    "interface_terms": {
+        "late": "text", "stamps": "text", "clock": "text", "start": "text", "duties": "text",
+    },
+    "agreed_terms": {
+        "late": "text", "stamps": "text", "clock": "text", "start": "text", "duties": "text", "notice": "text",
+        "validity": "text", "other": "text",
+    },
+    "signature": {
+        "rules": "count", "tag": "text", "revision": "signature.revision", "terms": "version_digits",
+        "by": "signature.by", "versions": "signature.versions",
     },
     "ros": {
         "distro": "ros.distro", "interfaces": "files", "shared_topics": "shared_topics", "parameters": "ros_parameters",
@@ -100,6 +115,7 @@ KEYS: Mapping[str, Mapping[str, str]] = {
     },
     "review.breaking": {
         "wire": "severity", "promise": "severity", "meaning": "severity", "source": "severity", "foreign": "severity",
+        "agreement": "severity",
     },
     "review": {
         "main": "text", "breaking": "review.breaking", "accepted": "review.accepted", "backends": "review.backends",
@@ -347,8 +363,8 @@ KEYS: Mapping[str, Mapping[str, str]] = {
 }
 """The part that stands at each key of each kind."""
 ENTRIES: Mapping[str, str] = {
-    "actors": "actor", "callback_groups": "group_components", "calls": "call_use", "chains": "chain",
-    "changed_component_types": "component_type", "component_parameters": "parameter",
+    "actors": "actor", "agreements": "agreement", "callback_groups": "group_components", "calls": "call_use",
+    "chains": "chain", "changed_component_types": "component_type", "component_parameters": "parameter",
     "component_types": "component_type", "components": "component", "constants": "constant", "containers": "container",
     "definitions": "definitions.*", "fields": "field", "frames": "frame", "glossary": "text", "groups": "group",
     "host_scheduling": "host_order", "hosts": "host", "inputs": "input", "inner_nodes": "inner_nodes.*",
@@ -361,9 +377,11 @@ ENTRIES: Mapping[str, str] = {
     "start_environment": "start_environment.*", "timing_calls": "timing_calls.*", "timing_inputs": "timing_input",
     "timing_outputs": "timing_output", "timing_uses": "timing_use", "topics": "topic_use", "type_inputs": "type_input",
     "types": "type", "urls": "urls.*", "use_cases": "use_case", "variants": "variant", "views": "view",
-    "rules": "rules.*", "report.abbreviations": "text", "report.texts": "report.texts.*",
-    "report.pictures": "report.pictures.*", "review.accepted": "accepted", "performance": "indicator",
-    "operation.request": "operation.request.*", "operation.response": "operation.response.*", "parameter": "parameter",
+    "agreement.interfaces": "interface_terms", "signature.by": "text", "signature.versions.*": "version_digits",
+    "signature.versions": "signature.versions.*", "rules": "rules.*", "report.abbreviations": "text",
+    "report.texts": "report.texts.*", "report.pictures": "report.pictures.*", "review.accepted": "accepted",
+    "performance": "indicator", "operation.request": "operation.request.*",
+    "operation.response": "operation.response.*", "parameter": "parameter",
 }
 """Mappings by id: the part of their values."""
 ITEMS: Mapping[str, str] = {
@@ -407,7 +425,7 @@ LIST_ORDERS: Mapping[str, str] = {
 """Lists whose order says nothing. `gathered`: both sides may begin one; `headed`: the first item says more."""
 BARE_PARTS: frozenset[str] = frozenset({
     "core_list[]", "count", "flag", "index", "port_number", "promised_limit", "range_limit", "report.large_paper",
-    "slice.archgen", "timing_calls.*", "view.depth",
+    "slice.archgen", "timing_calls.*", "version_digits", "view.depth",
 })
 """Values that are no text."""
 DATA_PARTS: frozenset[str] = frozenset({
@@ -508,10 +526,11 @@ PLACED_KEYS: Mapping[str, tuple[str, ...]] = {
 }
 """Keys whose values keep their places, each in a field `KEY_at`."""
 SECTION_KINDS: Mapping[str, str] = {
-    "partners": "partner", "use_cases": "use_case", "requirements": "requirement", "properties": "property_declaration",
-    "component_types": "component_type", "libraries": "library", "groups": "group", "nodes": "node", "types": "type",
-    "hosts": "host", "containers": "container", "resources": "resource", "links": "link", "frames": "frame",
-    "chains": "chain", "views": "view", "policies": "policy", "variants": "variant",
+    "partners": "partner", "agreements": "agreement", "use_cases": "use_case", "requirements": "requirement",
+    "properties": "property_declaration", "component_types": "component_type", "libraries": "library",
+    "groups": "group", "nodes": "node", "types": "type", "hosts": "host", "containers": "container",
+    "resources": "resource", "links": "link", "frames": "frame", "chains": "chain", "views": "view",
+    "policies": "policy", "variants": "variant",
 }
 """Sections whose keys are ids of elements: the kind of these."""
 LISTED_PARTS: frozenset[str] = frozenset({

@@ -216,6 +216,8 @@ VALUE_READERS: Mapping[str, ValueReader | None] = {
             "parameter_declaration.from",
             "forge",
             "repository_address",
+            "signature.revision",
+            "version_digits",
         ),
         mapping_values.get_text,
     ),

@@ -71,6 +71,7 @@ TABLE_ONLY_FOR_SCHEMA = {
     "project layout": "a section of its own",
     "project chapters": "below `report`",
     "project review": "a section of its own",
+    "project agreements": "a section of its own",
     "project site": "a section of its own",
     "project rules": "a section of its own",
     **dict.fromkeys(("project properties", "project glossary"), "sections of their own"),
@@ -132,6 +133,7 @@ NOT_IN_RECORD = {
     **{f"component_type {key}": "what its instances have" for key in READ_OFF_PATTERNS - _SHOWN_SETTINGS},
     "link latency": "the keys `best` and `worst`",
     **{f"project {key}": "a setting" for key in ("shared_topics", "chapters", "review", "rules", "site")},
+    "project agreements": "between partners, not a part of the system",
     **dict.fromkeys(("project properties", "project glossary"), "sections of their own"),
 }
 KINDS_NOT_IN_RECORD = {
@@ -431,8 +433,9 @@ def test_the_kinds_are_those_of_the_model_and_of_the_cards(lookup: Lookup) -> No
     assert carded - {"topic", "channel", "composed"} == set(SECTIONS)
     # What else an architecture maps from ids: topics follow from nodes.
     mapped = {field.name for field in fields(Architecture) if str(field.type).startswith("Mapping[str, ")}
-    # Nor are composed components a kind of their own in files; properties and terms are the project's.
-    assert mapped - {"topics", "channels", "shells", "shell_ports", "properties", "glossary"} == set(SECTIONS.values())
+    # Nor are composed components a kind of their own in files; properties, terms and agreements are the project's.
+    others = {"topics", "channels", "shells", "shell_ports", "properties", "glossary", "agreements"}
+    assert mapped - others == set(SECTIONS.values())
 
 
 def test_the_exceptions_are_needed() -> None:

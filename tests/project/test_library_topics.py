@@ -89,6 +89,14 @@ def test_a_filter_reads_what_its_parameters_name_and_nothing_else(tmp_path: Path
         "publishes": ["/odometry/filtered", "/tf"],
         "subscribes": ["/imu/data", "/odom/unfiltered", "/set_pose"],
     }
+    assert sorted(each.name or "" for each in architecture.endpoints if each.node == "ekf_filter_node") == [
+        "/imu/data",
+        "/odom",
+        "/odom/unfiltered",
+        "/set_pose",
+        "/tf",
+    ]
+    assert {finding.rule for finding in pipeline.check_project(tmp_path).findings} == {"missing-detail"}
 
 
 STRETCH = """\
@@ -211,8 +219,7 @@ def test_a_robot_of_eleven_nodes_of_the_library_has_all_of_its_names(tmp_path: P
     names = {node: list_program_names(architecture, node) for node in architecture.nodes}
     assert names == STRETCH_NAMES
     assert sum(len(each) for uses in names.values() for each in uses.values()) == 51
-    moved = {(each.node, each.program_name, each.name) for each in architecture.endpoints}
-    assert {each for each in moved if each[1] not in {None, each[2]}} <= {
+    assert {(each.node, each.program_name, each.name) for each in architecture.endpoints if each.is_moved} == {
         ("teleop_twist_joy_node", "/cmd_vel", "/stretch/cmd_vel"),
         ("controller_server", "/cmd_vel", "/stretch/cmd_vel"),
     }
