@@ -87,6 +87,8 @@ def _find_refused_changes(comparison: Comparison) -> Mapping[str, Sequence[Chang
     """
     changes: dict[str, list[Change]] = {}
     for change in comparison.changes if comparison.is_judged else ():
+        if not _is_acceptable(change):
+            continue
         refused_breaks = [each for each in change.breaks if each.agreement is None and _is_refused(each, comparison)]
         for partner in dict.fromkeys(each.partner for each in refused_breaks):
             changes.setdefault(partner, []).append(change)
@@ -97,11 +99,18 @@ def describe_remedy(change: Change, comparison: Comparison) -> str:
     """Describe what to do about a change that breaks partners who did not agree, in one line."""
     if not comparison.is_judged:
         return "mend what cannot be read first: only what is judged can be accepted"
+    if not _is_acceptable(change):
+        return "mend it, or let both sign again: a signature is excused by none that accepts"
     partners = change.unheard_partners
     partner_ids = [find_partner_id(partner, comparison.matched_ids) for partner in partners]
     files = join_words([f"`{agreement_file(partner_id)}`" for partner_id in partner_ids])
     entries = dict.fromkeys(_write_entry(change, partner, "THE REASON") for partner in partners)
     return f"mend it, or {_say_why(partners, comparison)}, in {files}: {join_words(list(entries))}"
+
+
+def _is_acceptable(change: Change) -> bool:
+    """Whether partners may accept a change: what both signed, both sign again, unless they end it."""
+    return change.kind == "removed" or any(each.category != "agreement" for each in change.breaks)
 
 
 def _say_why(partners: Sequence[str], comparison: Comparison) -> str:
