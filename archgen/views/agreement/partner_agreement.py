@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from archgen.compare.match_elements import match_elements
 from archgen.compare.matched_ids import MatchedIds
 from archgen.frozen import dataclass, replace
-from archgen.model.agreed_terms import RULES
+from archgen.model.agreed_terms import GENERAL_TERMS, RULES, find_agreement
 from archgen.model.partner_interfaces import PartnerPair, find_interfaces_between
 from archgen.timing.chains.measured_comparison import Observation
 from archgen.timing.system import activity_builder
@@ -126,7 +126,11 @@ def _compare_with(
     old_partners = matched_ids.old_ids.get("partner", {})
     old_pair = old_partners.get(pair[0], pair[0]), old_partners.get(pair[1], pair[1])
     old_records = record_interfaces(earlier_lookup, old_pair, matched_ids)
-    return compare_revisions(name, old_records, records, matched_ids, rules)
+    changes = compare_revisions(name, old_records, records, matched_ids, rules)
+    old_terms = find_agreement(earlier_lookup.architecture.agreements, *old_pair).terms
+    terms = find_agreement(lookup.architecture.agreements, *pair).terms
+    words = tuple(title for key, title in GENERAL_TERMS.items() if old_terms.get(key) != terms.get(key))
+    return replace(changes, changed_words=words)
 
 
 def record_interfaces(
