@@ -75,7 +75,7 @@ def unmet_ready(architecture: Architecture) -> Iterator[Diagnostic]:
     for node in architecture.nodes.values():
         if node.start is None or (node.start.ready.topic is None and node.start.ready.service is None):
             continue
-        ready = resolve_conditions(node.start.ready, node)
+        ready = resolve_conditions(node.start.ready, node, architecture.distro)
         for key, name in (("topic", ready.topic), ("service", ready.service)):
             if name is None or _is_always_there(architecture, key, name):
                 continue

@@ -25,6 +25,7 @@ from archgen.compare.losses.renamed_topics import find_renamed_topics
 from archgen.compare.losses.retyped_topics import find_retyped_topics
 from archgen.compare.losses.timing_causes import TimingCauses
 from archgen.compare.losses.unserved_requirements import find_unserved_requirements
+from archgen.compare.losses.weakened_demands import find_rewritten_requirements, find_weakened_policies
 from archgen.compare.losses.weakened_outputs import find_weakened_outputs
 from archgen.compare.losses.weakened_promises import find_weakened_deadlines
 from archgen.compare.losses.weakened_qos import find_weakened_publishers
@@ -48,6 +49,8 @@ _LOSS_FINDERS = (
     find_deprecated_types,
     find_weakened_sizes,
     find_unserved_requirements,
+    find_rewritten_requirements,
+    find_weakened_policies,
     find_cut_steps,
     find_changed_meanings,
     find_changed_frames,

@@ -129,8 +129,11 @@ class _Matcher:
     def pair_by_likeness(self, kind: KindSpec) -> None:
         """Pair the remaining elements by likeness; ports only within each pair of components."""
         unmatched_before: dict[str, dict[str, FeatureMap]] = {}
+        unread_keys = self.new_relations.architecture.unread_keys
         for element_id, element in _declared_elements(kind, self.old_relations).items():
-            if self.matched_ids.find_new_id(kind.name, element_id) is None:
+            # What may be in a part that could not be read may have its old id there.
+            is_unread = element_id.rpartition(".")[2] in unread_keys
+            if not is_unread and self.matched_ids.find_new_id(kind.name, element_id) is None:
                 parent = self._new_parent(kind, element_id)
                 if parent is not None:
                     features = describe_element(kind, self.old_relations, element)

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
+from archgen.compare.kinds.element_owners import find_type_owner
 from archgen.compare.kinds.functional_kinds import COMPONENT
 from archgen.compare.kinds.key_spec import Effect, KeySpec, ReadContext, Worsening, key_values
 from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec
@@ -127,5 +128,6 @@ COMPONENT_TYPE = KindSpec(
         text_feature(3, "functionality", "description"),
     ),
     word="component type",
+    owner=find_type_owner,
     without=frozenset({"layout", "outputs", *(key.name for key in _PATTERN_KEYS)}),
 )

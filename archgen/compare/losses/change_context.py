@@ -106,6 +106,8 @@ class ChangeContext:
     def owners_of_change(self, change_index: int) -> frozenset[str]:
         """Return the partner who owns what changed, nobody if nobody owns it."""
         change = self.changes[change_index]
+        if change.element_kind == "type":
+            return frozenset()  # whom it breaks, those say who write what is of the type (`MessageUsers`)
         return self.lasting_owners(
             "input" if change.element_kind == "connection" else change.element_kind, self.common_id(change)
         )
@@ -235,7 +237,11 @@ class ChangeContext:
             for key in (node_id, port)
             if any(self.before.nodes[end.node].status != "planned" for end in ends)
         }
-        return old_endpoints, {
+        # What stands in a part that could not be read offers what it offered.
+        unread_endpoints = {
+            key: ends for key, ends in old_endpoints.items() if self.versions.may_be_unread(("node", key[0]))
+        }
+        return old_endpoints, unread_endpoints | {
             (node_id, port): ends
             for (node_id, port), ends in self._collect_offered(self.after, MatchedIds()).items()
             if self.after.nodes[node_id].status != "planned" or real_keys.isdisjoint({node_id, port} - {""})

@@ -12,6 +12,7 @@ from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
 from archgen.compare.losses.composed_places import find_component_renames, needs_other_id
 from archgen.compare.losses.loss_wording import tick_sorted_names
 
+_UNMADE_NOTE = "; `autoconnect` joined them, and does no more"
 _MAX_RENAMES = 2
 """Maximal number of ids in one sentence; the rest is counted."""
 
@@ -35,29 +36,32 @@ def find_lost_connections(context: ChangeContext) -> Iterator[PartnerLoss]:
 
 
 def find_unmade_connections(context: ChangeContext) -> Iterator[PartnerLoss]:
-    """Find inputs that `autoconnect` had joined and that have no source now: whoever owns them wrote nothing of that.
+    """Find inputs that lost what nobody had joined to them by its name: `autoconnect` had, or they read a whole group.
 
-    It belongs to the change that unmade it: another output that fits, another type, or the word itself.
+    It belongs to the change that unmade it, since whoever owns the input wrote nothing of that: another output that
+    fits, another type, another group, or the word itself. What was removed is told as such.
     """
     connections_before, connections_after = context.versions.connections_before, context.versions.connections_after
     for input_id, sources in sorted(connections_before.sources_by_input.items()):
         partner = context.owner_before("input", input_id)
-        is_unmade = not connections_after.sources_by_input.get(input_id) and connections_before.is_made(
-            input_id, sources
-        )
+        sources_after = connections_after.sources_by_input.get(input_id, frozenset())
+        lost_sources = {each for each in sources if context.output_heirs.get(each, each) not in sources_after}
+        is_made = not sources_after and connections_before.is_made(input_id, sources)
+        is_of_group = bool(lost_sources) and all((each, input_id) in connections_before.group_pairs for each in sources)
         if (
-            not is_unmade
+            not (is_made or is_of_group)
             or partner is None
             or not context.needs_source(input_id)
-            or _is_own_edit(context, input_id, sources)
+            or _is_own_edit(context, input_id, lost_sources)
         ):
             continue
-        old_names = tick_sorted_names(context.old_id("output", source) for source in sources)
-        lead, note = f"takes {old_names} from", "; `autoconnect` joined them, and does no more"
-        causes = _find_unmaking_changes(context, input_id, sources)
+        old_names = tick_sorted_names(context.old_id("output", source) for source in lost_sources)
+        lead = f"takes {old_names} from"
+        note = "; it reads all of a group, in which that is no more" if is_of_group else _UNMADE_NOTE
+        causes = _find_unmaking_changes(context, input_id, lost_sources)
         if causes:
             yield from context.losses_of_readers(causes, {partner: [input_id]}, lead, note)
-        elif partner not in context.lasting_owners(*_find_holder(context, input_id)):
+        elif is_made and partner not in context.lasting_owners(*_find_holder(context, input_id)):
             reason = f"{lead} {context.name_partner(partner)} ({tick_sorted_names([input_id])}){note}"
             yield from (
                 PartnerLoss(index, partner, reason) for index in context.change_indices("connection", input_id)[:1]
@@ -70,7 +74,8 @@ def _is_own_edit(context: ChangeContext, input_id: str, sources: Iterable[str]) 
         elements.get(("input", input_id))
         for elements in (context.versions.elements_before, context.versions.elements_after)
     )
-    if before is None or after is None or any(context.versions.is_removed("output", source) for source in sources):
+    gone_sources = (each for each in sources if each not in context.output_heirs)
+    if before is None or after is None or any(context.versions.is_removed("output", each) for each in gone_sources):
         return True
     return any(before.values.get(key) != after.values.get(key) for key in ("type", "external"))
 
@@ -84,7 +89,9 @@ def _find_holder(context: ChangeContext, port_id: str) -> ElementKey:
 def _find_unmaking_changes(context: ChangeContext, input_id: str, sources: Iterable[str]) -> list[int]:
     """Return the changes of outputs beside an input that left open which of them it is to read, or made them unfit."""
     changed_indices = [
-        index for source in sorted(sources) for index in context.change_indices("output", source, "type")
+        index
+        for source in sorted(sources)
+        for index in (*context.change_indices("output", source, "type"), *find_output_causes(context, source))
     ]
     holder = _find_holder(context, input_id)
     source_names = {source.rpartition(".")[2] for source in sources}

@@ -100,7 +100,7 @@ def _to_code(text: str) -> Inlines:
 
 def _remap_facts(lookup: Lookup, node: Node) -> Inlines:
     """Return the names that become others when the node starts, those of its ports first."""
-    port_names = {each.own_name: each.name for each in lookup.endpoints_of.get(node.id, ()) if each.own_name}
+    port_names = {each.own_name: each.label for each in lookup.endpoints_of.get(node.id, ()) if each.own_name}
     return inline_text.join_inlines(
         (Text(own_name, code=True), Text(" is "), Text(name, code=True))
         for own_name, name in (port_names | dict(node.remaps)).items()

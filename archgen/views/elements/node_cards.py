@@ -58,7 +58,7 @@ def make_node_card(lookup: Lookup, node: Node) -> ElementCard:
 def _describe_endpoint(endpoint: Endpoint) -> str:
     """Return the name of what a node uses with its message; over another medium than ROS, with its type."""
     if endpoint.medium == ROS:
-        return f"{endpoint.name} ({endpoint.message or '?'})"
+        return f"{endpoint.label} ({endpoint.message or '?'})"
     return f"{name_on_medium(endpoint)} ({name_medium(endpoint.medium)}: {endpoint.type or '?'})"
 
 

@@ -132,6 +132,7 @@ _PARTS: Mapping[str, Mapping[str, Source]] = {
         "distro": lambda _, lookup: lookup.architecture.distro,
         # Of one name the last value counts.
         "parameters": lambda _, lookup: {each.name: each.value for each in lookup.architecture.ros_parameters},
+        "environment": lambda _, lookup: {each.name: each.value for each in lookup.architecture.ros_environment},
     },
     "use_case": {
         "actors": lambda use_case, _: {actor.id: actor.title for actor in use_case.actors.values()},
@@ -186,7 +187,17 @@ _PARTS: Mapping[str, Mapping[str, Source]] = {
         "timing": _name_activities,
         "effective_parameters": _list_effective,
     },
-    "endpoint": {"qos": lambda endpoint, _: endpoint.qos if endpoint.flow == "topic" else None},
+    "endpoint": {
+        "qos": lambda end, _: end.qos if end.flow == "topic" else None,
+        "clock": lambda end, _: end.clock if end.clock != "system" else None,
+        "runs": lambda end, _: end.runs if end.runs != "active" else None,
+        "unknown": lambda end, _: [name for name, each in end.evidence.items() if each.kind == "unknown"],
+        "from": lambda end, _: {name: each for name, each in end.evidence.items() if each.kind != "unknown"},
+    },
+    "evidence": {
+        "by": lambda evidence, _: evidence.kind,
+        "at": lambda evidence, _: str(evidence.at) if evidence.at.file else None,
+    },
     "topic": _CARRIER,
     "channel": {**_CARRIER, "name": lambda channel, _: name_on_medium(channel)},
     "start": {
