@@ -9,6 +9,7 @@ from dataclasses import replace
 from archgen.compare.agreements import judge_agreements, names_change
 from archgen.compare.comparison import ChainChange, Change, Comparison, PartnerBreak
 from archgen.compare.concerned_owners import find_concerned_owners
+from archgen.compare.figure_changes import LimitChange
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
 from archgen.compare.losses.changed_definitions import find_redefined_messages, find_retyped_outputs
 from archgen.compare.losses.changed_distro import find_changed_distro
@@ -17,11 +18,13 @@ from archgen.compare.losses.changed_meanings import find_changed_meanings
 from archgen.compare.losses.changed_parameters import find_changed_parameters
 from archgen.compare.losses.cut_steps import find_cut_steps
 from archgen.compare.losses.deprecated_types import find_deprecated_types
+from archgen.compare.losses.fallen_limits import find_fallen_limits
 from archgen.compare.losses.lost_connections import find_lost_connections, find_renamed_sources, find_unmade_connections
 from archgen.compare.losses.missed_deadlines import find_chains_made_late
 from archgen.compare.losses.overloaded_resources import find_overloaded_cores, find_saturated_links
 from archgen.compare.losses.renamed_topics import find_renamed_topics
 from archgen.compare.losses.retyped_topics import find_retyped_topics
+from archgen.compare.losses.separated_causes import CauseSeparator
 from archgen.compare.losses.timing_causes import TimingCauses
 from archgen.compare.losses.unserved_requirements import find_unserved_requirements
 from archgen.compare.losses.weakened_outputs import find_weakened_outputs
@@ -61,7 +64,11 @@ def stricter_policy(old_review: ReviewSettings, new_review: ReviewSettings) -> B
 
 
 def mark_breaking_changes(
-    context: ChangeContext, chains: Sequence[ChainChange], timing_pair: TimingPair | None, policy: BreakPolicy
+    context: ChangeContext,
+    chains: Sequence[ChainChange],
+    limits: Sequence[LimitChange],
+    timing_pair: TimingPair | None,
+    policy: BreakPolicy,
 ) -> tuple[Change, ...]:
     """Add to each change whom it breaks and whether that is accepted; breaking changes come first, the gravest before the
     others, accepted ones after the rest of them. What the policy does not ask for is no loss.
@@ -71,9 +78,9 @@ def mark_breaking_changes(
     # An inner dict instead of a list: two finders may report the same loss of the same partner, and the order must
     # stay.
     breaks_by_index: dict[int, dict[PartnerBreak, None]] = defaultdict(dict)
-    for loss in _find_losses(context, chains, timing_pair):
+    for loss in _find_losses(context, chains, limits, timing_pair):
         if policy.severity_of(loss.category) is not Severity.OFF:
-            partner_break = PartnerBreak(loss.partner, loss.reason, category=loss.category)
+            partner_break = PartnerBreak(loss.partner, loss.reason, category=loss.category, fallen=loss.fallen)
             breaks_by_index[loss.change_index][partner_break] = None
     entries = context.before.review.accepted, context.after.review.accepted
     marked_changes = [
@@ -98,13 +105,18 @@ def _rank_change(change: Change, policy: BreakPolicy) -> tuple[bool, bool, int]:
 
 
 def _find_losses(
-    context: ChangeContext, chains: Sequence[ChainChange], timing_pair: TimingPair | None
+    context: ChangeContext,
+    chains: Sequence[ChainChange],
+    limits: Sequence[LimitChange],
+    timing_pair: TimingPair | None,
 ) -> Iterator[PartnerLoss]:
     for find_losses in _LOSS_FINDERS:
         yield from find_losses(context)
     if timing_pair:
         causes = TimingCauses(context, timing_pair)
-        yield from find_chains_made_late(context, chains, causes)
+        separator = CauseSeparator(causes)
+        yield from find_fallen_limits(context, limits, causes, separator)
+        yield from find_chains_made_late(context, chains, causes, separator)
         yield from find_weakened_deadlines(context, chains, causes)
         yield from find_overloaded_cores(context, causes)
         yield from find_saturated_links(context, causes)
@@ -132,6 +144,7 @@ def keep_breaking_only(comparison: Comparison) -> Comparison:
         chains=(),
         concerned_owners=concerned_owners,
         boundaries=(),
+        limits=(),
         loads=(),
         only_breaking=True,
     )

@@ -6,7 +6,7 @@ from dataclasses import field
 from typing import Literal
 
 from archgen.compare.architecture_version import ArchitectureVersion
-from archgen.compare.figure_changes import BoundaryChange, LoadChange
+from archgen.compare.figure_changes import BoundaryChange, LimitChange, LoadChange
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
@@ -24,7 +24,8 @@ class PartnerBreak:
     ...".
 
     `agreement` is why the partner agrees, None if it does not. `category` says which policy judges it. `variants` are
-    those in which it is lost, where nothing is lost in the project itself.
+    those in which it is lost, where nothing is lost in the project itself. `fallen` is the port and the key (`max_gap`) of
+    a promise or freshness that is not kept any more.
     """
 
     partner: str
@@ -32,6 +33,7 @@ class PartnerBreak:
     agreement: str | None = None
     category: BreakCategory = "wire"
     variants: tuple[str, ...] = ()
+    fallen: tuple[str, str] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,6 +128,8 @@ class Comparison:
     idle_acceptances: tuple[AcceptedChange, ...] = ()
     boundaries: tuple[BoundaryChange, ...] = ()
     """What changed at the interfaces between partners, by interface."""
+    limits: tuple[LimitChange, ...] = ()
+    """The promises and freshness that are kept otherwise than before."""
     loads: tuple[LoadChange, ...] = ()
     """The hosts and links whose load changed noticeably."""
     left_out_files: tuple[str, ...] = ()

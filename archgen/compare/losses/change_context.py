@@ -29,6 +29,7 @@ class PartnerLoss:
     partner: str
     reason: str
     category: BreakCategory = "wire"
+    fallen: tuple[str, str] | None = None
 
 
 class LastingOutput(NamedTuple):

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from archgen.compare import Change, Comparison, PartnerBreak
-from archgen.compare.agreements import agreement_key, find_partner_id
+from archgen.compare.agreements import agreement_key, find_partner_id, list_agreement_targets
 from archgen.compare.sentence_words import tick_names
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Severity
@@ -62,7 +62,7 @@ def describe_refusal(comparison: Comparison) -> str:
     """Describe who may accept what the policy refuses, in front of `write_missing_entries`; empty if nothing is refused,
     or nobody can judge that.
     """
-    partners = sorted(_find_refused_changes(comparison))
+    partners = sorted(_find_refused_targets(comparison))
     return f"mend it, or {_say_why(partners, comparison)}:" if partners else ""
 
 
@@ -71,25 +71,26 @@ def write_missing_entries(comparison: Comparison) -> tuple[str, ...]:
     line.
     """
     files_by_entries: dict[str, list[str]] = {}
-    for partner, changes in sorted(_find_refused_changes(comparison).items()):
+    for partner, targets in sorted(_find_refused_targets(comparison).items()):
         file = agreement_file(find_partner_id(partner, comparison.matched_ids))
-        files_by_entries.setdefault(_write_entries(changes), []).append(file)
+        files_by_entries.setdefault(_write_entries(targets), []).append(file)
     return tuple(
         f"# {join_words(files)}{', each' if len(files) > 1 else ''}\n{entries}"
         for entries, files in files_by_entries.items()
     )
 
 
-def _find_refused_changes(comparison: Comparison) -> Mapping[str, Sequence[Change]]:
-    """Return the changes that the policy refuses, by the partner who did not agree. What cannot be judged is nothing that
-    anybody could agree on.
+def _find_refused_targets(comparison: Comparison) -> Mapping[str, Sequence[tuple[str, str]]]:
+    """Return what entries have to name to accept what the policy refuses, by the partner who did not agree. What cannot be
+    judged is nothing that anybody could agree on.
     """
-    changes: dict[str, list[Change]] = {}
+    targets: dict[str, dict[tuple[str, str], None]] = {}
     for change in comparison.changes if comparison.is_judged else ():
         refused_breaks = [each for each in change.breaks if each.agreement is None and _is_refused(each, comparison)]
         for partner in dict.fromkeys(each.partner for each in refused_breaks):
-            changes.setdefault(partner, []).append(change)
-    return changes
+            own_breaks = [each for each in refused_breaks if each.partner == partner]
+            targets.setdefault(partner, {}).update(dict.fromkeys(list_agreement_targets(change, own_breaks)))
+    return {partner: list(names) for partner, names in targets.items()}
 
 
 def describe_remedy(change: Change, comparison: Comparison) -> str:
@@ -99,7 +100,11 @@ def describe_remedy(change: Change, comparison: Comparison) -> str:
     partners = change.unheard_partners
     partner_ids = [find_partner_id(partner, comparison.matched_ids) for partner in partners]
     files = join_words([f"`{agreement_file(partner_id)}`" for partner_id in partner_ids])
-    return f"mend it, or {_say_why(partners, comparison)}, in {files}: {_write_entry(change, 'THE REASON')}"
+    targets = list_agreement_targets(change, [each for each in change.breaks if each.agreement is None])
+    entry = (
+        "`review: {accepted: {" + ", ".join(_write_line(keys, "THE REASON") for keys in _group_keys(targets)) + "}}`"
+    )
+    return f"mend it, or {_say_why(partners, comparison)}, in {files}: {entry}"
 
 
 def _say_why(partners: Sequence[str], comparison: Comparison) -> str:
@@ -159,19 +164,26 @@ def _describe_place(entry: AcceptedChange) -> str:
 
 def _write_entry(change: Change, reason: str) -> str:
     """Return the entry that accepts a change, as it has to stand in a file."""
-    return f"`review: {{accepted: {{{_quote_text(change.element_id)}: {_write_body(agreement_key(change), reason)}}}}}`"
+    return f"`review: {{accepted: {{{_write_line((change.element_id, [agreement_key(change)]), reason)}}}}}`"
 
 
-def _write_entries(changes: Iterable[Change]) -> str:
-    """Return the section that accepts changes, a line for each element."""
-    keys_by_element: dict[str, dict[str, None]] = {}
-    for change in changes:
-        keys_by_element.setdefault(change.element_id, {})[agreement_key(change)] = None
-    lines = ["review:", "  accepted:"]
-    for element_id, keys in keys_by_element.items():
-        bodies = ", ".join(_write_body(key, "THE REASON") for key in keys)
-        lines.append(f"    {_quote_text(element_id)}: {bodies if len(keys) == 1 else f'[{bodies}]'}")
+def _write_entries(targets: Iterable[tuple[str, str]]) -> str:
+    """Return the section that accepts elements and keys, a line for each element."""
+    lines = ["review:", "  accepted:", *(f"    {_write_line(keys, 'THE REASON')}" for keys in _group_keys(targets))]
     return "\n".join(lines)
+
+
+def _group_keys(targets: Iterable[tuple[str, str]]) -> Iterable[tuple[str, list[str]]]:
+    keys_by_element: dict[str, list[str]] = {}
+    for element_id, key in dict.fromkeys(targets):
+        keys_by_element.setdefault(element_id, []).append(key)
+    return keys_by_element.items()
+
+
+def _write_line(element_keys: tuple[str, list[str]], reason: str) -> str:
+    element_id, keys = element_keys
+    bodies = ", ".join(_write_body(key, reason) for key in keys)
+    return f"{_quote_text(element_id)}: {bodies if len(keys) == 1 else f'[{bodies}]'}"
 
 
 def _write_body(key: str, reason: str) -> str:
