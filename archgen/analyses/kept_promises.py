@@ -9,18 +9,21 @@ from typing import TYPE_CHECKING, NamedTuple
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.model.relied_outputs import list_described_outputs
+from archgen.model.ros_distro import is_ros_1
 from archgen.timing.chains.limit_states import LimitState, judge_lower_limit, judge_upper_limit
 from archgen.timing.chains.read_ages import find_sent_ages
+from archgen.timing.endpoint_paces import find_pace
 from archgen.timing.figures.figure_wording import format_duration, format_rate
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
 from archgen.timing.figures.value_arithmetic import add_values, smallest_value
 from archgen.timing.system import activity_builder
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from archgen.diagnostics.source_span import Span
     from archgen.model.architecture import Architecture
+    from archgen.model.node import Endpoint
     from archgen.model.promise import Promise
     from archgen.model.quantity import Quantity
     from archgen.timing.analysis import Analysis, EventPace
@@ -117,6 +120,35 @@ def judge_promises(
     for output, promise in promising:
         for leaf in architecture.leaf_ports_of("output", output):
             yield from _judge_promise(output, leaf, promise, paces.get(leaf, ()), ages.get(leaf, ()))
+
+
+def list_sent_limits(architecture: Architecture, endpoint: Endpoint) -> Iterator[tuple[str, Quantity]]:
+    """Yield what a node promises of the gap between two messages that it sends at a port, by `timing.max_gap` and
+    `qos.deadline`.
+    """
+    if endpoint.use != "publishes" or endpoint.port is None:
+        return
+    timing = architecture.nodes[endpoint.node].timing.get(endpoint.component or "")
+    sent = timing.outputs.get(endpoint.port) if timing else None
+    if sent and sent.conditional and sent.max_gap:
+        yield "timing.max_gap", sent.max_gap
+    if endpoint.qos.deadline and not is_ros_1(architecture.distro):
+        yield "qos.deadline", endpoint.qos.deadline
+
+
+def judge_sent_limits(
+    architecture: Architecture, analysis: Analysis, find_limit: Callable[[str, str], Quantity | None]
+) -> Iterator[tuple[str, str, Quantity, TimingValue, LimitState]]:
+    """Yield limits of gaps that nodes promise, each with its port, its key, the gap that follows and whether it is kept.
+
+    `find_limit` returns the limit of a port and a key.
+    """
+    activity_names = activity_builder.name_activities(architecture)
+    for endpoint in architecture.endpoints:
+        for key in ("timing.max_gap", "qos.deadline") if endpoint.use == "publishes" and endpoint.port else ():
+            if limit := find_limit(endpoint.port or "", key):
+                gap = find_pace(analysis, activity_names, endpoint).gap
+                yield endpoint.port or "", key, limit, gap, judge_upper_limit(gap, limit.value)
 
 
 def _find_paces(architecture: Architecture, analysis: Analysis) -> Mapping[str, Sequence[EventPace]]:

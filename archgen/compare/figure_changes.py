@@ -95,8 +95,9 @@ class LoadChange:
 
 @dataclass(frozen=True, slots=True)
 class LimitChange:
-    """A promise of an output (`rate`, `max_gap`, `max_age`), or the `freshness` of an input, that is kept otherwise than
-    before; by common ids, of an age with the input where it is read.
+    """A promise of an output (`rate`, `max_gap`, `max_age`), what a node promises of its gaps (`timing.max_gap`,
+    `qos.deadline`), or the `freshness` of an input, that is kept otherwise than before; by common ids, of an age with the
+    input where it is read.
 
     `limit` is the stricter one of both versions; `is_asked_anew`: the second one asks for another. Rates are in Hz,
     durations in ns.

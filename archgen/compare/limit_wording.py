@@ -16,6 +16,10 @@ def describe_limit(limit: LimitChange) -> str:
     """Name what is asked: `the promise of x of gaps of at most 130 ms`."""
     if limit.key == "freshness":
         return f"the freshness of {limit.limit} of what {tick_names([limit.port])} reads"
+    if limit.key == "qos.deadline":
+        return f"the deadline of {limit.limit} that is offered for {tick_names([limit.port])}"
+    if limit.key == "timing.max_gap":
+        return f"the largest gap of {limit.limit} of {tick_names([limit.port])}"
     return f"the promise of {tick_names([limit.port])} of {_PROMISED[limit.key]}{limit.limit}"
 
 

@@ -72,9 +72,9 @@ def _find_causes(
     own_indices = _find_asking_changes(context, limit) if limit.is_asked_anew else []
 
     def falls(architecture: Architecture, analysis: Analysis, without: frozenset[int]) -> bool:
-        old_limit = asked_before.find(key) if own_indices and without.issuperset(own_indices) else None
-        asked = AskedLimits.of_one(key, old_limit or limit.limit)
-        judged = judge_limits(architecture, analysis, MatchedIds(), asked).get(key)
+        is_asked_as_before = own_indices and without.issuperset(own_indices)
+        asked = asked_before[key[:2]] if is_asked_as_before else limit.limit
+        judged = judge_limits(architecture, analysis, MatchedIds(), {key[:2]: asked}).get(key)
         return judged is None or judged.state != "kept"
 
     return separator.separate(list(_list_activities(causes, limit)), own_indices, falls)
@@ -85,6 +85,11 @@ def _find_asking_changes(context: ChangeContext, limit: LimitChange) -> list[int
     if limit.key == "freshness":
         return context.change_indices("input", limit.port, "freshness")
     shell, _, name = limit.port.rpartition(".")
+    if limit.key == "qos.deadline":
+        nodes = context.after.nodes_implementing(shell)
+        return [index for node in nodes for index in context.port_change_indices(node.id, limit.port, "qos")]
+    if limit.key == "timing.max_gap":
+        return context.change_indices("component", shell, f"timing.outputs.{name}.max_gap")
     return [
         *context.change_indices("output", limit.port, f"promise.{limit.key}"),
         *context.change_indices("composed", shell, f"outputs.{name}:promise.{limit.key}"),

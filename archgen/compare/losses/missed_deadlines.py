@@ -14,7 +14,7 @@ from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm
 from archgen.timing.chains.chain_bounds import bound_chain
 from archgen.timing.chains.chain_verdicts import judge_deadline
-from archgen.timing.figures.figure_wording import format_duration
+from archgen.timing.figures.figure_wording import format_compared, format_duration
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.system.timing_system import TimingSystem
 
@@ -138,9 +138,14 @@ def _lateness_reason(old_result: ChainResult, new_result: ChainResult) -> str:
 
 
 def _format_growth(old_result: ChainResult, new_result: ChainResult) -> str:
-    if old_result.bound == new_result.bound:
-        return f"it takes {_format_bound(new_result.bound)}"
-    return f"{_format_bound(old_result.bound)} → {_format_bound(new_result.bound)}"
+    bounds = old_result.bound, new_result.bound
+    limit = _binding_deadline(old_result, new_result)
+    values = [bound.value for bound in bounds if bound.value is not None]
+    texts = iter(format_compared(values, format_duration, limit=limit.value if limit else None))
+    old_text, new_text = (
+        "no bound" if bound.value is None else ("" if bound.complete else "at least ") + next(texts) for bound in bounds
+    )
+    return f"it takes {new_text}" if bounds[0] == bounds[1] else f"{old_text} → {new_text}"
 
 
 def _format_bound(value: TimingValue | None) -> str:

@@ -78,17 +78,25 @@ def format_number(value: Fraction) -> str:
 def format_compared(
     values: Sequence[Fraction], write: Callable[[Fraction], str], *, upwards: bool = True, limit: Fraction | None = None
 ) -> list[str]:
-    """Write figures that are compared with no more digits than inputs carry: three, or as many as tell them apart, and
-    from a limit. Bounds are rounded to the safe side: durations up, rates down; `~` marks rounding.
+    """Write figures that are compared, rounded by `round_compared`; `~` marks rounding."""
+    rounded = round_compared(values, upwards=upwards, limit=limit)
+    marks = ("" if new == old else "~" for old, new in zip(values, rounded, strict=True))
+    return [f"{mark}{write(value).removeprefix('~')}" for mark, value in zip(marks, rounded, strict=True)]
+
+
+def round_compared(
+    values: Sequence[Fraction], *, upwards: bool = True, limit: Fraction | None = None
+) -> list[Fraction]:
+    """Round figures that are compared to the digits that inputs carry: three, or as many as tell them apart, and from a
+    limit. Bounds are rounded to the safe side: durations up, rates down.
     """
     others = [] if limit is None else [limit]
     for digits in range(_CARRIED_DIGITS, _MAX_WRITTEN_DECIMALS):
         rounded = [_round_digits(value, digits, upwards=upwards) for value in values]
         pairs = list(zip([*values, *others], [*rounded, *others], strict=True))
         if all((a < b, a > b) == (c < d, c > d) for a, c in pairs for b, d in pairs):
-            marks = ("" if new == old else "~" for old, new in zip(values, rounded, strict=True))
-            return [f"{mark}{write(value).removeprefix('~')}" for mark, value in zip(marks, rounded, strict=True)]
-    return [write(value) for value in values]
+            return rounded
+    return list(values)
 
 
 def _round_digits(value: Fraction, digits: int, *, upwards: bool) -> Fraction:

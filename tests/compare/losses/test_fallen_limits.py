@@ -31,12 +31,23 @@ nodes:
 def load(other: str, log: str) -> list[tuple[str, str]]:
     """Give `other` and `log` other execution times than 5 ms."""
     return [
-        (f"  {name}: {{implements: {name}, host: pc, timing: {{rate: 10 Hz, wcet: 5 ms", f"  {name}: {{implements: {name}, host: pc, timing: {{rate: 10 Hz, wcet: {time}")
+        (
+            f"  {name}: {{implements: {name}, host: pc, timing: {{rate: 10 Hz, wcet: 5 ms",
+            f"  {name}: {{implements: {name}, host: pc, timing: {{rate: 10 Hz, wcet: {time}",
+        )
         for name, time in (("other", other), ("log", log))
         if time != "5 ms"
     ]
 
 
 def test_show(compared: Compared) -> None:
-    for times in (("60 ms", "5 ms"), ("10 ms", "5 ms"), ("10 ms", "10 ms"), ("20 ms", "20 ms"), ("60 ms", "4 ms"), ("16 ms", "0.1 ms"), ("14 ms", "5 ms")):
+    for times in (
+        ("60 ms", "5 ms"),
+        ("10 ms", "5 ms"),
+        ("10 ms", "10 ms"),
+        ("20 ms", "20 ms"),
+        ("60 ms", "4 ms"),
+        ("16 ms", "0.1 ms"),
+        ("14 ms", "5 ms"),
+    ):
         print(times, *broken(compared, BASE, load(*times)), sep="\n    ")

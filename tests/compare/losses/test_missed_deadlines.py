@@ -285,7 +285,7 @@ TABLE = {
             for fan in ("one", "two")
             for line in both(
                 f"tracking.{fan}/timing.core",
-                f"{LATE} (237.1 ms → 267 ms); `tracking.one` (core) of SSSA and `tracking.two` (core) of SSSA together: "
+                f"{LATE} (~238 ms → 267 ms); `tracking.one` (core) of SSSA and `tracking.two` (core) of SSSA together: "
                 "without either it holds; `eye` of CERTH and `feet` of TUM are on it",
                 "certh",
                 "tum",
