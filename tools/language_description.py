@@ -63,6 +63,7 @@ _OTHER_WORDS = frozenset(
             "unit",
             "unrecorded",
             "common_word",
+            "section",
             "place",
         ),
         *("effect", "worse", "form", "attribute", "default", "names", "told", "noun", "verb", "verbs", "new_verb"),
@@ -106,7 +107,11 @@ class Description:
     def _complete_key(self, kind: str, name: str, key: Part | str) -> Part:
         own = {"as": key} if isinstance(key, str) else dict(key)
         if "as" in own:
-            shared = self.common[own.pop("as")]
+            shared_name = own.pop("as")
+            if shared_name not in self.common:
+                message = f"{kind}.{name}: common.yaml has no key `{shared_name}`"
+                raise DescriptionError(message)
+            shared = self.common[shared_name]
             own = {**_without_rivals(shared, own), **own}
             own["says"] = own["says"].replace("KIND", self.word_of(kind))
         return {"title": name.replace("_", " ").capitalize(), **own}
@@ -140,15 +145,28 @@ def load_description(folder: Path = FOLDER) -> Description:
                 message = f"{name}.yaml: the kind `{kind}` stands in another file, too"
                 raise DescriptionError(message)
             kinds[kind] = part
-    description = Description(
-        read_description_file(folder / "common.yaml"), read_description_file(folder / "types.yaml"), kinds
-    )
+    types = read_description_file(folder / "types.yaml")
+    for kind, part in kinds.items():
+        _add_section(kind, part, kinds["slice"], types)
+    description = Description(read_description_file(folder / "common.yaml"), types, kinds)
     for part in description.types.values():
         _list_named_kinds(part, description)
     if twice := description.types.keys() & kinds.keys():
         message = f"a kind and a type at once: {', '.join(sorted(twice))}"
         raise DescriptionError(message)
     return description
+
+
+def _add_section(kind: str, part: Part, slice_part: Part, types: dict[str, Part]) -> None:
+    """Give the elements of a kind with `section` their mapping by id, and files a section of that name."""
+    if "section" not in part:
+        return
+    section, title = part["section"], part["section"].replace("_", " ").capitalize()
+    says = f"{title}, by id."
+    snippet = {f"main_{kind}": part.get("snippet", part.get("example"))}
+    mapping = {"title": title, "says": says, "accepts": "object null", "ids": "id", "entries": kind, "snippet": snippet}
+    types.setdefault(section, mapping)
+    slice_part["keys"].setdefault(section, {"type": section, "says": says})
 
 
 def _list_named_kinds(part: Part, description: Description) -> None:

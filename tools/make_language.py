@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Mapping
+import textwrap
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from language_comparison import find_comparison_faults, make_comparison_tables
@@ -29,11 +30,13 @@ def make_files() -> Mapping[Path, str]:
         raise DescriptionError(message)
     record = load_record(description)
     page = ROOT / "docs" / "language.md"
+    backend_schema = ROOT / "schemas" / "backend.schema.json"
     comparison_schema = ROOT / "schemas" / "diff.schema.json"
     return {
         page: renew_page(page.read_text(encoding="utf-8"), description),
         ROOT / "schemas" / "archgen.schema.json": json.dumps(make_schema(description), indent=2) + "\n",
         comparison_schema: _renew_kinds(comparison_schema.read_text(encoding="utf-8")),
+        backend_schema: _renew_hint_kinds(backend_schema.read_text(encoding="utf-8"), description.kinds_with("hints")),
         ROOT / "archgen" / "language" / "language_tables.py": make_tables(description),
         ROOT / "archgen" / "language" / "comparison_tables.py": make_comparison_tables(description),
         ROOT / "schemas" / "resolved.schema.json": json.dumps(make_record_schema(record), indent=2) + "\n",
@@ -46,6 +49,13 @@ def _renew_kinds(text: str) -> str:
     schema = json.loads(text)
     schema["$defs"]["change"]["properties"]["sort"]["enum"] = list(KIND_ORDER)
     return json.dumps(schema, indent=2) + "\n"
+
+
+def _renew_hint_kinds(text: str, kinds: Sequence[str]) -> str:
+    """Return the schema of backends with the kinds of elements that may have hints for one."""
+    before, start, rest = text.partition('"propertyNames": {\n        "enum": [\n')
+    names = textwrap.fill(", ".join(json.dumps(kind) for kind in (*kinds, "parameter", "any")), 108)
+    return before + start + textwrap.indent(names, " " * 10) + rest[rest.index("\n        ]\n") :]
 
 
 def main() -> int:

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping
+
 from archgen import derivation
+from archgen.diagnostics.source_span import Span
 from archgen.link import mapping_values
 from archgen.link.declare.handed_parameters import HandedParameters
 from archgen.link.open_shells import OpenShells
-from archgen.passes.flat_names import name_flat_components
+from archgen.model.derived_names import derive_node_ids
+from archgen.model.element_ids import MAX_ID_LENGTH, make_id, make_unique_id
+from archgen.model.parameter import Parameter
 from archgen.passes.flat_nodes import FlatNodes
-from archgen.passes.flat_parameters import fill_in_parameters
 from archgen.passes.flat_references import FlatReferences
 from archgen.passes.flat_sources import FlatSources
 from archgen.passes.linked_tree import LinkedTree
 from archgen.passes.pass_shape import Pass, PassWork
-from archgen.passes.project_tree import have_same_content
+from archgen.passes.project_tree import have_same_content, make_node
 from archgen.passes.tree_rebuilding import rebuild_tree
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, SequenceNode, YamlNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
 
 _HANDED_KEYS = ("owner", "status")
 """What a leaf has of what is around it, unless it says it itself."""
@@ -200,3 +204,77 @@ FLATTEN = Pass(
     needs=("no_component_sources", "no_autoconnect_ports", "no_autoconnect_types", "no_instances"),
     leaves=("flat", "unique_names"),
 )
+
+
+_PLAIN_DEPTH = 2
+
+
+def name_flat_components(
+    component_ids: Collection[str], all_ids: Collection[str], used_names: Collection[str]
+) -> dict[str, str]:
+    """Return the complete ids that components get, by their complete ids now.
+
+    What stands directly in its group keeps its name, unless that of another group has it, too: then the group's id is
+    put before it. What stands deeper gets the shortest end of its path that is unique, joined by `_`; names are unique
+    in the whole project, and none of `used_names` is among those that are made.
+    """
+    plain_ids = [each for each in component_ids if len(each.split(".")) == _PLAIN_DEPTH]
+    deep_ids = [each for each in component_ids if len(each.split(".")) > _PLAIN_DEPTH]
+    names = derive_node_ids(plain_ids, all_ids, ())
+    taken_names = {*names.values(), *used_names}
+    for component_id, name in derive_node_ids(deep_ids, all_ids, taken_names).items():
+        short_name = name if len(name) <= MAX_ID_LENGTH else make_unique_id(make_id(name, "part"), taken_names)
+        taken_names.add(short_name)
+        names[component_id] = short_name
+    return {each: f"{each.partition('.')[0]}.{names[each]}" for each in component_ids}
+
+
+_DECLARING_KEYS = frozenset({"value", "type", "choices", "from"})
+
+
+def fill_in_parameters(written: MappingNode, parameters: Mapping[str, Parameter], prefix: str = "") -> MappingNode:
+    """Return declarations of parameters without `from` and `$(self.x)`: with the values that these stand for."""
+    entries: dict[str, MappingEntry] = {}
+    for entry in written:
+        name = f"{prefix}{entry.key}"
+        value = entry.value
+        if name in parameters:
+            value = _fill_in_declaration(value, parameters[name], entry.key_span)
+        elif isinstance(value, MappingNode):
+            value = fill_in_parameters(value, parameters, f"{name}.")
+        entries[entry.key] = MappingEntry(entry.key, entry.key_span, value)
+    return MappingNode(entries, written.span)
+
+
+def _fill_in_declaration(node: YamlNode, parameter: Parameter, place: Span) -> YamlNode:
+    if not isinstance(node, MappingNode) or _DECLARING_KEYS.isdisjoint(node.entries):
+        return _fill_in_value(node, parameter)
+    if "from" not in node.entries:
+        entries = dict(node.entries)
+        if (written := entries.get("value")) is not None:
+            entries["value"] = MappingEntry("value", written.key_span, _fill_in_value(written.value, parameter))
+        return MappingNode(entries, node.span)
+    entries = {key: each for key, each in node.entries.items() if key != "from"}
+    handed: dict[str, object] = {
+        "type": parameter.type,
+        "value": parameter.value,
+        "unit": parameter.unit,
+        "range": list(parameter.range) if parameter.range else None,
+        "choices": list(parameter.choices) if parameter.choices else None,
+    }
+    for key, value in handed.items():
+        if value is not None and key not in entries:
+            value_place = parameter.value_at if key == "value" else place
+            entries[key] = MappingEntry(key, place, make_node(value, value_place))  # type: ignore[arg-type]
+    return MappingNode(entries, node.span)
+
+
+def _fill_in_value(node: YamlNode, parameter: Parameter) -> YamlNode:
+    if (
+        isinstance(node, ScalarNode)
+        and isinstance(node.value, str)
+        and "$(" in node.value
+        and parameter.value is not None
+    ):
+        return make_node(parameter.value, node.span)  # type: ignore[arg-type]
+    return node

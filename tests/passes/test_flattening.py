@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 from archgen.model.architecture import Architecture
-from archgen.passes.flat_names import name_flat_components
+from archgen.passes.flattening import name_flat_components
 from archgen.pipeline import CheckedProject, transform_project
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from tests.judged_projects import judge_shipped

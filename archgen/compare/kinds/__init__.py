@@ -11,11 +11,26 @@ from archgen.compare.kinds.key_spec import Effect, KeySpec, Worsening
 from archgen.compare.kinds.kind_spec import KindSpec
 from archgen.compare.kinds.project_kinds import PROJECT_KINDS
 from archgen.compare.kinds.ros_kinds import ROS_KINDS
+from archgen.compare.kinds.shared_features import NAME_FEATURES, values_feature
 from archgen.compare.kinds.system_kinds import SYSTEM_KINDS
+from archgen.language.comparison_tables import KEY_FACTS, KIND_EFFECTS
+from archgen.language.language_tables import SECTION_KINDS
 
-ELEMENT_KINDS: dict[str, KindSpec] = {
+_SPECIFIED_KINDS = {
     kind.name: kind for kind in (*PROJECT_KINDS, COMPONENT_TYPE, *FUNCTIONAL_KINDS, *ROS_KINDS, *SYSTEM_KINDS)
 }
+PLAIN_KINDS = {
+    kind: KindSpec(
+        kind,
+        section.replace("_", " ").capitalize(),
+        elements=lambda version, section=section: getattr(version.architecture, section),  # type: ignore[misc]
+        features=(*NAME_FEATURES, values_feature(4, KEY_FACTS[kind].keys() - {"title"})),
+    )
+    for section, kind in SECTION_KINDS.items()
+    if kind in KIND_EFFECTS and kind not in _SPECIFIED_KINDS
+}
+"""Kinds of which the description says all: they are recognised by their names and by what they say."""
+ELEMENT_KINDS: dict[str, KindSpec] = _SPECIFIED_KINDS | PLAIN_KINDS
 """All kinds by name, in the order in which changes are reported."""
 KIND_ORDER = {name: position for position, name in enumerate(ELEMENT_KINDS)}
 """The position of each kind in that order."""
@@ -37,6 +52,7 @@ MATCHING_ORDER = (
         "link",
     ),
     *("frame", "chain", "requirement", "use_case", "view", "policy", "variant"),
+    *PLAIN_KINDS,
 )
 """The kinds that are recognised under other ids, each after those that its features refer to: groups before components,
 hosts after nodes, links after hosts."""
@@ -45,6 +61,7 @@ __all__ = [
     "ELEMENT_KINDS",
     "KIND_ORDER",
     "MATCHING_ORDER",
+    "PLAIN_KINDS",
     "Effect",
     "KeySpec",
     "KindSpec",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from operator import attrgetter
 from typing import Any
 
@@ -31,6 +31,16 @@ def name_features(find_name: Callable[[Any], str]) -> tuple[FeatureSpec, Feature
 
 
 NAME_FEATURES = name_features(attrgetter("id"))
+
+
+def values_feature(weight: float, attributes: Iterable[str]) -> FeatureSpec:
+    """Return the feature of all that some attributes say, each with its name."""
+
+    def mark(_: ElementRelations, element: object) -> frozenset[str]:
+        values = ((name, getattr(element, name, None)) for name in attributes)
+        return frozenset(f"{name}: {value}" for name, value in values if value)
+
+    return FeatureSpec("values", weight, mark)
 
 
 def value_feature(name: str, weight: float, *attributes: str) -> FeatureSpec:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from urllib.parse import quote, urlsplit
 
 from docx.document import Document
 from docx.opc.constants import CONTENT_TYPE, RELATIONSHIP_TYPE
@@ -12,7 +14,6 @@ from docx.opc.part import Part
 from docx.parts.image import ImagePart
 
 from archgen.emit.docx.docx_file import SVG_TYPE
-from archgen.emit.docx.link_addresses import quote_address
 from archgen.emit.docx.list_numbering import ListNumbering
 from archgen.emit.docx.paper_sheets import PaperSet
 from archgen.emit.docx.style_table import StyleTable
@@ -153,3 +154,25 @@ class DocxWriter:
         name = f"{folder}/media/archgen{number}.{kind}"
         self.part_names.add(name)
         return PackURI(name)
+
+
+_HOST = re.compile(r"(?:[^@/\s]*@)?(?:[A-Za-z0-9](?:[A-Za-z0-9.-]*[A-Za-z0-9])?)(?::[0-9]{1,5})?\Z")
+_MAIL = re.compile(r"mailto:[A-Za-z0-9._%+-]+@[A-Za-z0-9.-]+(?:\?[^\s]*)?\Z")
+_MAX_LENGTH = 2000
+"""Word takes 2,083 characters at most."""
+
+
+def quote_address(url: str) -> str | None:
+    """Return an address as a relationship may hold it; None if it is none that a reader should follow."""
+    try:
+        scheme = urlsplit(url).scheme.lower()
+        host = urlsplit(url).netloc
+    except ValueError:
+        return None
+    address = quote(url, safe="%/:=&?~#+!$,;'@()*[]-._", errors="replace")
+    # A relationship's target must be a URI (ECMA-376 part 2): with half of an escape in it the file is damaged.
+    if len(address) > _MAX_LENGTH or re.search(r"%(?![0-9A-Fa-f]{2})", address):
+        return None
+    if scheme == "mailto":
+        return address if _MAIL.match(address) else None
+    return address if scheme in {"http", "https"} and _HOST.match(host) else None

@@ -5,13 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+from docx.oxml.ns import nsdecls, qn
+from docx.oxml.parser import parse_xml
+from docx.oxml.shape import CT_Inline
+from docx.shared import Emu
+from lxml import etree
+
 from archgen.emit.docx.captions import write_caption
 from archgen.emit.docx.docx_writer import DocxWriter
 from archgen.emit.docx.image_formats import draw_stand_in, recognise_image
 from archgen.emit.docx.page_flow import FlowPiece, ScalablePicture
 from archgen.emit.docx.paper_sheets import PaperSheet
-from archgen.emit.docx.picture_runs import format_picture
-from archgen.emit.docx.word_xml import format_paragraph, format_run
+from archgen.emit.docx.word_xml import clean_line, format_paragraph, format_run
 from archgen.views.shapes import Figure
 
 _TYPE_SIZE = 9.0
@@ -151,3 +156,36 @@ def _write_note(writer: DocxWriter, text: str, sheet: PaperSheet | None, *, keep
     properties = "<w:keepNext/>" if keep_next else ""
     xml = format_paragraph(writer.styles.find_style_id("Note Box"), format_run(text), properties)
     return FlowPiece(xml, rows, face.before, face.after, keep_next=keep_next, sheet=sheet)
+
+
+_EMU_PER_POINT = 12_700
+_SVG_EXTENSION = "{96DAC541-7B7A-43D3-8B79-37D633B846F1}"
+_SVG_NAMESPACE = "http://schemas.microsoft.com/office/drawing/2016/SVG/main"
+
+
+def format_picture(writer: DocxWriter, relations: tuple[str, str], size: tuple[float, float], alt: str) -> str:
+    """Return the run that shows a picture, its size in points.
+
+    `relations` are that of the raster, and that of the drawing or nothing: Word 2016 and later show the SVG of the extension,
+    all other programs the PNG. python-docx has neither the extension nor the alternative text.
+    """
+    raster, drawing = relations
+    number = writer.take_id()
+    # Not `Pt`, which cuts what is behind the point: a picture as wide as the text is 5760720 EMU, not 5760719.
+    across, down = (Emu(round(side * _EMU_PER_POINT)) for side in size)
+    inline = CT_Inline.new_pic_inline(number, raster, f"Picture {number}", across, down)
+    # Without distances, which python-docx leaves out, LibreOffice keeps a space round the picture and shifts it.
+    for side in ("distT", "distB", "distL", "distR"):
+        inline.set(side, "0")
+    description = clean_line(alt)
+    for properties in inline.iter(qn("wp:docPr"), qn("pic:cNvPr")):
+        properties.set("descr", description)
+    if drawing:
+        inline.graphic.graphicData.pic.blipFill.blip.append(_create_svg_extension(drawing))
+    return f"<w:r><w:drawing>{etree.tostring(inline, encoding='unicode')}</w:drawing></w:r>"
+
+
+def _create_svg_extension(relation: str) -> etree._Element:
+    drawing = f'<asvg:svgBlip xmlns:asvg="{_SVG_NAMESPACE}" r:embed="{relation}"/>'
+    extension = f'<a:ext uri="{_SVG_EXTENSION}">{drawing}</a:ext>'
+    return parse_xml(f"<a:extLst {nsdecls('a', 'r')}>{extension}</a:extLst>")

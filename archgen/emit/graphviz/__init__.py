@@ -2,7 +2,7 @@
 
 `draw_pictures` is all that others need. Each graph is laid out by the recipe that it names, in worker processes; what
 was drawn before comes from the cache. No picture is trusted: after each layout every arrow is looked for in the result.
-Pictures are light; `svg_cleanup` and `dark_rules` say how a page turns them dark.
+Pictures are light; `graph_drawing` and `dark_rules` say how a page turns them dark.
 """
 
 from __future__ import annotations

@@ -6,19 +6,21 @@ import math
 from collections.abc import Sequence
 
 from archgen.emit.graphviz import layout_engine
+from archgen.emit.graphviz.box_styles import style_box
 from archgen.emit.graphviz.frame_outline import draw_frame
 from archgen.emit.graphviz.label_places import declutter_labels
-from archgen.emit.graphviz.neighbour_columns import unwrap_tall_columns
 from archgen.emit.graphviz.nested_frames import find_rank_distance, read_frames, write_frames
-from archgen.emit.graphviz.placed_scene import Scene, format_attributes, read_scene
+from archgen.emit.graphviz.placed_scene import DotAttributes, Scene, format_attributes, read_scene
 from archgen.emit.graphviz.rank_wrapping import WrappedRanks, route_between_rows, wrap_ranks
 from archgen.emit.graphviz.styled_graph import (
     StyledGraph,
+    measure_nodes,
     place_labels_on_lines,
     read_layout,
     write_dot,
 )
 from archgen.emit.graphviz.title_places import clear_titles
+from archgen.frozen import replace
 from archgen.views.graph_shapes import Box
 
 _WIDEST_FRAME = 800.0
@@ -223,3 +225,29 @@ def lay_out_simply(styled_graph: StyledGraph) -> Scene:
         styled_graph,
         layout_engine.lay_out_dot(write_dot(f'{pack}rankdir="LR" nodesep="0.2" ranksep="0.6"', statements)),
     )
+
+
+_TALLEST = 600.0
+"""The tallest column of neighbours whose titles are wrapped, in points: about a page with its heading and caption."""
+_BOX_GAP = 11.5
+"""How far apart the boxes of a column are, in points."""
+_TITLE_WIDTH = 30
+"""How many characters of a title stand in a line where it is not wrapped for a narrow column."""
+
+
+def unwrap_tall_columns(styled_graph: StyledGraph) -> StyledGraph:
+    """Return a graph with the titles of neighbours in one line where they make a column taller than a page."""
+    new_attributes: dict[str, DotAttributes] = {}
+    for side in ("left", "right"):
+        boxes = [box for box in styled_graph.graph.boxes if box.side == side and box.style != "port"]
+        names = [styled_graph.dot_names[box.id] for box in boxes]
+        sizes = measure_nodes([styled_graph.box_attributes[name] for name in names])
+        # From Python 3.12 on `sum` rounds floats otherwise than before: a picture would depend on the version.
+        if math.fsum(height + _BOX_GAP for _, height in sizes) > _TALLEST:
+            new_attributes |= {
+                name: style_box(box, styled_graph.resolve_link, _TITLE_WIDTH)
+                for name, box in zip(names, boxes, strict=True)
+            }
+    if not new_attributes:
+        return styled_graph
+    return replace(styled_graph, box_attributes=styled_graph.box_attributes | new_attributes)

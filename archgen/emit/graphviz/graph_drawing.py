@@ -1,9 +1,19 @@
-"""Draw one graph: choose its layout, check that every arrow is there, render it. Runs in a worker process."""
+"""Draw one graph: choose its layout, check that every arrow is there, render it. Runs in a worker process.
+
+Clean up Graphviz's svg for a page: no prologue, real titles, ids of its own, a name and a description.
+
+Hooks for a page's style: the root has the class `archgen`; its parts are `.box`, `.frame`, `.arrow`, `.label`,
+`.title`, `.legend`, `.badge`, `.bar`, with the style, emphasis, status and hue (`hue0` to `hue9`) as further classes.
+Colours are presentation attributes, so that any rule of the page wins over them; `palette.dark_rules` writes the rules
+that turn them dark. Tooltips are `title` elements. Ids begin with the picture's id, so that several fit in one page.
+"""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from html import escape
 
 from archgen.emit.graphviz import (
     chart_layout,
@@ -14,12 +24,13 @@ from archgen.emit.graphviz import (
     two_step_layout,
 )
 from archgen.emit.graphviz.box_decorations import add_decorations
+from archgen.emit.graphviz.dot_text import clean_label_text
 from archgen.emit.graphviz.drawn_legend import add_graph_legend
+from archgen.emit.graphviz.glyph_outlines import shorten_glyphs
 from archgen.emit.graphviz.layout_memory import NO_MEMORY, LayoutMemory
 from archgen.emit.graphviz.placed_scene import Scene
 from archgen.emit.graphviz.png_writer import render_png
 from archgen.emit.graphviz.styled_graph import StyledGraph, style_graph
-from archgen.emit.graphviz.svg_cleanup import clean_graphviz_svg, clean_outlines, find_drawn_edges
 from archgen.emit.picture import Picture
 from archgen.views.chart_shapes import Chart, Drawing
 from archgen.views.graph_shapes import Graph
@@ -126,3 +137,53 @@ def render_picture(
             for form, data in zip(vector_formats, vector_data, strict=True)
         },
     )
+
+
+_HEAD = re.compile(r"^.*?<svg ([^>]*)>", re.DOTALL)
+_COMMENT = re.compile(r"<!--.*?-->\n?", re.DOTALL)
+_ID = re.compile(r'(<g id=")([^"]*)(")')
+_GROUP = re.compile(r'(<g id="[^"]*" class="(?:node|edge|cluster)[^"]*">\n)<title>[^<]*</title>\n')
+_LINK = re.compile(
+    r'<g id="[^"]*"><a (xlink:href="[^"]*" )?xlink:title="([^"]*)"([^>]*)>\n(.*?)</a>\n</g>\n', re.DOTALL
+)
+_DECIMALS = re.compile(rb"(\.[0-9]{2})[0-9]+")
+_SURFACE = re.compile(rb"surface[0-9]+")
+# The lookahead keeps the search inside of one edge's group: an edge without a path must not take the next one's.
+_DRAWN = re.compile(r'<g id="(e[0-9]+)" class="edge[^"]*">(?:(?!</g>\n<).)*?<path', re.DOTALL)
+
+
+def find_drawn_edges(svg: str) -> set[str]:
+    """Return the ids of the edges that have a line."""
+    return set(_DRAWN.findall(svg))
+
+
+def clean_outlines(outlines: bytes) -> bytes:
+    """Renumber cairo's surfaces from 1, since cairo goes on counting from one picture to the next in the same process,
+    and keep two decimals: a hundredth of a point is less than any printer shows.
+    """
+    numbers: dict[bytes, bytes] = {}
+    outlines = _SURFACE.sub(lambda found: numbers.setdefault(found[0], b"surface%d" % (len(numbers) + 1)), outlines)
+    # Split at the digits that go, and joined: a replacement with a group in it is put together in Python, at seven times the time.
+    return shorten_glyphs(b"".join(_DECIMALS.split(outlines)))
+
+
+def clean_graphviz_svg(svg: str, drawing: Drawing) -> bytes:
+    """Return the svg as a single element, without prologue and comments."""
+    head = _HEAD.match(svg)
+    if head is None:
+        return svg.encode()
+    prefix = re.sub(r"[^A-Za-z0-9_]+", "-", drawing.id)
+    body = _COMMENT.sub("", svg[head.end() :])
+    body = _LINK.sub(_write_title, _GROUP.sub(r"\1", body))
+    body = re.sub(r"(<g id=\"graph0\"[^>]*>\n)<title>.*?</title>\n", r"\1", body, count=1)
+    body = _ID.sub(lambda found: f"{found[1]}{prefix}-{found[2]}{found[3]}", body)
+    name = f"<title>{escape(clean_label_text(drawing.title))}</title>\n"
+    description = f"<desc>{escape(clean_label_text(drawing.alt, 4000))}</desc>\n" if drawing.alt else ""
+    return f'<svg class="archgen" role="group" {head[1]}>\n{name}{description}{body.lstrip()}'.encode()
+
+
+def _write_title(match: re.Match[str]) -> str:
+    """Write a tooltip as a title element. Keep the link where there is an address."""
+    href, tooltip, link_attributes, inner = match.groups()
+    title = f"<title>{tooltip}</title>\n" if tooltip.strip() else ""
+    return f"<a {href}{link_attributes.strip()}>\n{title}{inner}</a>\n" if href else f"{title}{inner}"

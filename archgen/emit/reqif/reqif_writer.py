@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Iterator, Mapping
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from xml.sax.saxutils import escape
 
-from archgen.emit.reqif.object_identities import assign_identifiers
-from archgen.emit.reqif.reqif_texts import make_attribute, make_xhtml
 from archgen.views.requirement_exchange import ExchangedRequirement, RequirementExchange
 
 _TIME = "2000-01-01T00:00:00Z"
@@ -195,3 +195,56 @@ def _list_specification(exchange: RequirementExchange, identifiers: Mapping[str,
         open_count += 1
     yield from ["</CHILDREN></SPEC-HIERARCHY>"] * open_count
     yield "</CHILDREN></SPECIFICATION></SPECIFICATIONS>"
+
+
+_OWN_BEGINNINGS = (
+    *("usecase-", "verification-", "datatype-", "type-", "attribute-", "word-", "relation-", "specification-"),
+    *("place-", "header-"),
+)
+"""How the identifiers begin that archgen gives to anything but requirements."""
+_IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]{0,499}")
+
+
+def assign_identifiers(requirements: Sequence[ExchangedRequirement]) -> Mapping[str, str]:
+    """Return the identifiers of the objects of requirements, by the requirements' ids; no two are the same.
+
+    One of another tool is kept where it can be one, and where nothing else in the file has it.
+    """
+    own_identifiers = {each.id: f"requirement-{each.id}" for each in requirements}
+    used = set(own_identifiers.values())
+    identifiers: dict[str, str] = {}
+    for each in requirements:
+        foreign = each.foreign_identifier
+        is_kept = _IDENTIFIER.fullmatch(foreign) and not foreign.startswith(_OWN_BEGINNINGS) and foreign not in used
+        identifiers[each.id] = foreign if is_kept else own_identifiers[each.id]
+        used.add(identifiers[each.id])
+    return identifiers
+
+
+_NOT_IN_XML = re.compile(r"[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_NO_BREAK_SPACE = "\u00a0"
+
+
+def make_attribute(text: str) -> str:
+    """Return a text on one line, as the value of an XML attribute in double quotes."""
+    return escape(_NOT_IN_XML.sub("\ufffd", " ".join(text.split())), {'"': "&quot;"})
+
+
+def make_xhtml(text: str) -> str:
+    """Return a text as XHTML: a paragraph for each, a break for each line; its signs stay as they are written.
+
+    Blanks that XHTML would fold become no-break spaces, so that lists and code read as they were written.
+    """
+    plain = _NOT_IN_XML.sub("\ufffd", text.replace("\r\n", "\n").replace("\r", "\n").replace("\t", "    "))
+    lines = [line.rstrip() for line in plain.replace(_NO_BREAK_SPACE, " ").split("\n")]
+    paragraphs = [part.strip("\n") for part in re.split(r"\n{2,}", "\n".join(lines).strip())]
+    blocks = (
+        f"<xhtml:p>{'<xhtml:br/>'.join(_keep_blanks(line) for line in part.split(chr(10)))}</xhtml:p>"
+        for part in paragraphs
+        if part
+    )
+    return f"<xhtml:div>{''.join(blocks)}</xhtml:div>"
+
+
+def _keep_blanks(line: str) -> str:
+    return escape(re.sub(r"^ +| (?= )", lambda match: _NO_BREAK_SPACE * len(match[0]), line))

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.frozen import dataclass
 from archgen.model.element_ids import is_id
 from archgen.passes.pass_registry import PASSES
 from archgen.passes.pass_shape import STATES, Pass, PassWork
 from archgen.passes.patterns.pass_files import ReadPass, list_project_passes, list_shipped_passes
-from archgen.passes.patterns.pass_shapes import WRONG_PASS
-from archgen.passes.patterns.result_checks import check_result
+from archgen.passes.patterns.pass_shapes import WRONG_PASS, PatternPass
 from archgen.passes.patterns.rule_running import run_rules
 from archgen.project import LoadedProject
+from archgen.schema import validate_document
 from archgen.syntax.project_files import ProjectFiles
-from archgen.syntax.yaml_tree import MappingNode, copy_node
+from archgen.syntax.yaml_tree import MappingNode, YamlDocument, copy_node
 
 SHIPPED_PREFIX = "rules."
 """Before the names of the passes that ship as rules: each says what a pass of the same name does, in the language's words."""
@@ -87,3 +87,24 @@ def _make_pass(name: str, read: ReadPass, findings: tuple[Diagnostic, ...]) -> P
     if pattern_pass is None:
         return Pass(name, "cannot be read", run)
     return Pass(name, pattern_pass.title, run, pattern_pass.needs, pattern_pass.leaves, pattern_pass.ends)
+
+
+def check_result(pattern_pass: PatternPass, before: MappingNode, after: MappingNode) -> Iterator[Diagnostic]:
+    """Yield what a pass made of a project that no file may hold. Neither tree is changed."""
+    findings = _validate_copy(after, pattern_pass.file)
+    known = {(each.message, each.span) for each in _validate_copy(before, pattern_pass.file)} if findings else set()
+    for finding in findings:
+        if (finding.message, finding.span) not in known:
+            yield Diagnostic(
+                WRONG_PASS,
+                f"the pass `{pattern_pass.name}` writes what no file may hold: {finding.message}",
+                Span.of_file(pattern_pass.file),
+                labels=(Label(finding.span, "made from this"),),
+                help=finding.help,
+            )
+
+
+def _validate_copy(root: MappingNode, file: str) -> tuple[Diagnostic, ...]:
+    # Validating takes out what is wrong.
+    copied_root = copy_node(root, root.span)
+    return validate_document(YamlDocument(file, copied_root)) if isinstance(copied_root, MappingNode) else ()

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from archgen.compare.kinds import PLAIN_KINDS
+from archgen.language.language_tables import KEYS
 from archgen.model.architecture import UseCase
 from archgen.model.component import Component, Group
 from archgen.model.deployment import Container
@@ -25,6 +27,32 @@ from archgen.views.elements.type_fields import list_field_lines
 from archgen.views.lookup import Lookup
 from archgen.views.requirement_servers import describe_chain_state
 from archgen.views.sequences.step_words import describe_total, list_step_lines
+
+_CARD_KEYS = (
+    "message",
+    "size",
+    "comment",
+    "description",
+    "use_cases",
+    "host",
+    "cores",
+    "threads",
+    "scheduling",
+    "connects",
+    "devices",
+    "protocol",
+    "bandwidth",
+    "frame",
+    "parent",
+    "by",
+    "rate",
+    "deadline",
+    "show",
+    "of",
+    "without",
+    "drop",
+)
+"""One list of field names for all kinds that say which; those that an element lacks are empty and dropped."""
 
 
 def make_use_case_card(lookup: Lookup, use_case: UseCase) -> ElementCard:
@@ -48,37 +76,13 @@ def make_generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard
     architecture = lookup.architecture
     element = elements_by_kind(architecture)[kind][element_id]
     facts = [
-        # One list of field names serves all these kinds; those that an element lacks are empty and dropped.
         (
             key,
             lookup.format_size(element)
             if kind == "type" and key == "size"
             else format_fact(getattr(element, key, None)),
         )
-        for key in (
-            "message",
-            "size",
-            "comment",
-            "description",
-            "use_cases",
-            "host",
-            "cores",
-            "threads",
-            "scheduling",
-            "connects",
-            "devices",
-            "protocol",
-            "bandwidth",
-            "frame",
-            "parent",
-            "by",
-            "rate",
-            "deadline",
-            "show",
-            "of",
-            "without",
-            "drop",
-        )
+        for key in ([key for key in KEYS[kind] if key != "title"] if kind in PLAIN_KINDS else _CARD_KEYS)
     ]
     lists: list[tuple[str, tuple[str, ...]]] = []
     if kind == "type":

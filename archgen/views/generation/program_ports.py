@@ -8,10 +8,10 @@ from archgen.bringup.program_names import choose_own_name, find_common_message, 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.model.architecture import Architecture
 from archgen.model.language_keywords import PYTHON_KEYWORDS
+from archgen.model.message_types import ConceptualType, full_message_name
 from archgen.model.node import Endpoint, Node, Qos
 from archgen.model.quantity import Quantity
 from archgen.views.generation.generation_context import tell_left_out, write_place
-from archgen.views.generation.message_envelopes import record_envelope
 
 PORT_SECTIONS: Mapping[tuple[str, str], str] = {
     ("publishes", "topic"): "publishers",
@@ -119,3 +119,41 @@ def record_qos(qos: Qos) -> dict[str, object]:
 
 def _round_quantity(quantity: Quantity | None) -> int | None:
     return None if quantity is None else round(quantity.value)
+
+
+ANYBODY = "*"
+"""Who may send where the architecture names nobody."""
+_FIELDS = {"sender", "payload"}
+
+
+def record_envelope(architecture: Architecture, endpoints: Sequence[Endpoint]) -> dict[str, object] | None:
+    """Return what a port of a program knows of the envelopes of its messages; None where they are none.
+
+    `payload` says what is in one, `senders` the full names of the nodes to listen to, by the full name of each node of the
+    program that reads.
+    """
+    first = endpoints[0]
+    data_type = architecture.types.get(first.type or "")
+    if first.flow != "topic" or data_type is None or not is_envelope(data_type):
+        return None
+    payload_type = next(each.type or "" for each in data_type.fields or () if each.name == "payload")
+    payload = architecture.types.get(payload_type)
+    message = (payload.message if payload else None) or full_message_name(payload_type)
+    senders = {}
+    for endpoint in endpoints:
+        if endpoint.use == "subscribes":
+            senders[architecture.nodes[endpoint.node].full_name] = _list_senders(architecture, endpoint)
+    return {"payload": message or payload_type, "senders": senders}
+
+
+def is_envelope(data_type: ConceptualType) -> bool:
+    """Whether messages of a type carry their sender: it has the fields `sender`, a text, and `payload`, and no others."""
+    fields = {each.name: each.type for each in data_type.fields or ()}
+    return fields.keys() == _FIELDS and fields["sender"] == "string"
+
+
+def _list_senders(architecture: Architecture, endpoint: Endpoint) -> list[str]:
+    topic = architecture.topics.get(endpoint.name)
+    writers = topic.writers if topic else ()
+    nodes = [architecture.nodes[each.node].full_name for each in writers if each.port in endpoint.sources]
+    return sorted(set(nodes)) or [ANYBODY]

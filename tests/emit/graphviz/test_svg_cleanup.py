@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.emit.graphviz.svg_cleanup import clean_graphviz_svg, clean_outlines, find_drawn_edges
+from archgen.emit.graphviz.graph_drawing import clean_graphviz_svg, clean_outlines, find_drawn_edges
 from archgen.views.graph_shapes import Graph
 
 _GRAPH = Graph("groups/a b", "A & B", "flow", (), (), alt="Two <boxes>", kind="component")

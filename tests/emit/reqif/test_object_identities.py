@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from archgen.emit.reqif.object_identities import assign_identifiers
+from archgen.emit.reqif.reqif_writer import assign_identifiers
 from archgen.views.requirement_exchange import ExchangedRequirement
 
 _PLAIN = ExchangedRequirement("R-0", "T", "", "", "", "", "", (), (), (), (), "", "open")

@@ -9,7 +9,7 @@ from xml.etree import ElementTree as ET
 import pytest
 
 from archgen.emit.reqif import render_reqif
-from archgen.emit.reqif.reqif_texts import make_attribute, make_xhtml
+from archgen.emit.reqif.reqif_writer import make_attribute, make_xhtml
 from archgen.views.requirement_exchange import ExchangedRequirement, RequirementExchange
 
 NASTY = 'a "b" <script>&amp; \x00\x1b[31m ]]> \ud800 \u202e'

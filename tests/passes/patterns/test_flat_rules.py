@@ -15,7 +15,7 @@ import yaml
 
 from archgen.checking.checked_packing import pack_checked_project
 from archgen.link.open_shells import OpenShells
-from archgen.passes.flat_names import name_flat_components
+from archgen.passes.flattening import name_flat_components
 from archgen.passes.linked_tree import LinkedTree
 from archgen.passes.patterns.pattern_registry import find_known_passes
 from archgen.pipeline import CheckedProject, check_project, transform_project

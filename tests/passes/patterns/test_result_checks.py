@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.passes.patterns.pattern_registry import find_known_passes
-from archgen.passes.patterns.result_checks import check_result
+from archgen.passes.patterns.pattern_registry import check_result, find_known_passes
 from archgen.pipeline import CheckedProject, check_project, transform_project
 from tests.passes.patterns.transforming import data_of, pass_of, said, transform, tree_of
 from tests.passes.same_meaning import pack, write_project

@@ -12,9 +12,8 @@ from archgen.plugins.reqif.known_requirements import (
     find_known_requirements,
     make_identity_hints,
 )
-from archgen.plugins.reqif.parent_circles import cut_circles
 from archgen.plugins.reqif.reqif_document import ReqifDocument, ReqifObject
-from archgen.plugins.reqif.requirement_mapping import take_requirements
+from archgen.plugins.reqif.requirement_mapping import cut_circles, take_requirements
 
 
 def known(*hints: object) -> KnownRequirements:

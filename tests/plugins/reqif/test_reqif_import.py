@@ -15,8 +15,8 @@ from archgen.plugins.reqif import reqif_files as files_module
 from archgen.plugins.reqif.attribute_meanings import fold_attribute_name
 from archgen.plugins.reqif.reqif_files import read_reqif_file
 from archgen.plugins.reqif.reqif_import import read_requirements
+from archgen.plugins.reqif.reqif_parsing import XhtmlText
 from archgen.plugins.reqif.requirement_ids import is_requirement_id, make_distinct_id, make_requirement_id
-from archgen.plugins.reqif.xhtml_text import XhtmlText
 from tests.quiet_seconds import measure_quiet_seconds
 
 DOORS = Path(__file__).parent / "doors.reqif"

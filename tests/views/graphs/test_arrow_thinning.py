@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import permutations
 
 from archgen.views.graph_shapes import Arrow, Box, Graph, GraphKind
-from archgen.views.graphs import arrow_thinning
+from archgen.views.graphs import graph_folding
 from archgen.views.graphs.graph_folding import MAX_ARROWS, fold_graph
 
 
@@ -44,7 +44,7 @@ def test_of_too_many_boxes_those_with_most_flows_are_drawn_in_their_order() -> N
 
 def test_the_same_picture_comes_out_each_time() -> None:
     graph = whole(180, [(tail, head, 1 + tail % 3) for tail, head in permutations(range(0, 180, 9), 2)])
-    assert arrow_thinning.thin_graph(graph, 100) == arrow_thinning.thin_graph(graph, 100)
+    assert graph_folding.thin_graph(graph, 100) == graph_folding.thin_graph(graph, 100)
 
 
 def test_nothing_is_left_out_of_what_somebody_chose_or_agreed_upon() -> None:

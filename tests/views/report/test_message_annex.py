@@ -9,7 +9,7 @@ import pytest
 from archgen import pipeline
 from archgen.products.output_options import OutputOptions
 from archgen.products.project_views import make_views
-from archgen.views.report.message_annex import make_message_annex
+from archgen.views.report.printed_report import make_message_annex
 from archgen.views.shapes import Section, Table
 
 PROJECT = """archgen: 1
