@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from itertools import chain
 from typing import NamedTuple
 
@@ -10,7 +10,7 @@ from archgen.compare.comparison import Change
 from archgen.compare.key_phrases import name_key
 from archgen.compare.losses.loss_wording import tick_name
 from archgen.compare.losses.timing_causes import TimingCauses
-from archgen.compare.losses.versions_without import VersionsWithout
+from archgen.compare.losses.versions_without import VersionsWithout, find_whole
 from archgen.diagnostics.common_wording import join_words
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
@@ -87,40 +87,41 @@ class CauseSeparator:
         version = self._versions.analyse(indices)
         return None if version is None else falls(*version, indices)
 
-    def _group(self, indices: Iterable[int]) -> list[_ChangeGroup]:
-        """Group changes that are one: the same key of instances of one type, a component that is new with its node and
-        with those that read it now, which are not told.
+    def _group(self, indices: Sequence[int]) -> list[_ChangeGroup]:
+        """Group changes that are taken back together: the same key of instances of one type, all of a component that is
+        taken back as a whole. Of one that is new those that read it now go along, and are not told.
         """
-        changes = self._context.changes
+        context = self._context
+        wholes = {find_whole(context, context.changes[index]) for index in indices} - {None}
         groups: dict[object, list[int]] = {}
-        new_components = {
-            each.element_id for each in changes if (each.element_kind, each.kind) == ("component", "added")
-        }
         for index in indices:
-            groups.setdefault(self._find_origin(changes[index], new_components) or index, []).append(index)
+            groups.setdefault(self._find_origin(context.changes[index], wholes) or index, []).append(index)
         return [
             _ChangeGroup(
                 tuple(members),
-                tuple(each for each in members if changes[each].element_kind == "component") or tuple(members),
+                tuple(
+                    index
+                    for index in members
+                    if (context.changes[index].element_kind, context.changes[index].kind) == ("component", "added")
+                )
+                or tuple(members),
             )
             for members in groups.values()
         ]
 
-    def _find_origin(self, change: Change, new_components: set[str]) -> object:
+    def _find_origin(self, change: Change, wholes: Collection[str | None]) -> object:
         """Return what the changes of a group have in common, None for a change that stands for itself."""
-        kind, name = change.element_kind, change.element_id
-        component, node = self._context.after.components.get(name), self._context.after.nodes.get(name)
-        gained: list[str] = []
-        if kind == "component" and change.kind == "changed" and component and component.type_name:
-            return component.type_name, change.key, str(change.before), str(change.after)
-        if (kind, change.kind) == ("component", "added"):
-            return "new", name
-        if (kind, change.kind) == ("node", "added") and node and len(node.implements) == 1:
-            gained = [*node.implements]
-        elif kind == "connection" and isinstance(change.after, list):
-            old_sources = change.before if isinstance(change.before, list) else []
-            gained = [source.rpartition(".")[0] for source in change.after if source not in old_sources]
-        return ("new", gained[0]) if gained and new_components.issuperset(gained) else None
+        component = self._context.after.components.get(change.element_id)
+        if isinstance(change.after, list) and change.element_kind == "connection":
+            gained = {source.rpartition(".")[0] for source in change.after} - self._context.before.components.keys()
+            if gained & set(wholes):
+                return min(gained & set(wholes), key=str)
+        node = self._context.after.nodes.get(change.element_id) if change.element_kind == "node" else None
+        parts = [find_whole(self._context, change), *(node.implements if node else (change.element_id,))]
+        whole = next((part for part in parts if part in wholes and part), None)
+        if whole or component is None or not component.type_name:
+            return whole
+        return component.type_name, change.key, str(change.before), str(change.after)
 
     def _name_all(self, indices: Sequence[int]) -> SeparatedCauses:
         return SeparatedCauses(tuple(indices), "; causes not separated" if len(indices) > 1 else "")
