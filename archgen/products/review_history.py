@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from functools import cache
 
 from archgen import git, pipeline, project
-from archgen.compare.change_hashes import agreement_key, hash_values, summarize_change
+from archgen.compare.change_hashes import agreement_key, hash_change
 from archgen.compare.change_listing import find_changes
 from archgen.compare.match_elements import match_elements
 from archgen.compare.review_facts import Author, ReviewFacts, name_author
@@ -71,7 +71,4 @@ def _hash_changes(before: CheckedProject, after: CheckedProject, commit: str) ->
         return {}
     old, new = make_comparison_input(before), make_comparison_input(agreed_project)
     versions, changes = find_changes(old, new, match_elements(old.architecture, new.architecture))
-    return {
-        (change.element_id, agreement_key(change)): hash_values(summarize_change(change, versions))
-        for change in changes
-    }
+    return {(change.element_id, agreement_key(change)): hash_change(change, versions) for change in changes}

@@ -13,7 +13,8 @@ from archgen.model.partner_interfaces import PartnerInterface
 from archgen.model.promise import Promise, describe_deprecation, format_range
 from archgen.model.quantity import Quantity
 from archgen.model.relied_outputs import find_relied_output
-from archgen.timing.chains.read_ages import find_sent_ages
+from archgen.timing.chains.read_ages import find_read_ages, find_sent_ages
+from archgen.timing.figures.figure_wording import format_duration
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import is_boundless
 from archgen.timing.system import activity_builder
@@ -220,6 +221,12 @@ def find_broken_words(lookup: Lookup, interface: PartnerInterface, ports: Sequen
             needed, promised = freshness.get(reader), each.promise.max_age
             if needed and promised and promised.value > needed.value:
                 yield f"`{_shorten_id(reader)}` needs what is no older than {needed}, and {promised} is promised."
+    ages = find_read_ages(lookup.timing.analysis) if lookup.timing is not None and freshness else ()
+    for age in ages:
+        if age.state == "broken" and age.arc.input in freshness and age.arc.output == interface.key:
+            words = "there is no bound" if age.age.value is None else f"it may be {format_duration(age.age.value)} old"
+            reader = _shorten_id(age.arc.input)
+            yield f"`{reader}` needs what is no older than {freshness[age.arc.input]}: {words} when it is read."
 
 
 def identify_words(ports: Sequence[CountedPort]) -> list[list[str]]:

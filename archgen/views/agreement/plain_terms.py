@@ -57,8 +57,8 @@ def list_plain_terms(
         title = lookup.architecture.chains[chain.id].title
         terms |= _chain_terms(chain, title, matched_ids.common_id("chain", chain.id))
     for sentence in interface_terms.contradictions:
-        # Another figure in it makes no other contradiction.
-        key = f"contradiction {_FIGURE.sub('', matched_ids.rename_in_text(sentence))}"
+        # Another figure in it makes no other contradiction, nor does it that there is none, or who reads the oldest.
+        key = f"contradiction {_FIGURE.sub('', matched_ids.rename_in_text(sentence)).partition(': ')[0]}"
         terms[key] = PlainTerm(CONTRADICTION_KIND, "Contradiction", sentence.replace("`", ""), "")
     for requirement_runs in interface_terms.requirements:
         requirement = requirement_runs[0].text
