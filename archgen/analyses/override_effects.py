@@ -73,13 +73,13 @@ def _find_other_name(override: QosOverride, endpoints: Sequence[Endpoint]) -> _F
         verb = "publishes" if override.end == "publisher" else "subscribes to"
         other_end = next(word for word in END_WORDS if word != override.end)
         return _Fault(f"does nothing: the node {verb} no `{override.topic}`", f"write `{other_end}`")
-    ends = [each for each in endpoints if each.use == END_WORDS[override.end] and each.name]
-    for each in ends:
-        if override.topic in {each.program_name, each.own_name, each.name[1:], each.name.rpartition("/")[2]}:
+    ends = [(each, each.name) for each in endpoints if each.use == END_WORDS[override.end] and each.name]
+    for each, name in ends:
+        if override.topic in {each.program_name, each.own_name, name[1:], name.rpartition("/")[2]}:
             text = f"does nothing: nothing is called `{override.topic}` once the node runs"
-            return _Fault(text, f"write the full name on the wire, `{each.name}`")
+            return _Fault(text, f"write the full name on the wire, `{name}`")
     # What stands in a file, or holds for all nodes, may be meant for another one.
-    guess = did_you_mean(override.topic, [each.name for each in ends]) if override.origin == "node" else None
+    guess = did_you_mean(override.topic, [name for _, name in ends]) if override.origin == "node" else None
     return _Fault("does nothing: the node has no such topic", guess) if guess else None
 
 

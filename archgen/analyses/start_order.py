@@ -112,7 +112,8 @@ def _is_of_key(topic: Topic, key: str) -> bool:
 
 
 def _diagnose_no_giver(architecture: Architecture, node: Node, key: str, name: str) -> Diagnostic:
-    known_names = [topic.name for topic in architecture.topics.values() if topic.writers and _is_of_key(topic, key)]
+    topics = [topic for topic in architecture.topics.values() if topic.is_known and _is_of_key(topic, key)]
+    known_names = [topic.name for topic in topics if topic.writers]
     verb = "publishes" if key == "topic" else "offers"
     return Diagnostic(
         "unmet-ready",

@@ -58,6 +58,12 @@ class _TopicUsers:
         return topics_by_output
 
     @cached_property
+    def left_names(self) -> frozenset[tuple[str | None, str | None]]:
+        """The names that rules took outputs away from, each behind the output."""
+        writers = (each for named in self.writers.values() for each in named)
+        return frozenset((each.port, each.program_name) for each in writers if each.is_moved)
+
+    @cached_property
     def outputs_by_component(self) -> Mapping[str, set[str]]:
         """The ids of all outputs that a component's inputs name, by component id."""
         outputs_by_component: dict[str, set[str]] = defaultdict(set)
@@ -157,6 +163,8 @@ def _judge_written_topic(architecture: Architecture, topic_users: _TopicUsers, r
     source_ids = {
         name for output in topic_users.outputs_by_input[reader.port] for name in (output, output.rpartition(".")[0])
     }
+    if any((output, reader.name) in topic_users.left_names for output in topic_users.outputs_by_input[reader.port]):
+        return None  # a rule took the source away from there: `remapped-away` tells it
     if not architecture.suspected_ids.isdisjoint(source_ids):
         return None  # the node of a source names its topic in an entry that could not be resolved: reported already
     entry = architecture.inputs[reader.port]

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from archgen.derivation.wire.remap_rules import ACTION_PARTS, NodeNames
+from archgen.derivation.wire.remap_rules import ACTION_PARTS, NodeNames, list_written_remaps
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.code_names import make_camel_name, make_identifier_in, make_ros_name, make_snake_name
@@ -202,13 +202,12 @@ class ProgramNames:
                 continue
             for part in ACTION_PARTS[self._ros] if flow == "action" else ("",):
                 remaps.setdefault(f"{own_name}{part}", f"{name}{part}")
+        others = list_written_remaps(node)
         if node.id in self._programs:
             folded = [each for each in self._endpoints.get(node.id, ()) if each.port or each.written]
             spoken.update(name for each in folded for name in (each.name, each.program_name))
             spoken |= {f"{name}{part}" for name in spoken for part in ACTION_PARTS[self._ros]}
-            others = {key: name for key, name in node.remaps.items() if node_names.expand(key) not in spoken}
-        else:
-            others = dict(node.remaps)
+            others = {key: name for key, name in others.items() if node_names.expand(key) not in spoken}
         return remaps | {own_name: name for own_name, name in others.items() if own_name not in remaps}
 
     def _list_names(self, node: Node) -> Iterable[tuple[str, str, str]]:

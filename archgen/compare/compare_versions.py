@@ -28,7 +28,7 @@ from archgen.model.review_settings import AcceptedChange
 
 
 def compare_versions(
-    before: ArchitectureVersion, after: ArchitectureVersion, facts: ReviewFacts | None = None
+    before: ArchitectureVersion, after: ArchitectureVersion, *, facts: ReviewFacts | None = None
 ) -> Comparison:
     """Compare two versions of an architecture. `facts` are what is known of who changed it."""
     facts = facts or ReviewFacts()

@@ -139,7 +139,7 @@ class _InputReader:
             writers_by_topic: dict[tuple[str | None, str, FlowKind], list[Endpoint]] = {}
             for writer in writers:
                 # Generated code follows its writer. A program that exists reads what it reads: the model's name, at best.
-                name = writer.name if is_generated or use.own_name or not is_moved(writer) else None
+                name = writer.name if is_generated or use.own_name or not writer.is_moved else None
                 key = (name, (name is None and writer.port) or "", writer.flow)
                 writers_by_topic.setdefault(key, []).append(writer)
             for (name, _, flow_kind), topic_writers in writers_by_topic.items():
@@ -198,12 +198,6 @@ class _InputReader:
         """Return the message of the type that the input expects, None if unknown."""
         mapped = self.writer_index.architecture.types.get(self.port.type or "")
         return mapped.message if mapped else None
-
-
-def is_moved(endpoint: Endpoint) -> bool:
-    """Whether a launch moves an end away from where the model puts it. The rule of its own port (`own_name`) puts it there."""
-    moved = endpoint.evidence.get("name")
-    return moved is not None and moved.kind == "written" and moved.at != endpoint.at
 
 
 def _opposite_section(section: UseKind) -> UseKind:

@@ -160,9 +160,9 @@ RECORD_KEYS: Mapping[str, Mapping[str, str]] = {
         "directory": "", "user": "", "once": "flag", "state": "", "by": "",
     },
     "endpoint": {
-        "use": "", "name": "", "own_name": "", "flow": "", "message": "", "type": "", "port": "", "internal": "flag",
-        "sources": "", "qos": "qos", "qos_override": "", "qos_if_ignored": "qos", "domain": "", "clock": "", "runs": "",
-        "unknown": "", "from": "evidence{}",
+        "use": "", "name": "", "own_name": "", "program_name": "", "from": "evidence{}", "unknown": "", "flow": "",
+        "message": "", "type": "", "port": "", "internal": "flag", "sources": "", "qos": "qos", "qos_override": "",
+        "qos_if_ignored": "qos", "domain": "", "clock": "", "runs": "",
     },
     "effective_parameter": {
         "origin": "", "value": "",
@@ -200,12 +200,12 @@ RECORD_KEYS: Mapping[str, Mapping[str, str]] = {
     "start_ready": {
         "port": "", "file": "", "topic": "", "service": "", "log": "", "wait": "ns", "within": "ns",
     },
+    "evidence": {
+        "by": "", "rule": "", "at": "",
+    },
     "qos": {
         "profile": "", "reliability": "", "durability": "", "history": "", "depth": "", "liveliness": "",
         "deadline": "ns", "lifespan": "ns", "lease_duration": "ns",
-    },
-    "evidence": {
-        "by": "", "rule": "", "at": "",
     },
     "value_range": {
         "text": "", "least": "", "greatest": "",

@@ -218,6 +218,12 @@ class Endpoint:
     message_at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
     @property
+    def is_moved(self) -> bool:
+        """Whether a launch moves it away from where the model puts it; the rule of its own port (`own_name`) puts it there."""
+        reason = self.evidence.get("name")
+        return reason is not None and reason.kind == "written" and reason.at != self.at
+
+    @property
     def label(self) -> str:
         """The name, else words that say that it is not known: the same ones at all ends of one output's connections."""
         return self.name or f"{self.sources[0] if self.sources else self.port or self.node} (name not known)"
@@ -246,3 +252,8 @@ class Topic:
     def label(self) -> str:
         """What people call it, as of an endpoint."""
         return self.name
+
+    @property
+    def is_known(self) -> bool:
+        """Whether its name is known: else it stands for connections of the model alone."""
+        return any(each.name is not None for each in (*self.writers, *self.readers))

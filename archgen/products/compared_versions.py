@@ -194,7 +194,7 @@ def read_variant(version: ProjectVersion, standing_project: CheckedProject, name
 
 
 def compare_named_versions(
-    before: ProjectVersion, after: ProjectVersion, forge_facts: ReviewFacts | None = None
+    before: ProjectVersion, after: ProjectVersion, *, forge_facts: ReviewFacts | None = None
 ) -> Comparison:
     """Compare two versions. `forge_facts` are what the forge says of who changed the one into the other.
 
@@ -204,7 +204,7 @@ def compare_named_versions(
         before.checked_project, after.checked_project, before.commit, forge_facts or ReviewFacts()
     )
     comparison = compare_versions(
-        make_comparison_input(before.checked_project), make_comparison_input(after.checked_project), facts
+        make_comparison_input(before.checked_project), make_comparison_input(after.checked_project), facts=facts
     )
     comparison = replace(comparison, left_out_files=_find_left_out_files(before.checked_project, after.checked_project))
     if comparison.changes and before.checked_project.variants and after.checked_project.variants:
@@ -222,7 +222,7 @@ def _compare_variants(comparison: Comparison, before: CheckedProject, after: Che
         return {}
     return {
         new_name: compare_versions(
-            make_comparison_input(variant), make_comparison_input(after.variants[new_name]), comparison.facts
+            make_comparison_input(variant), make_comparison_input(after.variants[new_name]), facts=comparison.facts
         )
         for name, variant in before.variants.items()
         if (new_name := comparison.matched_ids.find_new_id("variant", name) or "") in after.variants

@@ -105,7 +105,7 @@ def compare_projects_below(
 def _compare_project(
     folder: str, old_version: ProjectVersion, new_version: ProjectVersion, forge_facts: ReviewFacts | None
 ) -> ProjectComparison:
-    comparison = compare_named_versions(old_version, new_version, forge_facts)
+    comparison = compare_named_versions(old_version, new_version, forge_facts=forge_facts)
     if comparison.is_empty:
         return ProjectComparison(folder, "nothing changed", has_changes=False)
     document = describe_versions(comparison, old_version, new_version)

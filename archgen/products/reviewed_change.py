@@ -90,7 +90,7 @@ def compare_change(  # noqa: PLR0913, PLR0917 - what is compared, and all that i
     old_name = request.target_branch if request and request.target_branch else fork.description
     new_version = _name_version(checked_project, tracked_project, request, version_cache)
     old_version = read_at_base(git.BaseCommit(fork.commit_id, old_name), path, version_cache, new_version)
-    comparison = compare_named_versions(old_version, new_version, forge_facts)
+    comparison = compare_named_versions(old_version, new_version, forge_facts=forge_facts)
     return ReviewedChange(
         old_version,
         new_version,

@@ -96,7 +96,12 @@ def _forge_files(answers: StartAnswers, project_path: str, repository_folder: Pa
         is_taken = bool(project_path) and os.path.lexists(repository_folder / folder / name)
         if is_taken:
             name = f"architecture-{start_templates.make_project_slug(project_path) or 'project'}.yml"
-        return {f"{folder}/{name}": start_templates.fill_workflow(project_path, publishes=not is_taken)}
+        return {
+            f"{folder}/{name}": start_templates.fill_workflow(project_path, publishes=not is_taken),
+            f"{folder}/{name.replace('architecture', 'open-requests', 1)}": start_templates.fill_nightly_workflow(
+                project_path
+            ),
+        }
     return {".gitlab-ci.yml": start_templates.fill_pipeline(project_path)} if answers.forge == "gitlab" else {}
 
 

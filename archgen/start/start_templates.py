@@ -20,6 +20,7 @@ from archgen.syntax.file_patterns import YAML_ENDINGS
 
 _PLAIN_PATH_PATTERN = re.compile(r"[A-Za-z0-9._/-]+\Z")
 """Folders without characters that have a meaning in a workflow's path filter."""
+_RUN_GROUP = "${{ github.event_name == 'pull_request' && github.ref || github.run_id }}"
 PORT_HINTS = {
     "inputs": "                      # where the data comes from: group.component.output",
     "outputs": "                     # what it gives: a conceptual type each",
@@ -107,9 +108,21 @@ def fill_workflow(folder: str, *, publishes: bool = True) -> bytes:
         paths=paths,
         # Two projects of a repository must not cancel each other's runs.
         workflow_name=f"Architecture of {inert_folder}" if folder else "Architecture",
-        group="-".join(filter(None, ("architecture", inert_folder, "${{ github.ref }}"))),
+        group="-".join(filter(None, ("architecture", inert_folder, _RUN_GROUP))),
         key=f"diff/{make_project_slug(folder)}",
         publishes=publishes,
+    )
+
+
+def fill_nightly_workflow(folder: str) -> bytes:
+    """Return GitHub's workflow that holds open pull requests against each other."""
+    inert_folder = folder.replace("${{", "${{ '${{' }}")
+    return fill_template(
+        "github_nightly.yml.j2",
+        folder=inert_folder,
+        workflow_name=f"Open pull requests of {inert_folder}" if folder else "Open pull requests",
+        group="-".join(filter(None, ("requests", inert_folder))),
+        key="/".join(filter(None, ("requests", make_project_slug(folder)))),
     )
 
 

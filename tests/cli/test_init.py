@@ -21,6 +21,7 @@ from tests.running import ROOT, contents
 FILES = [
     ".gitattributes",
     ".github/workflows/architecture.yml",
+    ".github/workflows/open-requests.yml",
     ".gitignore",
     ".vscode/archgen.schema.json",
     ".vscode/extensions.json",
@@ -183,6 +184,8 @@ def test_a_second_project_of_a_repository_has_a_workflow_of_its_own(run: Run, tm
     } == {
         "architecture.yml": ("robots/alpha", True),
         "architecture-robots-beta.yml": ("robots/beta", False),
+        "open-requests.yml": ("robots/alpha", False),
+        "open-requests-robots-beta.yml": ("robots/beta", False),
     }
 
 

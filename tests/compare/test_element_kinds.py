@@ -144,7 +144,9 @@ KINDS_NOT_IN_RECORD = {
     "policy": "a rule, not a part of the system",
 }
 CARD_ONLY = {
-    "state": "what serves and verifies it",
+    "state": "what serves and verifies it, or whether it runs",
+    "clock": "what `use_sim_time` says",
+    "domain": "what the environment says",
     "parent": "the beginning of the id",
     "ROS name": "made of name and namespace",
     "group": "the beginning of the id",

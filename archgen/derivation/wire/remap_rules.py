@@ -75,6 +75,16 @@ class WireName(NamedTuple):
     evidence: Mapping[str, Evidence]
 
 
+def may_have_rules(node: Node) -> bool:
+    """Whether anything that a node is started with may be a rule for names: a program that is no node takes none."""
+    return bool(node.remaps or node.arguments) and not node.is_program
+
+
+def list_written_remaps(node: Node) -> dict[str, str]:
+    """Return a node's `remaps` for who writes them down again; what comes of them, endpoints say."""
+    return dict(node.remaps)
+
+
 def list_rules(node: Node, *, ros_1: bool) -> Iterator[RemapRule]:
     """Yield the rules of a node that ROS takes, the one that counts first in front."""
     arguments = [rule for _, _, rule in read_arguments(node, ros_1=ros_1) if rule]
@@ -135,6 +145,8 @@ def _find_fault_in_ros_1(own_name: str, name: str) -> str | None:
 def find_rule_fault(text: str, *, ros_1: bool) -> str:
     """Return what is wrong with a rule that ROS refuses."""
     own_name, joint, name = text.partition(JOINT)
+    if read_rule(text, NO_SPAN, is_argument=True, ros_1=ros_1):
+        return "behind `--ros-args` a rule stands after `-r`"
     if not joint:
         return f"a rule has the form `from{JOINT}to`"
     if ros_1:
@@ -159,6 +171,11 @@ def apply_launch_names(node: Node, distro: str | None) -> Node:
     return node
 
 
+def moves_whole_actions(distro: str | None) -> bool:
+    """Whether a rule for an action alone moves all of its parts."""
+    return distro not in _DISTROS_OF_PARTS
+
+
 class NodeNames:
     """Knows what the names of one node's program are on the wire. Its name and namespace are those after all rules."""
 
@@ -169,6 +186,7 @@ class NodeNames:
         "_name",
         "_namespace",
         "_ros_1",
+        "_rules_by_name",
         "_services",
         "_topics",
         "rules",
@@ -177,12 +195,13 @@ class NodeNames:
     def __init__(self, node: Node, distro: str | None) -> None:
         self._name, self._ros_1 = node.name, is_ros_1(distro)
         self._namespace = "/" + "/".join(part for part in node.namespace.split("/") if part)
-        self._moves_actions = distro not in _DISTROS_OF_PARTS
+        self._moves_actions = moves_whole_actions(distro)
         self._is_observed = node.observed
         self.rules: tuple[RemapRule, ...] = ()
         self._topics: dict[str, RemapRule | None] = {}
         self._services: dict[str, RemapRule | None] = {}
-        if node.remaps or node.arguments:
+        self._rules_by_name: dict[str, list[RemapRule]] = {}
+        if may_have_rules(node):
             rules = list_rules(node, ros_1=self._ros_1)
             self.rules = tuple(each for each in rules if not each.is_for_node and each.node_name in {"", node.name})
             self._index_rules()
@@ -192,6 +211,7 @@ class NodeNames:
             own_name = self.expand(rule.own_name)
             if own_name is None:
                 continue
+            self._rules_by_name.setdefault(own_name, []).append(rule)
             for flow, table in (("topic", self._topics), ("service", self._services)):
                 if rule.flow not in {"", flow}:
                     continue
@@ -230,21 +250,18 @@ class NodeNames:
         found = self._find_rule(program_name, flow)
         if found is not None and not (has_rule_of_port and (self._ros_1 or not found[1].is_argument)):
             name, rule = found
-            return WireName(
-                program_name, name, {"name": Evidence("written" if name else "unknown", rule.text, rule.at)}
-            )
+            if name == program_name:
+                return WireName(program_name, name, _NO_EVIDENCE)
+            reason = Evidence("written" if name else "unknown", rule.text, rule.at)
+            return WireName(program_name, name, {"name": reason})
         if has_rule_of_port and target != program_name:
             return WireName(program_name, target, {"name": Evidence("written", f"{own_name}{JOINT}{target}", own_at)})
         return WireName(program_name, program_name, _NO_EVIDENCE)
 
     def list_matched_rules(self, program_name: str, flow: FlowKind) -> Iterator[RemapRule]:
         """Yield the rules that say something of an end, also those that another one keeps from it."""
-        wanted = {program_name}
-        if flow == "action":
-            wanted = {f"{program_name}{part}" for part in ACTION_PARTS[1 if self._ros_1 else 2]} | (
-                set() if self._ros_1 else wanted
-            )
-        yield from (rule for rule in self.rules if self.expand(rule.own_name) in wanted)
+        for ending in ("", *(ACTION_PARTS[1 if self._ros_1 else 2] if flow == "action" else ())):
+            yield from self._rules_by_name.get(f"{program_name}{ending}", ())
 
     def _find_rule(self, program_name: str, flow: FlowKind) -> tuple[str | None, RemapRule] | None:
         """Return the new name of an end and the rule that gives it, None where no rule moves all of it."""
@@ -271,6 +288,5 @@ class NodeNames:
         rule = table[program_name]
         if rule is None:
             # Two spellings of one name in ROS 1.
-            rule = next(each for each in self.rules if self.expand(each.own_name) == program_name)
-            return None, rule
+            return None, self._rules_by_name[program_name][0]
         return (None if rule.name is None else self.expand(rule.name)), rule

@@ -145,7 +145,7 @@ class RunningStates:
         if given is not None and given.origin == "command":
             return None, CLOCK_PARAMETER, given.at
         if node.unread_files:
-            return None, node.unread_files[0], node.at
+            return None, f"{node.unread_files[0]} is not at hand", node.at
         if (word := find_argument_value(node, CLOCK_PARAMETER)) is not None:
             value = True if word.lower() in _TRUE_WORDS else False if word.lower() in _FALSE_WORDS else None
             return value, f"-p {CLOCK_PARAMETER}:={word}", node.at
@@ -221,7 +221,12 @@ def find_argument_value(node: Node, name: str) -> str | None:
     found = None
     for flag, word in pairwise(words):
         parameter, separator, value = word.partition(":=")
-        if flag in {"-p", "--param"} and separator and parameter.rpartition(":")[2] == name:
+        whose, _, parameter = parameter.rpartition(":")
+        if flag not in {"-p", "--param"} or not separator or parameter != name:
+            continue
+        if "/" in whose:
+            found = word  # with it, no process starts
+        elif whose in {"", node.full_name[1:]}:
             found = value
     return found
 

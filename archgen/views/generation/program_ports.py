@@ -87,7 +87,7 @@ def _record_port(
     return {
         "key": key,
         "topic": choose_own_name(key, endpoints, is_shared=is_shared),
-        "topics": {each.node: each.label for each in endpoints},
+        "topics": {each.node: each.name or "" for each in endpoints},
         "port": first.port or "",
         "internal": first.internal,
         "message": first.message,

@@ -142,7 +142,7 @@ class NodeProcess:
         name = self.features[part.key] = self.names.take_name(shell_port or part.name)
         properties = make_named_properties(name, shell_port or port.name)
         endpoint = next(iter(self.find_endpoints(part)), None)
-        own_name = (endpoint.own_name or endpoint.label) if endpoint and endpoint.medium == "ros" else None
+        own_name = (endpoint.own_name or endpoint.name) if endpoint and endpoint.medium == "ros" else None
         if own_name is not None:
             properties.append(make_property("topic_properties::Default_Name", write_aadl_string(own_name)))
         properties += make_text_properties(
