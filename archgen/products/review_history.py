@@ -34,11 +34,11 @@ def find_review_facts(
         return forge_facts
     on_disk = not after.loaded_project.files.commit
 
-    def list_authors(path: str, files: tuple[str, ...]) -> frozenset[Author]:
+    def list_authors(path: str, files: tuple[str, ...]) -> tuple[Author, ...]:
         mails = list_author_mails(repository, base_commit, head, path)
         if on_disk and differs_from_head(after.root, files):
             mails |= {find_own_mail(repository)}
-        return frozenset(name_author(mail=mail) for mail in mails if mail)
+        return tuple(name_author(mail=mail) for mail in sorted(mails) if mail)
 
     files = {agreement_file(partner): "" for partner in before.architecture.partners}
     files = {file: "/".join(filter(None, (repository.prefix, file))) for file in files}
@@ -53,7 +53,7 @@ def find_review_facts(
 
     return replace(
         forge_facts,
-        authors=tuple(sorted(list_authors("", after.input_files), key=sorted)),
+        authors=list_authors("", after.input_files),
         agreement_authors={file: list_authors(files[file], (file,)) for file in present_files},
         agreed_hashes=hash_agreed_changes,
     )

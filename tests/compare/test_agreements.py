@@ -118,10 +118,10 @@ ENTRY = AcceptedChange("g.a.x", "fine", "type", Span.of_file("review/p.yaml"))
         (ENTRY, ReviewFacts((name_author("paula"),)), None),
         (ENTRY, ReviewFacts((name_author("quinn"),)), "other author"),
         (ENTRY, ReviewFacts((name_author("quinn"), name_author("paula"))), None),
-        (ENTRY, ReviewFacts((name_author("quinn"),), agreement_authors={"review/p.yaml": frozenset({name_author(mail="1+Paula@users.noreply.github.com")})}), None),
-        (ENTRY, ReviewFacts((name_author("quinn"),), agreement_authors={"review/p.yaml": frozenset({name_author(mail="paula@p.example")})}, trusts_mails=False), "other author"),
-        (ENTRY, ReviewFacts(agreement_authors={"review/p.yaml": frozenset({name_author(mail="quinn@users.noreply.github.com")})}), "other author"),
-        (ENTRY, ReviewFacts(agreement_authors={"review/p.yaml": frozenset({name_author(mail="who@x.example")})}), None),
+        (ENTRY, ReviewFacts((name_author("quinn"),), agreement_authors={"review/p.yaml": (name_author(mail="1+Paula@users.noreply.github.com"),)}), None),
+        (ENTRY, ReviewFacts((name_author("quinn"),), agreement_authors={"review/p.yaml": (name_author(mail="paula@p.example"),)}, trusts_mails=False), "other author"),
+        (ENTRY, ReviewFacts(agreement_authors={"review/p.yaml": (name_author(mail="quinn@users.noreply.github.com"),)}), "other author"),
+        (ENTRY, ReviewFacts(agreement_authors={"review/p.yaml": (name_author(mail="who@x.example"),)}), None),
     ],
 )  # fmt: skip
 def test_an_entry_holds_for_this_change_and_from_the_partner_itself(
