@@ -160,8 +160,13 @@ class BranchMerger:
             return None
         return pipeline.check_loaded_project(loaded_project, self._version_cache)
 
-    def merge_states(self, ours: _MergeState, theirs: _MergeState) -> tuple[BranchMerge, _MergeState | None]:
-        """Merge what `theirs` stands for into `ours`; return what came out, and the merged state if there is one."""
+    def merge_states(
+        self, ours: _MergeState, theirs: _MergeState, *, is_checked: bool = True
+    ) -> tuple[BranchMerge, _MergeState | None]:
+        """Merge what `theirs` stands for into `ours`; return what came out, and the merged state if there is one.
+
+        Unless `is_checked` only conflicts of files are asked for: checking and comparing takes most of the time.
+        """
         branches, sides = (*ours.branches, *theirs.branches), (ours.branches, theirs.branches)
         tree_merge = self._merge_folder.merge_commits(ours.commit, theirs.commit)
         settled_contents, conflicts = {}, []
@@ -173,21 +178,29 @@ class BranchMerger:
         if any(conflict.problem for conflict in conflicts):
             return BranchMerge(branches, tuple(conflicts), sides=sides), None
         tree = self._merge_folder.replace_files(tree_merge.tree, settled_contents)
-        checked_project = self._check_commit(tree, " + ".join(branches))
+        checked_project = self._check_commit(tree, " + ".join(branches)) if is_checked else ours.checked_project
         joint_breaks, double_renames = self._judge_merge(ours, theirs, checked_project)
         if double_renames:
             return BranchMerge(branches, (*conflicts, *double_renames), sides=sides), None
         known_findings = ours.known_findings | theirs.known_findings
-        new_findings = tuple(
-            finding
-            for finding in (checked_project.findings if checked_project else ())
-            if identify_finding(finding) not in known_findings
-        )
+        findings = checked_project.findings if checked_project else ()
+        new_findings = tuple(each for each in findings if identify_finding(each) not in known_findings)
         branch_merge = BranchMerge(branches, tuple(conflicts), new_findings, checked_project, sides, joint_breaks)
         commit = self._merge_folder.commit_tree(tree, (ours.commit, theirs.commit))
         known_findings |= _identify_findings(checked_project)
         parts = (*(ours.parts or (ours,)), theirs)
         return branch_merge, _MergeState(branches, commit, known_findings, checked_project, parts)
+
+    def join_states(self, states: Sequence[_MergeState]) -> _MergeState | None:
+        """Merge states and check what comes out; None where they do not merge."""
+        joined: _MergeState | None = states[0]
+        for state in states[1:]:
+            joined = self.merge_states(joined, state, is_checked=False)[1] if joined else None
+        if joined is None or joined is states[0]:
+            return joined
+        checked_project = self._check_commit(joined.commit, " + ".join(joined.branches))
+        known_findings = joined.known_findings | _identify_findings(checked_project)
+        return replace(joined, checked_project=checked_project, known_findings=known_findings)
 
     def _judge_merge(
         self, ours: _MergeState, theirs: _MergeState, merged_project: CheckedProject | None
@@ -374,7 +387,21 @@ def _find_partners(
     if not line.parts:
         yield branch_merge
         return
-    pairs = [merger.merge_states(earlier, state)[0] for earlier in line.parts]
+    # Where files conflict a look at the files suffices.
+    is_checked = bool(branch_merge.findings)
+    pairs = [merger.merge_states(earlier, state, is_checked=is_checked)[0] for earlier in line.parts]
+    rest = [earlier for earlier, pair in zip(line.parts, pairs, strict=True) if not pair.is_blocked]
+    if branch_merge.is_blocked and len(rest) < len(pairs):
+        yield from (pair for pair in pairs if pair.is_blocked)
+        # The branch was not judged with those with which it does not conflict.
+        rest_line = merger.join_states(rest) if rest else None
+        rest_merge = merger.merge_states(rest_line, state)[0] if rest_line else None
+        if rest_line and rest_merge and rest_merge.has_news:
+            yield from _find_partners(merger, rest_line, state, rest_merge)
+        return
+    if branch_merge.is_blocked:
+        # Elements have two names, which no file says.
+        pairs = [merger.merge_states(earlier, state)[0] for earlier in line.parts]
     guilty_pairs = [pair for pair in pairs if pair.has_news]
     yield from guilty_pairs
     shown_conflicts = {conflict for pair in guilty_pairs for conflict in pair.conflicts}

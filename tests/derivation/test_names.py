@@ -50,7 +50,7 @@ def test_an_internal_entry_goes_where_its_message_belongs(derived: Derived) -> N
     subscribes: {t: {message: nav2_msgs/action/Wait}},
     calls: {u: {message: std_msgs/msg/Int8}, v: }}}"""
     architecture = derived(f"groups: {{g: {{components: {{c: }}}}}}\nnodes: {{n: {node}}}")
-    assert [(e.name[-1], e.use, e.flow, e.qos.profile, e.written) for e in architecture.endpoints] == [
+    assert [(e.label[-1], e.use, e.flow, e.qos.profile, e.written) for e in architecture.endpoints] == [
         ("p", "serves", "service", "default", True),
         ("q", "publishes", "topic", "sensor_data", True),
         ("t", "calls", "action", "default", True),

@@ -169,6 +169,19 @@ def test_a_branch_that_conflicts_is_still_merged_with_all_others(robot: Path) ->
     ]
 
 
+def test_what_a_branch_breaks_is_told_beside_what_it_conflicts_with(robot: Path) -> None:
+    branch(robot, "words", {"groups/norsk.yaml": ("Logs.", "Writes all down.")})
+    branch(robot, "other", {"groups/norsk.yaml": ("functionality: Sees.", "functionality: Sees far.")})
+    branch(robot, "reader", READS)
+    branch(robot, "both", UNITS | {"groups/norsk.yaml": ("functionality: Sees.", "functionality: Sees near.")})
+    assert [line for line in say(robot, "words", "other", "reader", "both") if not line.endswith(": merges")] == [
+        "words + other: git conflicts needlessly",
+        "other + both: conflicts",
+        "words + both: git conflicts needlessly",
+        "reader + both: first both, then reader, whose author has to look",
+    ]
+
+
 def test_a_project_that_forbids_nothing_is_told_all_the_same(robot: Path) -> None:
     repositories.commit(robot, {"archgen.yaml": FILES["archgen.yaml"].replace("meaning: error", "meaning: warning")})
     branch(robot, "reader", READS)

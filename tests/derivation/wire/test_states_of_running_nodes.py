@@ -109,7 +109,7 @@ def ask(tmp_path: Path) -> Callable[..., Any]:
 
     def run(program: str, words: list[str], *more: str, environment: Mapping[str, str] | None = None) -> Any:  # noqa: ANN401
         variables = ros_environment(71, tmp_path) | dict(environment or {})
-        command = (python, "-c", _START + program, json.dumps(words), *more)
+        command = (str(python), "-c", _START + program, json.dumps(words), *more)
         done = run_judge(*command, env=variables, statuses=(0, 1))
         return json.loads(done.stdout.strip().splitlines()[-1]) if done.returncode == 0 else None
 
@@ -240,8 +240,5 @@ print(json.dumps(bool(met)))
     environment = {"ROS_DOMAIN_ID": first}
     assert ask(program, [], reader, first, "meets", environment=environment)
     assert not ask(program, [], reader, second, "misses", environment=environment)
-    ends = [
-        Endpoint("n", use, "/x", "topic", None, None, domain=domain)
-        for use, domain in (("publishes", 1), ("subscribes", 2))
-    ]
+    ends = [Endpoint("n", "publishes", "/x", "topic", None, None, domain=domain) for domain in (1, 2)]
     assert domain_of(ends[0]) != domain_of(ends[1])
