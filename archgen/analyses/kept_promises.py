@@ -91,7 +91,7 @@ def find_broken_promises(architecture: Architecture, analysis: Analysis) -> Iter
     worst: dict[tuple[str, str, str], JudgedPromise] = {}
     for judged in judge_promises(architecture, analysis):
         key = judged.port, judged.leaf, judged.key
-        if judged.state == "broken" and (key not in worst or _rank_value(judged.bound) > _rank_value(worst[key].bound)):
+        if judged.state == "broken" and (key not in worst or rank_bound(judged.bound) > rank_bound(worst[key].bound)):
             worst[key] = judged
     yield from worst.values()
 
@@ -182,8 +182,9 @@ def _judge_promise(
         yield JudgedPromise(port, leaf, "max_age", promise.max_age, age, state, at["max_age"], arc)
 
 
-def _rank_value(value: TimingValue) -> tuple[bool, object]:
-    return (value.value is None, value.value or 0)
+def rank_bound(value: TimingValue) -> tuple[bool, Fraction]:
+    """Return the sort key of a bound: none at all is the longest."""
+    return value.value is None, value.value or Fraction(0)
 
 
 def _diagnose_broken(broken: JudgedPromise) -> Diagnostic:

@@ -11,6 +11,7 @@ from archgen.compare.key_phrases import name_key
 from archgen.compare.losses.loss_wording import tick_name
 from archgen.compare.losses.timing_causes import TimingCauses
 from archgen.compare.losses.versions_without import VersionsWithout, find_whole
+from archgen.compare.timing_pair import can_affect_timing
 from archgen.diagnostics.common_wording import join_words
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
@@ -56,7 +57,12 @@ class CauseSeparator:
         true; where neither, all that reach it. `own_indices` are the changes of what is asked.
         """
         reach = sorted({*self._causes.find_causes(activities), *own_indices})
-        worsening = sorted({*self._causes.all_worsening_changes(), *own_indices})
+        worsening = sorted({*self._causes.all_worsening_changes(), *own_indices}) or [
+            # Now and then less work makes a bound longer: then there is nothing else to blame.
+            index
+            for index, change in enumerate(self._context.changes)
+            if any(map(can_affect_timing, self._context.walk_change(change)))
+        ]
         reach = reach or worsening
         groups = self._group(worsening)
         if len(groups) > _MAX_CANDIDATES:

@@ -98,7 +98,7 @@ def take_back_figure(context: ChangeContext, architecture: Architecture, change:
     elements: Mapping[str, Any] = getattr(architecture, _SECTIONS.get(kind, ""), {})
     old_elements: Mapping[str, Any] = getattr(context.before, _SECTIONS.get(kind, ""), {})
     old_element = old_elements.get(context.old_id(kind, change.element_id))
-    name = key.partition(".")[0]
+    name = key.removeprefix("latency.").partition(".")[0]
     if change.element_id not in elements or not hasattr(old_element, name):
         return None
     value = getattr(old_element, name)
