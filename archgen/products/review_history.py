@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import posixpath
 from collections.abc import Mapping
 from functools import cache
 
 from archgen import git, pipeline, project
+from archgen.compare.breaking_changes import stricter_policy
 from archgen.compare.change_hashes import agreement_key, hash_change
 from archgen.compare.change_listing import find_changes
 from archgen.compare.match_elements import match_elements
@@ -14,7 +16,7 @@ from archgen.diagnostics.diagnostic import Severity
 from archgen.frozen import replace
 from archgen.git.commit_authors import find_last_commit, find_own_mail, list_author_mails
 from archgen.git.project_revision import differs_from_head
-from archgen.model.review_settings import ReviewSettings, agreement_file
+from archgen.model.review_settings import agreement_file
 from archgen.pipeline import CheckedProject
 from archgen.products.comparison_input import make_comparison_input
 
@@ -23,9 +25,9 @@ def find_review_facts(
     before: CheckedProject, after: CheckedProject, base_commit: str, forge_facts: ReviewFacts
 ) -> ReviewFacts:
     """Return what is known of who changed a project: what the forge tells, and git of the commits since `base_commit`."""
-    old_review, new_review = before.architecture.review, after.architecture.review
-    is_asked = _asks_for_authors(old_review) or _asks_for_authors(new_review)
-    if not base_commit or not (is_asked or new_review.accepted):
+    reviews = before.architecture.review, after.architecture.review
+    is_asked = stricter_policy(*reviews).foreign is not Severity.OFF
+    if not base_commit or not (is_asked or reviews[1].accepted):
         return forge_facts
     try:
         repository = git.find_repository(after.root)
@@ -40,8 +42,8 @@ def find_review_facts(
             mails |= {find_own_mail(repository)}
         return tuple(name_author(mail=mail) for mail in sorted(mails) if mail)
 
-    files = {agreement_file(partner): "" for partner in before.architecture.partners}
-    files = {file: "/".join(filter(None, (repository.prefix, file))) for file in files}
+    own_files = map(agreement_file, before.architecture.partners)
+    files = {file: posixpath.join(repository.prefix, file) for file in own_files}
     present_files = tuple(file for file in after.yaml_files if file in files)
 
     @cache
@@ -57,10 +59,6 @@ def find_review_facts(
         agreement_authors={file: list_authors(files[file], (file,)) for file in present_files},
         agreed_hashes=hash_agreed_changes,
     )
-
-
-def _asks_for_authors(review: ReviewSettings) -> bool:
-    return review.breaking is not None and review.breaking.foreign is not Severity.OFF
 
 
 def _hash_changes(before: CheckedProject, after: CheckedProject, commit: str) -> Mapping[tuple[str, str], str]:
