@@ -237,7 +237,7 @@ VALUE_READERS: Mapping[str, ValueReader | None] = {
     "frequency": partial(mapping_values.get_quantity, dimension="frequency"),
     "size": partial(mapping_values.get_quantity, dimension="size"),
     **dict.fromkeys(("executor_order", "resource_order"), mapping_values.get_order),
-    **dict.fromkeys(("urls", "remaps", "start_environment"), mapping_values.get_text_mapping),
+    **dict.fromkeys(("urls", "remaps", "start_environment", "inner_nodes"), mapping_values.get_text_mapping),
     **dict.fromkeys(("project.middleware", "link.protocol"), mapping_values.get_medium),
     **dict.fromkeys(("node.namespace", "container.namespace"), mapping_values.get_absolute_name),
     "percentage": _read_percentage,

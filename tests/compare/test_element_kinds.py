@@ -161,7 +161,7 @@ NOT_ON_CARDS = {
     "component": "autoconnect components containers description frames from layout node open performance same_as urls",
     "output": "external from to",
     "input": "external from optional",
-    "node": "arguments calls description internal language observed parameter_commands parameter_files plugin publishes remaps "
+    "node": "arguments calls description inner_nodes internal language observed own_name parameter_commands parameter_files plugin publishes remaps "
     "serves subscribes tags urls",
     "type": "constants feedback request response status",
     "host": "environment tags",
@@ -248,6 +248,8 @@ nodes:
     description: D
     owner: [certh, sssa]
     name: m
+    own_name: m_node
+    inner_nodes: {costs: costs/costs}
     namespace: /ns
     kind: [composable, driver]
     package: p
@@ -272,7 +274,7 @@ nodes:
     urls: {a: "https://a.eu"}
     properties: {q: 1}
     hints: {x: {a: 1}}
-    publishes: {o: {topic: /o, own_name: w}}
+    publishes: {o: {topic: /o, own_name: w, named_by: w_topic, when: {publish_w: true}}}
   m: {implements: b, observed: true}
   r: [whole, copy]
   s: {timing: {rate: 1 Hz}}

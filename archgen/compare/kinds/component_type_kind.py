@@ -29,7 +29,8 @@ OWN_KEYS = frozenset({"title", "is", *_INSTANCE_KEYS})
 _WRITTEN_KEYS = frozenset({"functionality", "description"})
 """Keys that are read off the type itself."""
 _NODE_KEYS = frozenset(
-    {"kind", "package", "executable", "plugin", "language", "command", "arguments", "remaps.", "start.", "parameters."}
+    {"kind", "package", "executable", "own_name", "plugin", "language", "command", "arguments", "inner_nodes."}
+    | {"remaps.", "start.", "parameters."}
 )
 """Keys of a node that a type says; the others depend on the instance."""
 _PART_KEYS = tuple(key for key in COMPONENT.keys if key.name not in _INSTANCE_KEYS)

@@ -147,12 +147,13 @@ class SliceMaker:
 
     def _write_names(self, node: LaunchedNode, element_id: str) -> dict[str, str]:
         names: dict[str, str] = {}
-        if node.name and node.name != element_id:
-            fault = find_node_name_fault(node.name)
+        name = node.name or node.program_name
+        if name and name != element_id:
+            fault = find_node_name_fault(name)
             if fault:
-                self._run.add_note(node.word, f"`{node.name}` is no name of a node: {fault}", node.span)
+                self._run.add_note(node.word, f"`{name}` is no name of a node: {fault}", node.span)
             else:
-                names["name"] = node.name
+                names["name"] = name
         if node.namespace.strip("/"):
             fault = find_name_fault(node.namespace)
             if fault:
