@@ -54,5 +54,5 @@ def write_noise_line(noise: FigureNoise) -> Iterator[FigureLine]:
         yield FigureLine(
             "changed",
             f"{count_noun(len(moves), 'figure')} moved by less than {threshold} and changed no verdict; "
-            f"the most {which}, by {share}",
+            f"the most: {which}, by {share}",
         )
