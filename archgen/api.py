@@ -16,6 +16,7 @@ from pathlib import Path
 
 from archgen import pipeline
 from archgen.analyses import size_counts as size_analysis
+from archgen.checking import code_ownership
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
@@ -23,7 +24,6 @@ from archgen.model.selector_evaluation import Selection
 from archgen.pipeline import CheckedProject
 from archgen.products import (
     agreement_documents,
-    code_ownership,
     project_outputs,
     project_views,
     signed_agreements,

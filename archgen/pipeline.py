@@ -16,6 +16,7 @@ from pathlib import Path
 from archgen import project
 from archgen.checking.all_rules import SHIPPED_RULES, index_all_rules
 from archgen.checking.checked_project import CheckedProject
+from archgen.checking.codeowners_age import add_codeowners_age
 from archgen.checking.merged_project import merge_project
 from archgen.checking.pass_judging import read_origins, transform_project
 from archgen.checking.variant_judging import (
@@ -137,4 +138,4 @@ def judge_project(
     checked_project = judge_in_variants(
         merge_project(loaded_project), analysis_memory or AnalysisMemory(), variant_names
     )
-    return read_origins(checked_project)
+    return add_codeowners_age(read_origins(checked_project))

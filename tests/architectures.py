@@ -336,7 +336,7 @@ def topics(endpoints: Iterable[Endpoint]) -> dict[str, Topic]:
     """Collect the topics that the endpoints use."""
     found: dict[str, list[Endpoint]] = {}
     for endpoint in endpoints:
-        found.setdefault(endpoint.name, []).append(endpoint)
+        found.setdefault(endpoint.label, []).append(endpoint)
     return {
         name: Topic(
             name,

@@ -14,7 +14,15 @@ KILTED_FOLDER = ROOT / ".make" / "ros_kilted"
 _WHEELS = tuple(
     f"ros-kilted-{name}"
     for name in (
-        *("rclpy", "rmw-fastrtps-cpp", "common-interfaces", "ament-cmake", "ament-cmake-ros", "ament-cmake-ros-core"),
+        *(
+            "rclpy",
+            "rmw-fastrtps-cpp",
+            "common-interfaces",
+            "test-msgs",
+            "ament-cmake",
+            "ament-cmake-ros",
+            "ament-cmake-ros-core",
+        ),
         *("ament-cmake-include-directories", "ament-cmake-gmock", "ament-cmake-gtest", "ament-cmake-pytest"),
         *("ament-package", "rosidl-default-generators", "rosidl-core-generators"),
     )

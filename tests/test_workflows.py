@@ -95,6 +95,27 @@ def defaults(step: dict[str, Any], **given: str) -> dict[str, str]:
     return {key: inputs[re.fullmatch(r"\$\{\{ inputs\.(\w+) \}\}", value)[1]] for key, value in step["env"].items()}  # type: ignore[index]
 
 
+def test_what_the_cache_keeps_is_named_by_what_is_installed(tmp_path: Path, runner: Path) -> None:
+    steps = read("action.yml")["runs"]["steps"]
+    (version,) = (step for step in steps if step.get("id") == "version")
+    source = tmp_path / "source"
+    (source / ".git").mkdir(parents=True)
+    (source / "a b.py").write_text("1\n")
+    names = []
+    for file, text in ((".git/HEAD", "x"), (".git/HEAD", "y"), ("a b.py", "2\n"), ("c.py", "2\n")):
+        (source / file).write_text(text)
+        names.append(run(version, tmp_path, runner, GITHUB_ACTION_PATH=str(source))["digest"])
+    assert names[0] == names[1]
+    assert len({*names}) == 3
+    # Kept before anything of a branch is read, and only where it was made anew.
+    order = [step.get("uses", step.get("name", "")).split("@")[0] for step in steps]
+    save = order.index("actions/cache/save")
+    assert order.index("actions/cache/restore") < order.index("Install archgen") < save < order.index("Review")
+    (restore,) = (step for step in steps if step.get("id") == "cache")
+    assert "steps.python.outputs.python-version" in restore["with"]["key"]
+    assert steps[save]["with"]["path"] == restore["with"]["path"]
+
+
 def test_the_action_reviews_a_pull_request(tmp_path: Path, runner: Path) -> None:
     folder = repositories.repository(tmp_path / "work", {"robot/archgen.yaml": ROBOT})
     repositories.git(folder, "checkout", "-q", "-b", "stranger")
@@ -125,13 +146,54 @@ def test_the_action_fails_with_errors_after_it_has_made_everything(tmp_path: Pat
     assert "::error" in (runner / "said").read_text()
 
 
-def test_the_hook_of_pre_commit_runs_a_verb() -> None:
-    (hook,) = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text(encoding="utf-8"))
-    program, verb = hook["entry"].split()
-    assert (program, hook["language"], hook["pass_filenames"]) == ("archgen", "python", False)
-    assert verb == "check"
+def run_hook(hook: dict[str, Any], folder: Path, runner: Path) -> subprocess.CompletedProcess[str]:
+    """Run a hook as pre-commit does: its words, without a shell, at the repository's top."""
+    program, *words = hook["entry"].split()
+    return subprocess.run(  # noqa: S603 - what stands in our own file
+        [runner / "archgen/bin" / program, *words], cwd=folder, capture_output=True, text=True, check=False
+    )
+
+
+def test_the_hook_of_pre_commit_shows_only_what_stops_the_commit(tmp_path: Path, runner: Path) -> None:
+    hook, _ = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text(encoding="utf-8"))
+    assert (hook["language"], hook["stages"], hook["pass_filenames"]) == ("python", ["pre-commit"], False)
     assert re.search(hook["files"], "groups/sensing.yaml")
     assert not re.search(hook["files"], "firmware/main.c")
+    unserved = f"{ROBOT}requirements: {{R-1: It works}}\n"
+    text = f"{unserved}rules: {{uncovered-requirement: error}}\n"
+    folder = repositories.repository(tmp_path / "work", {"archgen.yaml": text})
+    done = run_hook(hook, folder, runner)
+    assert done.returncode == 1
+    assert [line for line in done.stdout.splitlines() if re.match(r"(error|warning|note)\[", line)] == [
+        "error[uncovered-requirement]: no component and no chain serves the requirement"
+    ]
+    assert done.stderr == "not shown: 2 warnings, 2 notes\n"
+    (folder / "archgen.yaml").write_text(unserved)
+    done = run_hook(hook, folder, runner)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def test_the_hook_before_a_push_holds_it_against_the_main_line_of_the_remote(tmp_path: Path, runner: Path) -> None:
+    _, hook = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text(encoding="utf-8"))
+    assert (hook["stages"], hook["always_run"], hook["pass_filenames"]) == (["pre-push"], True, False)
+    strict = f"{ROBOT}review: {{breaking: error}}\n"
+    folder = repositories.repository(tmp_path / "work", {"README.md": "x\n"})
+    done = run_hook(hook, folder, runner)
+    assert (done.returncode, "knows no main line of `origin`" in done.stderr) == (0, True)
+    repositories.git(tmp_path, "clone", "-q", "--bare", str(folder), "remote.git")
+    repositories.git(folder, "remote", "add", "origin", "../remote.git")
+    repositories.git(folder, "fetch", "-q")
+    repositories.commit(folder, {"archgen.yaml": strict})
+    done = run_hook(hook, folder, runner)
+    assert (done.returncode, "`origin` is without this project" in done.stderr) == (0, True)
+    repositories.git(folder, "push", "-q", "origin", "main")
+    # Also on the main line itself, and of what is committed, whatever lies in the working tree.
+    repositories.commit(
+        folder, {"archgen.yaml": strict.replace("outputs: {image: sensor_msgs/msg/Image}", "outputs: {}")}
+    )
+    (folder / "archgen.yaml").write_text(strict)
+    done = run_hook(hook, folder, runner)
+    assert (done.returncode, "breaks Q (wire)" in done.stdout) == (1, True)
 
 
 def test_gitlab_runs_the_same_commands(tmp_path: Path, runner: Path) -> None:
@@ -259,7 +321,9 @@ def test_the_examples_of_the_manual_name_inputs_and_variables_that_exist() -> No
     examples = [yaml.safe_load(text) for text in re.findall(r"```yaml\n(.*?)```", manual, re.DOTALL)]
     jobs = [job for example in examples if "jobs" in example for job in example["jobs"].values()]
     steps = [step for job in jobs for step in job["steps"] if step.get("uses", "").startswith(REPOSITORY)]
-    assert len(steps) == 5, "a review and a comment twice, and the comment after the review of a fork"
+    assert len(steps) == 7, (
+        "a review and a comment twice, the comment after the review of a fork, and both for open requests"
+    )
     for step in steps:
         action = read("comment/action.yml" if "/comment@" in step["uses"] else "action.yml")
         assert step.get("with", {}).keys() <= action["inputs"].keys()

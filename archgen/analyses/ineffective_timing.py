@@ -63,7 +63,7 @@ def _port_uses(architecture: Architecture) -> Mapping[tuple[str, str], set[str]]
     uses = defaultdict[tuple[str, str], set[str]](set)
     for endpoint in architecture.endpoints:
         # Without a message nobody knows yet whether it will be a topic or a service: no `calls` is idle then.
-        uses[endpoint.node, endpoint.port or endpoint.name].add(endpoint.use if endpoint.message else "unknown")
+        uses[endpoint.node, endpoint.port or endpoint.label].add(endpoint.use if endpoint.message else "unknown")
     return uses
 
 

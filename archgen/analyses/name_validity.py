@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
+from archgen.derivation.wire.name_expansion import expand_name, find_name_fault, find_node_name_fault
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.model.port_media import uses_ros
@@ -16,57 +16,6 @@ if TYPE_CHECKING:
     from archgen.model.architecture import Architecture
     from archgen.model.deployment import Container
     from archgen.model.node import Node, PortUse
-
-_FORBIDDEN_CHARACTER = re.compile(r"[^A-Za-z0-9_]")
-_SUBSTITUTION = re.compile(r"\{(?:node|ns|namespace)\}")
-
-
-def find_name_fault(text: str, *, ros_1: bool = False) -> str | None:
-    """Return what is wrong with the name of a topic, service or namespace, or None.
-
-    The rules are those of https://design.ros2.org/articles/topic_and_service_names.html as far as ROS 2 enforces them, and
-    of http://wiki.ros.org/Names for ROS 1, where only the first letter of the whole name must not be a digit.
-    """
-    if not text:
-        return "it is empty"
-    remaining_name = text
-    if text.startswith("~"):
-        remaining_name = text[1:]
-        # In ROS 1 `~scan` is the private name that launch files and nodes write.
-        if remaining_name and not remaining_name.startswith("/") and not ros_1:
-            return "`~` is followed by `/`"
-    if remaining_name == "/" or not remaining_name:
-        return None
-    if remaining_name.endswith("/"):
-        return "it ends with `/`"
-    # Substitutions such as `{node}` are replaced by a valid name; other braces remain and are reported.
-    tokens = _SUBSTITUTION.sub("x", remaining_name.removeprefix("/")).split("/")
-    for position, token in enumerate(tokens):
-        fault = _find_token_fault(
-            token, may_start_with_digit=ros_1 and (position > 0 or remaining_name.startswith("/"))
-        )
-        if fault:
-            return fault
-    return None
-
-
-def find_node_name_fault(name: str) -> str | None:
-    """Return what is wrong with a node's name, or None."""
-    if "/" in name:
-        return "it holds `/`: what stands before the name belongs into `namespace`"
-    return _find_token_fault(name, may_start_with_digit=False) if name else "it is empty"
-
-
-def _find_token_fault(token: str, *, may_start_with_digit: bool) -> str | None:
-    if not token:
-        return "two `/` follow one another"
-    forbidden = _FORBIDDEN_CHARACTER.search(token)
-    if forbidden:
-        character = "a blank" if forbidden[0].isspace() else f"`{forbidden[0]}`"
-        return f"it holds {character}, and only letters (a to z), digits and `_` are allowed"
-    if token[0].isdigit() and not may_start_with_digit:
-        return f"`{token}` begins with a digit"
-    return None
 
 
 def invalid_ros_name(architecture: Architecture) -> Iterator[Diagnostic]:
@@ -91,8 +40,6 @@ def invalid_ros_name(architecture: Architecture) -> Iterator[Diagnostic]:
             if use.own_name is not None:
                 names.append((use.own_name, use.at))
             yield from _find_invalid_names(node, kind, names, ros_1=ros_1)
-        remapped = [(name, node.at) for pair in node.remaps.items() for name in pair]
-        yield from _find_invalid_names(node, "a topic in `remaps`", remapped, ros_1=ros_1)
     for container in architecture.containers.values():
         yield from _judge_container(container, ros_1=ros_1)
 
@@ -102,6 +49,8 @@ def _find_invalid_names(
 ) -> Iterator[Diagnostic]:
     for name, span in names:
         fault = "it is only a `/`" if name == "/" else find_name_fault(name, ros_1=ros_1)
+        if fault is None and "{" in name and expand_name(name, node.namespace, node.name, ros_1=ros_1) is None:
+            fault = f"in the namespace `{node.namespace}` two `/` follow one another"
         if fault:
             yield _report_invalid_name(node, kind, name, span, fault)
 

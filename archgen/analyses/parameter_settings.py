@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from archgen.derivation.wire.running_state import CLOCK_PARAMETER
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics.source_span import NO_SPAN
 from archgen.diagnostics.suggestions import did_you_mean
+from archgen.model.parameter import Parameter
 from archgen.model.parameter_values import (
     canonical_name,
     find_declarations,
@@ -25,10 +28,12 @@ if TYPE_CHECKING:
     from archgen.model.architecture import Architecture
     from archgen.model.component import Component
     from archgen.model.node import Node
-    from archgen.model.parameter import Parameter, ParameterValue
+    from archgen.model.parameter import ParameterValue
 
 _GUESS_BUDGET = 1_000_000
 """Names that unknown ones are compared with, in all: 20,000 unknown ones among 50,000 would take minutes."""
+_STANDARD_PARAMETERS = {CLOCK_PARAMETER: Parameter(CLOCK_PARAMETER, type="boolean")}
+"""What each node of ROS 2 declares by itself; with a value of another type it ends as it starts."""
 _MAX_SHOWN = 6
 """Parameters that one finding names."""
 
@@ -131,9 +136,7 @@ def wrong_parameter(architecture: Architecture) -> Iterator[Diagnostic]:
     seen_places: set[tuple[str, Span]] = set()
     ros_1 = is_ros_1(architecture.distro)
     for node in architecture.nodes.values():
-        declarations = find_declarations(architecture, node)
-        if not declarations:
-            continue
+        declarations = {**({} if ros_1 else _STANDARD_PARAMETERS), **find_declarations(architecture, node)}
         for value in (*architecture.ros_parameters, *node.file_values, *node.own_values):
             name = canonical_name(value.name, ros_1=ros_1)
             if name not in declarations or (name, value.at) in seen_places:
@@ -147,7 +150,7 @@ def _judge_value(parameter: Parameter, value: object, span: Span, element: str) 
     fault = find_value_fault(parameter, value)
     if fault is None:
         return
-    labels = () if span == parameter.value_at else (Label(parameter.at, "declared here"),)
+    labels = () if parameter.at == NO_SPAN or span == parameter.value_at else (Label(parameter.at, "declared here"),)
     is_inferred = parameter.type is None and " is no " in fault
     help_line = "write `type` at its declaration, if that of its value is not meant" if is_inferred else None
     yield Diagnostic(

@@ -88,12 +88,20 @@ def _report_qos_conflicts(
     architecture: Architecture, topic: Topic, writer: Endpoint, reader: Endpoint
 ) -> Iterator[Diagnostic]:
     """Report all conflicts between a publisher and a subscriber in one diagnostic."""
-    conflicts = tuple(find_qos_conflicts(writer.qos, reader.qos))
+    verdicts = [
+        tuple(find_qos_conflicts(offered, requested))
+        for offered in _list_qos(writer)
+        for requested in _list_qos(reader)
+    ]
+    conflicts = next(filter(None, verdicts), ())
     if not conflicts:
         return
     requests = " and ".join(conflict.requested for conflict in conflicts)
     offers = " and ".join(conflict.offered for conflict in conflicts)
     assumption = next(filter(None, map(_describe_assumption, (writer, reader))), "")
+    if not all(verdicts):
+        unsure = writer if writer.qos_if_ignored else reader
+        assumption = f" (where `{unsure.node}` {'obeys' if verdicts[0] else 'ignores'} the overrides that it is given)"
     yield Diagnostic(
         "incompatible-qos",
         f"`{reader.node}` receives nothing from `{writer.node}` on `{topic.name}`: it asks for {requests}, and is offered {offers}{assumption}",
@@ -103,6 +111,11 @@ def _report_qos_conflicts(
         help=f"needed: {'; '.join(conflict.remedy for conflict in conflicts)}",
         element=reader.node,
     )
+
+
+def _list_qos(endpoint: Endpoint) -> tuple[Qos, ...]:
+    """Return what one side may have: both where it is unknown whether its program takes overrides."""
+    return (endpoint.qos, endpoint.qos_if_ignored) if endpoint.qos_if_ignored else (endpoint.qos,)
 
 
 def _describe_assumption(endpoint: Endpoint) -> str:

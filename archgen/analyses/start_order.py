@@ -75,7 +75,7 @@ def unmet_ready(architecture: Architecture) -> Iterator[Diagnostic]:
     for node in architecture.nodes.values():
         if node.start is None or (node.start.ready.topic is None and node.start.ready.service is None):
             continue
-        ready = resolve_conditions(node.start.ready, node)
+        ready = resolve_conditions(node.start.ready, node, architecture.distro)
         for key, name in (("topic", ready.topic), ("service", ready.service)):
             if name is None or _is_always_there(architecture, key, name):
                 continue
@@ -112,7 +112,8 @@ def _is_of_key(topic: Topic, key: str) -> bool:
 
 
 def _diagnose_no_giver(architecture: Architecture, node: Node, key: str, name: str) -> Diagnostic:
-    known_names = [topic.name for topic in architecture.topics.values() if topic.writers and _is_of_key(topic, key)]
+    topics = [topic for topic in architecture.topics.values() if topic.is_known and _is_of_key(topic, key)]
+    known_names = [topic.name for topic in topics if topic.writers]
     verb = "publishes" if key == "topic" else "offers"
     return Diagnostic(
         "unmet-ready",

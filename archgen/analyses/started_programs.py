@@ -6,6 +6,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from archgen.bringup.start_plan import describes_start
+from archgen.derivation.wire.running_state import ANY_NODE, RunningStates
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.model.start_up import NO_START
 
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
 
     from archgen.diagnostics.source_span import Span
     from archgen.model.architecture import Architecture
-    from archgen.model.node import Node
+    from archgen.model.node import Endpoint, Node
 
 
 def shared_port(architecture: Architecture) -> Iterator[Diagnostic]:
@@ -42,9 +43,40 @@ def _find_port_span(node: Node) -> Span:
     return places.get("port", node.at)
 
 
-def unactivated_node(architecture: Architecture) -> Iterator[Diagnostic]:
-    """A lifecycle node is started, and nobody says who activates it."""
+def silent_node(architecture: Architecture) -> Iterator[Diagnostic]:
+    """A lifecycle node is never activated, or stays short of it while others wait for what it sends."""
     if not describes_start(architecture):
+        return
+    yield from _find_unactivated(architecture)
+    on_chains = {point.id for chain in architecture.chains.values() for point in chain.through}
+    silent: dict[str, list[tuple[Endpoint, Endpoint]]] = defaultdict(list)
+    for topic in architecture.topics.values():
+        for writer in topic.writers:
+            if writer.runs == "inactive":
+                silent[writer.node] += (
+                    (writer, each) for each in topic.readers if architecture.nodes[each.node].written
+                )
+    for node_id, ends in silent.items():
+        writer, reader = ends[0]
+        is_on_chain = any(not on_chains.isdisjoint((end.node, end.component, writer.port)) for writer, end in ends)
+        names = list(dict.fromkeys(f"`{end.name}`" for end, _ in ends))
+        more = f" and {len(names) - 1} more" if len(names) > 1 else ""
+        yield Diagnostic(
+            "silent-node",
+            f"`{node_id}` is left `{(architecture.nodes[node_id].start or NO_START).state}`: "
+            f"`{reader.node}` waits for {names[0]}{more} in vain",
+            writer.evidence["runs"].at,
+            severity=Severity.ERROR if is_on_chain else None,
+            labels=(Label(reader.at, "read here"),) if reader.at.file else (),
+            help="write `start: {state: active}`, or `start: {by: NODE}` with the node that activates it",
+            element=node_id,
+        )
+
+
+def _find_unactivated(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Yield the lifecycle nodes that nobody activates; none where a manager activates nodes that are not known."""
+    managed_names = RunningStates(architecture).managers
+    if ANY_NODE in managed_names:
         return
     managers: dict[str, list[str]] = defaultdict(list)
     for node in architecture.nodes.values():
@@ -52,10 +84,11 @@ def unactivated_node(architecture: Architecture) -> Iterator[Diagnostic]:
             managers[node.start.by.id].append(node.id)
     usual = max(managers, key=lambda name: len(managers[name]), default=None)
     for node in architecture.nodes.values():
-        if "lifecycle" in node.kinds and (node.start or NO_START).wanted_state is None:
+        is_left = (node.start or NO_START).wanted_state is None and node.full_name not in managed_names
+        if "lifecycle" in node.kinds and is_left:
             by_help = f"`start: {{by: {usual}}}`" if usual else "`start: {by: NODE}` with the node that manages it"
             yield Diagnostic(
-                "unactivated-node",
+                "silent-node",
                 f"nobody activates the lifecycle node `{node.id}`",
                 node.kind_at,
                 help=f"write `start: {{state: active}}`, or {by_help}",
@@ -83,6 +116,6 @@ def unstarted_program(architecture: Architecture) -> Iterator[Diagnostic]:
 
 RULES = (
     (shared_port, Severity.WARNING),
-    (unactivated_node, Severity.WARNING),
+    (silent_node, Severity.WARNING),
     (unstarted_program, Severity.WARNING),
 )

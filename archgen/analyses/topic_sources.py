@@ -35,6 +35,8 @@ class _TopicUsers:
         self.readers: list[Endpoint] = []
         shared_topics = {(topic.name, topic.flow) for topic in architecture.topics.values() if topic.shared}
         for endpoint in architecture.endpoints:
+            if endpoint.name is None:
+                continue
             key = (endpoint.name, endpoint.flow)
             if key in shared_topics or endpoint.name in architecture.shared_topics:
                 continue
@@ -52,8 +54,14 @@ class _TopicUsers:
         for writers in self.writers.values():
             for writer in writers:
                 if writer.port:
-                    topics_by_output[writer.port].add(writer.name)
+                    topics_by_output[writer.port].add(writer.label)
         return topics_by_output
+
+    @cached_property
+    def left_names(self) -> frozenset[tuple[str | None, str | None]]:
+        """The names that rules took outputs away from, each behind the output."""
+        writers = (each for named in self.writers.values() for each in named)
+        return frozenset((each.port, each.program_name) for each in writers if each.is_moved)
 
     @cached_property
     def outputs_by_component(self) -> Mapping[str, set[str]]:
@@ -78,22 +86,22 @@ def unnamed_source(architecture: Architecture) -> Iterator[Diagnostic]:
     # Several nodes and ports of a component may read one topic: one finding for each component and topic.
     reported_pairs = set[tuple[str, str]]()
     for reader in topic_users.readers:
-        if reader.port is None or reader.component is None or (reader.component, reader.name) in reported_pairs:
+        if reader.port is None or reader.component is None or (reader.component, reader.label) in reported_pairs:
             continue
         extra_writers = [
             writer
-            for writer in topic_users.writers.get((reader.name, reader.flow), ())
+            for writer in topic_users.writers.get((reader.label, reader.flow), ())
             if writer.port
             and writer.component != reader.component
             and writer.port not in topic_users.outputs_by_component[reader.component]
             and writer.port not in architecture.suspected_ids
         ]
         if extra_writers:
-            reported_pairs.add((reader.component, reader.name))
+            reported_pairs.add((reader.component, reader.label))
             outputs = list(dict.fromkeys(f"`{writer.port}`" for writer in extra_writers))
             yield Diagnostic(
                 "unnamed-source",
-                f"`{reader.name}` also brings {' and '.join(outputs)}, which no input of `{reader.component}` names",
+                f"`{reader.label}` also brings {' and '.join(outputs)}, which no input of `{reader.component}` names",
                 _endpoint_span(architecture, reader),
                 labels=tuple(
                     Label(_endpoint_span(architecture, writer), "published here") for writer in extra_writers[:3]
@@ -120,23 +128,23 @@ def unaccounted_topic(architecture: Architecture) -> Iterator[Diagnostic]:
 
 def _judge_internal_reader(architecture: Architecture, topic_users: _TopicUsers, reader: Endpoint) -> Diagnostic | None:
     """Return a finding if an internal topic or service is not provided by a node of the reader's own component."""
-    writers = topic_users.writers.get((reader.name, reader.flow), [])
+    writers = topic_users.writers.get((reader.label, reader.flow), [])
     own_components = set(architecture.nodes[reader.node].implements)
     foreign_writers = [w for w in writers if own_components.isdisjoint(architecture.nodes[w.node].implements)]
     flow_noun = "topic" if reader.flow == "topic" else reader.flow
     if foreign_writers:
         foreign_writer = foreign_writers[0]
-        message = f"the internal {flow_noun} `{reader.name}` comes from `{foreign_writer.node}`, which is no node of `{min(own_components)}`"
+        message = f"the internal {flow_noun} `{reader.label}` comes from `{foreign_writer.node}`, which is no node of `{min(own_components)}`"
         cure = (
             f"name `{foreign_writer.port}` in an input"
             if foreign_writer.port
             else "make it an output there and an input here"
         )
         return _report_unaccounted(architecture, reader, message, cure, foreign_writers)
-    if writers or (reader.flow == "service" and _STANDARD_SERVICES.fullmatch(reader.name)):
+    if writers or (reader.flow == "service" and _STANDARD_SERVICES.fullmatch(reader.label)):
         return None
     verb = "publishes" if reader.flow == "topic" else "serves"
-    message = f"`{reader.node}` uses the internal {flow_noun} `{reader.name}`, and no node of its component {verb} it"
+    message = f"`{reader.node}` uses the internal {flow_noun} `{reader.label}`, and no node of its component {verb} it"
     return _report_unaccounted(
         architecture, reader, message, "what comes from another component or from outside is an input", []
     )
@@ -149,17 +157,19 @@ def _judge_written_topic(architecture: Architecture, topic_users: _TopicUsers, r
     expected_names = sorted(
         {name for output in topic_users.outputs_by_input[reader.port] for name in topic_users.topics_by_output[output]}
     )
-    writers = topic_users.writers.get((reader.name, reader.flow), [])
-    if not expected_names or reader.name in expected_names or any(w.port for w in writers):
+    writers = topic_users.writers.get((reader.label, reader.flow), [])
+    if not expected_names or reader.label in expected_names or any(w.port for w in writers):
         return None  # nothing to compare with, correct, or another output's topic, which `unnamed-source` reports
     source_ids = {
         name for output in topic_users.outputs_by_input[reader.port] for name in (output, output.rpartition(".")[0])
     }
+    if any((output, reader.name) in topic_users.left_names for output in topic_users.outputs_by_input[reader.port]):
+        return None  # a rule took the source away from there: `remapped-away` tells it
     if not architecture.suspected_ids.isdisjoint(source_ids):
         return None  # the node of a source names its topic in an entry that could not be resolved: reported already
     entry = architecture.inputs[reader.port]
     expected_list = " and ".join(f"`{name}`" for name in expected_names)
-    message = f"no source of `{entry.name}` publishes on `{reader.name}`: they use {expected_list}"
+    message = f"no source of `{entry.name}` publishes on `{reader.label}`: they use {expected_list}"
     cure = f"write `{expected_names[0]}`, or leave the topic out" if len(expected_names) == 1 else "leave the topic out"
     return _report_unaccounted(architecture, reader, message, cure, writers)
 

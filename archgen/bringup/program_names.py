@@ -7,29 +7,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from archgen.derivation.ros_names import resolve_ros_name
+from archgen.derivation.wire.remap_rules import ACTION_PARTS, NodeNames, list_written_remaps
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.code_names import make_camel_name, make_identifier_in, make_ros_name, make_snake_name
 from archgen.model.node import Endpoint, Node
 
-ACTION_PARTS = {
-    1: ("/goal", "/cancel", "/status", "/feedback", "/result"),
-    2: ("/_action/send_goal", "/_action/cancel_goal", "/_action/get_result", "/_action/feedback", "/_action/status"),
-}
-"""What an action consists of, as ends of its name, by generation of ROS: a new name for the action alone reaches none."""
-
-
-def is_generated(node: Node) -> bool:
-    """Whether generators make the program of a node: nobody says that it exists, and nothing else starts it."""
-    return node.status in {None, "planned"} and not (node.is_program or node.command)
-
 
 def list_generated_nodes(architecture: Architecture) -> list[Node]:
     """Return the nodes whose programs generators make: none that exists already, since another node says so."""
     nodes = architecture.nodes.values()
-    made_programs = {(each.package, each.executable) for each in nodes if not is_generated(each) and each.executable}
-    return [each for each in nodes if is_generated(each) and (each.package, each.executable) not in made_programs]
+    made_programs = {(each.package, each.executable) for each in nodes if not each.is_generated and each.executable}
+    return [each for each in nodes if each.is_generated and (each.package, each.executable) not in made_programs]
 
 
 def name_package(architecture: Architecture, node: Node) -> str:
@@ -109,11 +98,11 @@ def name_endpoints(
     words_by_place: dict[tuple[str, str, str], set[frozenset[str]]] = {}
     for ports in ports_of_nodes:
         for place, carried in ports.items():
-            words_by_place.setdefault(place, set()).add(frozenset(_tell_apart([each.name for each in carried])))
+            words_by_place.setdefault(place, set()).add(frozenset(_tell_apart([each.label for each in carried])))
     for ports in ports_of_nodes:
         for (use, flow, name), carried in ports.items():
-            in_order = sorted(carried, key=lambda each: each.name)
-            words = _tell_apart([each.name for each in in_order])
+            in_order = sorted(carried, key=lambda each: each.label)
+            words = _tell_apart([each.label for each in in_order])
             # Nodes of one program on different topics share its methods: these are counted by the topics' names.
             has_words = len(words_by_place[use, flow, name]) == 1 and len(set(words)) == len(words) > 1
             for number, (endpoint, word) in enumerate(zip(in_order, words, strict=True), start=1):
@@ -126,12 +115,12 @@ def _name_ports(endpoints: Iterable[Endpoint]) -> dict[tuple[str, str, str], lis
     listed = list(endpoints)
     own_names: dict[tuple[str, str, str], set[str]] = {}
     for endpoint in listed:
-        own_names.setdefault(_place_name(endpoint), set()).add(endpoint.port or endpoint.name)
+        own_names.setdefault(_place_name(endpoint), set()).add(endpoint.port or endpoint.label)
     ports: dict[tuple[str, str, str], list[Endpoint]] = {}
     for endpoint in listed:
         use, flow, name = _place_name(endpoint)
         if len(own_names[use, flow, name]) > 1:
-            name = make_snake_name("_".join((endpoint.port or endpoint.name).replace("/", ".").split(".")[-2:]))
+            name = make_snake_name("_".join((endpoint.port or endpoint.label).replace("/", ".").split(".")[-2:]))
         ports.setdefault((use, flow, name), []).append(endpoint)
     return ports
 
@@ -152,7 +141,7 @@ def _tell_apart(topics: Sequence[str]) -> list[str]:
 
 
 def _place_name(endpoint: Endpoint) -> tuple[str, str, str]:
-    short_name = make_snake_name((endpoint.port or endpoint.name.replace("/", ".")).rpartition(".")[2])
+    short_name = make_snake_name((endpoint.port or endpoint.label.replace("/", ".")).rpartition(".")[2])
     return endpoint.use, endpoint.flow, short_name
 
 
@@ -160,7 +149,7 @@ def choose_own_name(key: str, endpoints: Sequence[Endpoint], *, is_shared: bool)
     """Return what a program itself calls a port: one that several nodes share cannot say where each of them has it."""
     first = endpoints[0]
     names = {each.name for each in endpoints}
-    return first.own_name or (first.name if len(names) == 1 and not is_shared else key)
+    return first.own_name or (first.name if len(names) == 1 and not is_shared else None) or key
 
 
 def find_common_message(endpoints: Sequence[Endpoint]) -> str | None:
@@ -173,7 +162,7 @@ class ProgramNames:
     """Knows which names of a program become others at each of its nodes: of its ports, as generated or as it says, and others."""
 
     def __init__(self, architecture: Architecture, ros: int) -> None:
-        self._ros = ros
+        self._ros, self._distro = ros, architecture.distro
         self._endpoints = index_endpoints(architecture)
         self._names: dict[str, list[tuple[str, str, str]]] = {}
         generated_nodes = list_generated_nodes(architecture)
@@ -190,21 +179,36 @@ class ProgramNames:
                 continue
             own_name = choose_own_name(key, endpoints, is_shared=True)
             for endpoint in endpoints:
-                self._names[endpoint.node].append((flow, own_name, endpoint.name))
+                if endpoint.name is not None:
+                    self._names[endpoint.node].append((flow, own_name, endpoint.name))
 
     def find_program(self, node: Node) -> NodeProgram:
         """Return what runs a node: what it says, completed by what generators make for it."""
         return self._programs.get(node.id) or NodeProgram(node.package, node.executable, node.plugin)
 
     def find_remaps(self, node: Node) -> dict[str, str]:
-        """Return what names of a node's program become, by what the program says. What resolves by itself is not there."""
+        """Return what names of a node's program become, by what the program says. What resolves by itself is not there.
+
+        All rules of a generated program are folded into one for each of its ends: what it calls them is the generator's
+        choice, of which the node's own rules say nothing, and ROS applies no rule to the outcome of another.
+        """
+        node_names = NodeNames(node, self._distro)
         remaps: dict[str, str] = {}
+        spoken: set[str | None] = set()
         for flow, own_name, name in self._list_names(node):
-            if resolve_ros_name(own_name, node) == name:
+            full_name = node_names.expand(own_name)
+            spoken.add(full_name)
+            if full_name == name:
                 continue
             for part in ACTION_PARTS[self._ros] if flow == "action" else ("",):
                 remaps.setdefault(f"{own_name}{part}", f"{name}{part}")
-        return remaps | {own_name: name for own_name, name in node.remaps.items() if own_name not in remaps}
+        others = list_written_remaps(node)
+        if node.id in self._programs:
+            folded = [each for each in self._endpoints.get(node.id, ()) if each.port or each.written]
+            spoken.update(name for each in folded for name in (each.name, each.program_name))
+            spoken |= {f"{name}{part}" for name in spoken for part in ACTION_PARTS[self._ros]}
+            others = {key: name for key, name in others.items() if node_names.expand(key) not in spoken}
+        return remaps | {own_name: name for own_name, name in others.items() if own_name not in remaps}
 
     def _list_names(self, node: Node) -> Iterable[tuple[str, str, str]]:
         if node.id in self._names:
@@ -212,5 +216,5 @@ class ProgramNames:
         return [
             (each.flow, each.own_name, each.name)
             for each in self._endpoints.get(node.id, ())
-            if each.own_name is not None
+            if each.own_name is not None and each.name is not None
         ]

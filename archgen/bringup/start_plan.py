@@ -19,7 +19,8 @@ from archgen.bringup.start_commands import (
 )
 from archgen.bringup.start_waits import StartWaits, group_by_waiting, name_container
 from archgen.bringup.wait_circles import keep_acyclic
-from archgen.derivation.ros_names import resolve_ros_name
+from archgen.derivation.wire.remap_rules import NodeNames
+from archgen.derivation.wire.running_state import find_environment
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Container
 from archgen.model.node import Node
@@ -165,7 +166,13 @@ def _make_container_step(architecture: Architecture, container: Container, phase
         preparations=list_preparations(architecture, launch),
         command=build_container_command(architecture, container, launch),
         container=container.id,
+        environment=_list_variables(architecture, container),
     )
+
+
+def _list_variables(architecture: Architecture, started: Node | Container) -> dict[str, str]:
+    """Return the variables with which a process is started, by name."""
+    return {name: text for name, (text, _) in find_environment(architecture, started).items()}
 
 
 def _make_node_step(
@@ -184,7 +191,7 @@ def _make_node_step(
         ros=launch,
         preparations=list_preparations(architecture, launch),
         command=build_command(architecture, node, launch),
-        ready=resolve_conditions(start.ready, node),
+        ready=resolve_conditions(start.ready, node, architecture.distro),
         once=start.once,
         transitions=list_transitions(node),
         state=start.wanted_state if "lifecycle" in node.kinds else None,
@@ -192,19 +199,20 @@ def _make_node_step(
         container=node.container,
         respawn=start.respawn,
         respawn_delay=start.respawn_delay,
-        environment=start.environment,
+        environment={} if node.container is not None else _list_variables(architecture, node),
         directory=start.directory,
         user=start.user,
         needs_rights=list_needed_rights(node),
     )
 
 
-def resolve_conditions(ready: ReadyConditions, node: Node) -> ReadyConditions:
-    """Return what shows that a node is up, with the absolute names of its topic and service."""
+def resolve_conditions(ready: ReadyConditions, node: Node, distro: str | None) -> ReadyConditions:
+    """Return what shows that a node is up, with the names on the wire of its topic and service."""
     if ready.topic is None and ready.service is None:
         return ready
+    names = NodeNames(node, distro)
     return replace(
         ready,
-        topic=resolve_ros_name(ready.topic, node) if ready.topic is not None else None,
-        service=resolve_ros_name(ready.service, node) if ready.service is not None else None,
+        topic=(names.resolve(ready.topic, "topic") or ready.topic) if ready.topic is not None else None,
+        service=(names.resolve(ready.service, "service") or ready.service) if ready.service is not None else None,
     )

@@ -33,6 +33,7 @@ VERBS = {
     "new": "Add a group, a component or a node.",
     "review": "Make all that the review of a change needs, in one folder.",
     "merge-check": "Say what would be wrong if open branches were merged.",
+    "check-requests": "Hold the open requests of a repository against each other; for CI.",
     "merge-driver": "Merge two versions of a file by what they say; for git.",
     "comment": "Put a text on the pull request, as one comment that is kept current.",
     "completion": "Print the set-up of shell completion.",

@@ -15,6 +15,9 @@ from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.safe_text import make_visible
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from archgen.diagnostics.diagnostic import Diagnostic
     from archgen.pipeline import CheckedProject, VersionCache
     from archgen.products.check_findings import ReportedFindings
 
@@ -37,7 +40,7 @@ _MAX_CURED_LINES = 20
     help="Show only what holds in these variants: `simulation`, `base,home`; `base` is the project itself.",
 )
 @shared_options.strict_option
-@click.option("-q", "--quiet", is_flag=True, help="Show only what makes the check fail, and nothing else.")
+@click.option("-q", "--quiet", is_flag=True, help="Show only what makes the check fail, and count the rest.")
 @click.option(
     "--baseline", metavar="FILE", type=click.Path(path_type=Path), help="Keep the findings that FILE knows quiet."
 )
@@ -99,6 +102,8 @@ def command(  # noqa: PLR0913 - one for each option
     if not quiet:
         _print_known(reported, baseline)
         _print_earlier(reported, changed_since)
+    else:
+        _print_hidden(reported.findings, shown_findings)
     _renew_editor_schema(checked_project)
     # With --strict a cured finding fails, so that the baseline is updated and the fault cannot come back unseen.
     sys.exit(
@@ -164,6 +169,13 @@ def _print_findings(
         sarif_document.check_github_limits(document, len(reported_findings.findings)) if format_name == "sarif" else ()
     ):
         command_support.print_warning(limit)
+
+
+def _print_hidden(findings: Sequence[Diagnostic], shown_findings: Sequence[Diagnostic]) -> None:
+    """Count on the error stream what does not make a check fail that fails for something else."""
+    hidden_findings = sorted({*findings}.difference(shown_findings), key=lambda finding: finding.sort_key)
+    if shown_findings and hidden_findings:
+        click.echo(f"not shown: {command_support.summarise_counts(hidden_findings)}", err=True)
 
 
 def _print_known(reported_findings: ReportedFindings, baseline: Path | None) -> None:

@@ -141,6 +141,34 @@ COMPARISON_WRITERS: Mapping[str, ComparisonWriter] = {
 """The functions that write a comparison, by the name of the format."""
 
 
+def _find_unpushed_base(project: Path | None) -> str:
+    """Return the commit from which on nothing was pushed. Where the remote has nothing yet, end with 0."""
+    from archgen import git
+
+    with command_support.explain_missing_versions():
+        base = git.find_unpushed_base(git.find_repository(project or Path.cwd()))
+    if base is None:
+        click.echo("nothing to compare with: this clone knows no main line of `origin`", err=True)
+        sys.exit(0)
+    return base.commit_id
+
+
+def _read_unpushed_versions(base: str, project: Path | None) -> tuple[ProjectVersion, ProjectVersion]:
+    """Read HEAD and what the remote has of it. Where that is nothing yet, end with 0: nobody relies on a new project."""
+    from archgen.products.compared_versions import read_versions
+    from archgen.project import NotAtRevisionError
+    from archgen.project.project_tracking import UnclearMoveError
+
+    with command_support.explain_missing_versions():
+        try:
+            return read_versions(base, "HEAD", project)
+        except UnclearMoveError:
+            raise
+        except NotAtRevisionError:
+            click.echo("nothing to compare with: `origin` is without this project", err=True)
+            sys.exit(0)
+
+
 def _find_meant_project(before: str | None, after: str | None) -> Path | None:
     from archgen.git import GitError
     from archgen.products.compared_versions import find_meant_project
@@ -207,6 +235,9 @@ def _write_output(document: str | bytes, output: Path | None) -> None:
     multiple=True,
     help="Compare both as they stand in a variant; given twice, two variants of one version: `--variant base --variant sim`.",
 )
+@click.option(
+    "--unpushed", is_flag=True, help="Compare HEAD with where it left the main line of `origin`: what a push brings."
+)
 @click.option("--exit-code", is_flag=True, help="End with 1 if there are changes, with 0 if there are none.")
 @shared_options.select_option
 @shared_options.project_option
@@ -219,6 +250,7 @@ def command(  # noqa: PLR0913 - the options of the verb, each by its name
     output: Path | None,
     exit_code: bool,
     variants: tuple[str, ...],
+    unpushed: bool,
     select: str | None,
     project: Path | None,
 ) -> None:
@@ -231,8 +263,14 @@ def command(  # noqa: PLR0913 - the options of the verb, each by its name
     whose variants are compared, left out the working tree.
     """
     from archgen.compare.breaking_changes import keep_breaking_only
+    from archgen.forge.reviewed_request import find_request_authors
     from archgen.products import compared_versions, repository_comparison
 
+    if unpushed:
+        if before is not None or variants:
+            msg = "--unpushed says what is compared: no A, no B, no --variant"
+            raise click.UsageError(msg)
+        before, after = _find_unpushed_base(project), "HEAD"
     project = project or _find_meant_project(before, after)
     projects = _list_compared_projects(before, after, project)
     if projects:
@@ -240,16 +278,23 @@ def command(  # noqa: PLR0913 - the options of the verb, each by its name
             msg = f"this folder only holds projects: name one with -C, such as `-C {projects[0].folder}`"
             raise click.UsageError(msg)
         with command_support.explain_missing_versions():
-            comparisons = list(repository_comparison.compare_projects_below(project, projects, before, after))
+            comparisons = list(
+                repository_comparison.compare_projects_below(project, projects, before, after, find_request_authors())
+            )
         _print_comparisons(comparisons)
         is_refused = breaking and any(each.is_refused for each in comparisons)
         sys.exit(1 if is_refused or (exit_code and any(each.has_changes for each in comparisons)) else 0)
     if variants:
         old_version, new_version = _read_variants(before, after, project, variants)
+    elif unpushed and before:
+        old_version, new_version = _read_unpushed_versions(before, project)
     else:
         old_version, new_version = _read_versions(before, after, project)
     comparison = _select_changes(
-        compared_versions.compare_named_versions(old_version, new_version), old_version, new_version, select
+        compared_versions.compare_named_versions(old_version, new_version, forge_facts=find_request_authors()),
+        old_version,
+        new_version,
+        select,
     )
     if breaking:
         comparison = keep_breaking_only(comparison)

@@ -27,6 +27,7 @@ def command(rule: str | None, distro: str | None) -> None:
         explain_sources(rule, distro)
         return
     from archgen import pipeline
+    from archgen.diagnostics.diagnostic import name_rule
     from archgen.diagnostics.text_columns import align_rows, find_width
     from archgen.emit.terminal.findings_text import wants_colour
     from archgen.findings import rule_pages
@@ -40,9 +41,12 @@ def command(rule: str | None, distro: str | None) -> None:
         rows = ((name, str(each.severity), rule_pages.summarise_rule(each)) for name, each in rules.items())
         for line in align_rows(rows, width, indent=""):
             click.echo(line)
-    elif rule in rules:
+    elif name_rule(rule) in rules:
         click.echo(
-            rule_pages.format_rule_page(rules[rule], colour=wants_colour(sys.stdout, os.environ), width=width), nl=False
+            rule_pages.format_rule_page(
+                rules[name_rule(rule)], colour=wants_colour(sys.stdout, os.environ), width=width
+            ),
+            nl=False,
         )
     else:
         guess = did_you_mean(rule, rules)

@@ -151,6 +151,29 @@ def _set_up_merge_driver(target: Path) -> None:
         click.echo("ran, for this clone (every other one needs `archgen init --merge-driver` too):")
     for command_line in commands:
         click.echo(f"    {command_line}")
+    _set_up_merge_hook(target)
+
+
+def _set_up_merge_hook(target: Path) -> None:
+    """Let git check the project after each merge, and say what there is."""
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.git import GitError
+    from archgen.start.merge_hook_setup import install_merge_hook
+
+    try:
+        with command_support.explain_write_errors():
+            hook = install_merge_hook(target)
+    except GitError:  # there is no repository yet, which is said above
+        return
+    place = make_visible(str(command_support.shorten_path(hook.path)))
+    if hook.state == "written":
+        click.echo(f"wrote {place} (checks the project after each merge, in this clone)")
+    elif hook.state == "kept":
+        click.echo(f"kept {place}: it checks the project already")
+    else:
+        click.echo(f"kept {place}: it is yours, or git looks elsewhere for hooks. To check after each merge, add there")
+        for line in hook.lines.splitlines():
+            click.echo(f"    {line}")
 
 
 def _refuse_existing_project(target: Path) -> None:

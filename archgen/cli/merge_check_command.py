@@ -24,13 +24,15 @@ if TYPE_CHECKING:
 def command(main_line: str, branches: tuple[str, ...], form: str, *, strict: bool, project: Path | None) -> None:
     """Say what would be wrong if open branches were merged: each OTHER into MAIN, then all of them.
 
-    Git's objects are read and nothing is checked out. Findings are shown that neither MAIN nor the branch has, and
-    conflicts: of the models, and of git alone. In a folder that only holds projects, such as the top of a repository,
-    each of them is merged. The exit status is 1 for new errors (with --strict also new warnings), for conflicts of the
-    models, and where the project is gone.
+    Git's objects are read and nothing is checked out. Findings are shown that neither MAIN nor the branch has, what
+    breaks a partner only together and in which order it does not, and conflicts: of the models, and of git alone. In a
+    folder that only holds projects, such as the top of a repository, each of them is merged. The exit status is 1 for new
+    errors, for breaks that the project forbids (with --strict also for warnings), for conflicts of the models, and where the
+    project is gone.
     """
     from archgen.git import GitError
     from archgen.merge.branch_merge import preview_merges
+    from archgen.products.merge_breaks import find_joint_breaks
     from archgen.project import ProjectNotFoundError
 
     folders = _list_folders(project, (main_line, *branches))
@@ -39,7 +41,7 @@ def command(main_line: str, branches: tuple[str, ...], form: str, *, strict: boo
         raise click.UsageError(msg)
     paths = [(project or Path()) / folder for folder in folders] if folders else [project]
     try:
-        merges_by_project = [list(preview_merges(path, main_line, branches)) for path in paths]
+        merges_by_project = [list(preview_merges(path, main_line, branches, find_joint_breaks)) for path in paths]
     except (GitError, ProjectNotFoundError) as error:
         raise click.UsageError(make_visible(str(error))) from None
     if form == "json":
@@ -49,12 +51,11 @@ def command(main_line: str, branches: tuple[str, ...], form: str, *, strict: boo
     else:
         for folder, branch_merges in zip(folders or [""], merges_by_project, strict=True):
             for branch_merge in branch_merges:
-                _print_merge(main_line, branch_merge, folder)
+                print_merge(main_line, branch_merge, folder)
     sys.exit(
         1
         if any(
-            branch_merge.checked_project is None
-            or command_support.exit_status(branch_merge.new_findings, strict=strict)
+            branch_merge.is_refused or command_support.exit_status(branch_merge.findings, strict=strict)
             for branch_merges in merges_by_project
             for branch_merge in branch_merges
         )
@@ -74,22 +75,14 @@ def _list_folders(project: Path | None, revisions: tuple[str, ...]) -> list[str]
     return [] if "" in folders else sorted(folders)
 
 
-def _print_merge(main_line: str, branch_merge: BranchMerge, folder: str) -> None:
+def print_merge(main_line: str, branch_merge: BranchMerge, folder: str = "") -> None:
+    """Print what came out of a merge, with what is wrong with it."""
+    from archgen.merge.merge_sentences import describe_conflict, describe_merge
+
     merged_names = " + ".join((main_line, *branch_merge.branches))
     prefix = f"{folder}: " if folder else ""
-    click.echo(make_visible(f"{prefix}{merged_names}: {_describe_merge(branch_merge)}"))
+    click.echo(make_visible(f"{prefix}{merged_names}: {describe_merge(branch_merge, main_line)}"))
     for conflict in branch_merge.conflicts:
-        outcome = conflict.problem or "git conflicts, what both sides say does not: `archgen merge-driver` merges it"
-        click.echo(make_visible(f"  {conflict.file}: {outcome}"))
-    if branch_merge.new_findings and branch_merge.checked_project:
-        command_support.print_findings(branch_merge.new_findings, branch_merge.checked_project, sys.stdout)
-
-
-def _describe_merge(branch_merge: BranchMerge) -> str:
-    if branch_merge.is_blocked:
-        return "conflicts"
-    if branch_merge.new_findings:
-        return "merges, and then there are new findings"
-    if branch_merge.checked_project is None:
-        return "merges, but holds no project any more"
-    return "git conflicts needlessly" if branch_merge.conflicts else "merges"
+        click.echo(make_visible(f"  {describe_conflict(conflict)}"))
+    if branch_merge.findings and branch_merge.checked_project:
+        command_support.print_findings(branch_merge.findings, branch_merge.checked_project, sys.stdout)

@@ -39,7 +39,7 @@ def command(project: Path | None, form: str, output: Path | None, *, keep_going:
     With `--format codeowners` it is the file CODEOWNERS, which asks the owners of a changed file for their review. Who
     that is stands in `reviewers` of each partner. `archgen owners --format codeowners -o .github/CODEOWNERS`
     """
-    from archgen.products import code_ownership
+    from archgen.checking import code_ownership
 
     if form == "codeowners":
         checked_project = command_support.check_before_writing(project, keep_going=keep_going)

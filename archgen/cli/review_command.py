@@ -173,13 +173,14 @@ def _compare_change(
     What cannot be compared is wrong usage.
     """
     from archgen import git
-    from archgen.forge.reviewed_request import find_reviewed_request
+    from archgen.forge.reviewed_request import find_request_authors, find_reviewed_request
     from archgen.products.reviewed_change import compare_change
     from archgen.project import NotAtRevisionError
     from archgen.project.project_tracking import UnclearMoveError
 
     try:
-        return compare_change(checked_project, project, merge_target, find_reviewed_request(), version_cache)
+        request, authors = find_reviewed_request(), find_request_authors()
+        return compare_change(checked_project, project, merge_target, request, version_cache, authors)
     except UnclearMoveError as error:
         # The policy of the project that it was is not known, and the branch's own cannot be trusted.
         raise click.UsageError(make_visible(str(error))) from None

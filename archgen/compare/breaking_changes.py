@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from archgen.compare.agreements import judge_agreements, names_change
+from archgen.compare.agreements import AgreementJudge, names_change
 from archgen.compare.comparison import ChainChange, Change, Comparison, PartnerBreak
 from archgen.compare.concerned_owners import find_concerned_owners
 from archgen.compare.figure_changes import LimitChange
@@ -19,6 +19,7 @@ from archgen.compare.losses.changed_parameters import find_changed_parameters
 from archgen.compare.losses.cut_steps import find_cut_steps
 from archgen.compare.losses.deprecated_types import find_deprecated_types
 from archgen.compare.losses.fallen_limits import find_fallen_limits
+from archgen.compare.losses.foreign_edits import find_foreign_edits
 from archgen.compare.losses.lost_connections import find_lost_connections, find_renamed_sources, find_unmade_connections
 from archgen.compare.losses.missed_deadlines import find_chains_made_late
 from archgen.compare.losses.overloaded_resources import find_overloaded_cores, find_saturated_links
@@ -55,6 +56,7 @@ _LOSS_FINDERS = (
     find_changed_frames,
     find_changed_parameters,
     find_renamed_sources,
+    find_foreign_edits,
 )
 
 
@@ -80,13 +82,18 @@ def mark_breaking_changes(
     breaks_by_index: dict[int, dict[PartnerBreak, None]] = defaultdict(dict)
     for loss in _find_losses(context, chains, limits, timing_pair):
         if policy.severity_of(loss.category) is not Severity.OFF:
-            partner_break = PartnerBreak(loss.partner, loss.reason, category=loss.category, fallen=loss.fallen)
+            partner_break = PartnerBreak(
+                loss.partner,
+                loss.reason,
+                category=loss.category,
+                fallen=loss.fallen,
+                fallen_state=loss.fallen_state,
+                at_most=loss.at_most,
+            )
             breaks_by_index[loss.change_index][partner_break] = None
-    entries = context.before.review.accepted, context.after.review.accepted
+    judge = AgreementJudge(context.before, context.after, context.matched_ids, context.versions, context.facts)
     marked_changes = [
-        judge_agreements(change, breaks_by_index[index], entries, context.matched_ids)
-        if index in breaks_by_index
-        else change
+        judge.judge(change, breaks_by_index[index]) if index in breaks_by_index else change
         for index, change in enumerate(context.changes)
     ]
     return sort_breaks_first(marked_changes, policy)

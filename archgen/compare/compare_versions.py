@@ -18,13 +18,18 @@ from archgen.compare.finding_changes import judge_findings
 from archgen.compare.load_changes import find_link_users, find_load_changes
 from archgen.compare.losses.change_context import ChangeContext
 from archgen.compare.match_elements import match_elements
+from archgen.compare.review_facts import ReviewFacts
 from archgen.compare.timing_pair import analyse_timing_pair
+from archgen.compare.type_origins import trace_origins
 from archgen.diagnostics.diagnostic import Severity
 from archgen.model.review_settings import AcceptedChange
 
 
-def compare_versions(before: ArchitectureVersion, after: ArchitectureVersion) -> Comparison:
-    """Compare two versions of an architecture."""
+def compare_versions(
+    before: ArchitectureVersion, after: ArchitectureVersion, *, facts: ReviewFacts | None = None
+) -> Comparison:
+    """Compare two versions of an architecture. `facts` are what is known of who changed it."""
+    facts = facts or ReviewFacts()
     # Matching comes first: everything below lists the first version under the ids of the second.
     matched_ids = match_elements(before.architecture, after.architecture)
     version_pair, changes = find_changes(before, after, matched_ids)
@@ -34,12 +39,15 @@ def compare_versions(before: ArchitectureVersion, after: ArchitectureVersion) ->
     timing_pair = analyse_timing_pair(before, after, changes)
     # Chains are needed twice: for the report, and as causes of losses in `mark_breaking_changes`.
     chain_changes = compare_chains(before.architecture, after.architecture, matched_ids, timing_pair)
-    change_context = ChangeContext(before.architecture, after.architecture, matched_ids, version_pair, changes)
+    change_context = ChangeContext(before.architecture, after.architecture, matched_ids, version_pair, changes, facts)
     chain_changes = add_chain_causes(change_context, chain_changes, timing_pair)
     limits = compare_limits(before.architecture, after.architecture, matched_ids, timing_pair)
     policy = stricter_policy(before.architecture.review, after.architecture.review)
     idle_acceptances: tuple[AcceptedChange, ...] = ()
     if policy.gravest is not Severity.OFF:
+        if policy.foreign is not Severity.OFF:
+            bare = Comparison(before, after, matched_ids, version_pair, changes, (), (), (), ())
+            change_context.followers = trace_origins(bare, changes)
         changes = mark_breaking_changes(
             change_context,
             chain_changes,
@@ -69,4 +77,5 @@ def compare_versions(before: ArchitectureVersion, after: ArchitectureVersion) ->
         boundaries=boundaries,
         limits=limits,
         loads=loads,
+        facts=facts,
     )

@@ -8,6 +8,7 @@ from typing import Literal
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.figure_changes import BoundaryChange, LimitChange, LoadChange
 from archgen.compare.matched_ids import MatchedIds
+from archgen.compare.review_facts import ReviewFacts
 from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.frozen import dataclass
@@ -24,8 +25,7 @@ class PartnerBreak:
     ...".
 
     `agreement` is why the partner agrees, None if it does not. `category` says which policy judges it. `variants` are
-    those in which it is lost, where nothing is lost in the project itself. `fallen` is the port and the key (`max_gap`) of
-    a promise or freshness that is not kept any more.
+    those in which it is lost, where nothing is lost in the project itself.
     """
 
     partner: str
@@ -34,6 +34,15 @@ class PartnerBreak:
     category: BreakCategory = "wire"
     variants: tuple[str, ...] = ()
     fallen: tuple[str, str] | None = None
+    """The port and the key (`max_gap`) of a promise or freshness that is kept no more: an agreement may name them."""
+    fallen_state: str | None = None
+    """The requirement that is kept no more (see `describe_fallen_state`), of which an agreement holds the hash."""
+    hash: str = ""
+    """The hash that an agreement of the partner carries."""
+    agreed_hash: str | None = None
+    """The hash that the partner's agreement carries, None where it has none."""
+    at_most: Severity = Severity.ERROR
+    """How serious it is at most, whatever the policy says: what is not certain is a warning."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,6 +143,8 @@ class Comparison:
     """The hosts and links whose load changed noticeably."""
     left_out_files: tuple[str, ...] = ()
     """The files that the first version read, and the second one has and does not read."""
+    facts: ReviewFacts = field(default_factory=ReviewFacts)
+    """What is known of who made the change."""
     only_breaking: bool = False
     """Whether only the changes that break a partner were kept."""
 
@@ -148,8 +159,12 @@ class Comparison:
 
     def break_severity(self, change: Change) -> Severity:
         """Return how serious it is that a change breaks partners who did not agree; `off` if there are none."""
-        severities = (self.policy.severity_of(each.category) for each in change.breaks if each.agreement is None)
+        severities = (self.severity_of(each) for each in change.breaks if each.agreement is None)
         return max(severities, default=Severity.OFF)
+
+    def severity_of(self, partner_break: PartnerBreak) -> Severity:
+        """Return how serious a loss is where the partner did not agree."""
+        return min(self.policy.severity_of(partner_break.category), partner_break.at_most)
 
     @property
     def is_judged(self) -> bool:

@@ -6,7 +6,7 @@ Linking takes over the components and nodes that two versions share, as the same
 from __future__ import annotations
 
 import operator
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from archgen.derivation.reading_endpoints import WriterIndex, derive_reading_endpoints
@@ -41,13 +41,15 @@ class DerivedParts:
         self._node_parts: KnownParts[tuple[NodePart, ...]] = KnownParts()
         self._writing: KnownParts[tuple[tuple[NodePart, ...], tuple[Endpoint, ...]]] = KnownParts()
         self._reading: KnownParts[_KnownReading] = KnownParts()
+        self._completed: KnownParts[tuple[Node, tuple[Endpoint, ...], object, tuple[Endpoint, ...]]] = KnownParts()
         self._topics: dict[FlowKind, KnownParts[Topic]] = {}
 
     def start_version(self, architecture: Architecture, shared_topics: frozenset[str]) -> None:
-        """Forget everything where types are mapped to other messages, or other topics are shared by all nodes."""
+        """Forget everything where types are mapped to other messages, other topics are shared by all nodes, or ROS is another."""
         types = {name: (each.message, each.size and each.size.text) for name, each in architecture.types.items()}
-        if self._settings != (types, shared_topics):
-            self._settings = (types, shared_topics)
+        settings = (types, shared_topics, architecture.distro)
+        if self._settings != settings:
+            self._settings = settings
             self._forget_parts()
 
     def find_planned(self, component: Component, node_id: str) -> Node | None:
@@ -96,6 +98,22 @@ class DerivedParts:
         self._reading.keep_part(node_id, reading)
         return endpoints
 
+    def complete_endpoints(
+        self, node: Node, endpoints: tuple[Endpoint, ...], state: object, complete: Callable[[Endpoint], Endpoint]
+    ) -> Sequence[Endpoint]:
+        """Return the ends of a node with what follows from its state."""
+        for known_node, known_endpoints, known_state, completed in self._completed.list_known(node.id):
+            if (
+                known_node is node
+                and known_state == state
+                and len(known_endpoints) == len(endpoints)
+                and all(map(operator.is_, known_endpoints, endpoints))
+            ):
+                return completed
+        completed = tuple(map(complete, endpoints))
+        self._completed.keep_part(node.id, (node, endpoints, state, completed))
+        return completed
+
     def find_topic(
         self, name: str, flow: FlowKind, writers: Sequence[Endpoint], readers: Sequence[Endpoint]
     ) -> Topic | None:
@@ -140,4 +158,4 @@ def _list_feeds(index: WriterIndex, parts: Iterable[NodePart]) -> Iterator[objec
 
 def _list_topic_ports(index: WriterIndex, endpoints: Iterable[Endpoint]) -> tuple[tuple[str | None, ...], ...]:
     by_name = index.by_name
-    return tuple(tuple([w.port for w in by_name.get((each.name, each.flow), ())]) for each in endpoints)
+    return tuple(tuple([w.port for w in by_name.get((each.name or "", each.flow), ())]) for each in endpoints)

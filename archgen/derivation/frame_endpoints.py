@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
+from archgen.derivation.wire.remap_rules import NodeNames
 from archgen.model.architecture import Architecture
 from archgen.model.coordinate_frames import Frame
 from archgen.model.node import Endpoint, Node, Qos
@@ -35,19 +36,23 @@ def index_written_frames(architecture: Architecture) -> Mapping[str, tuple[Frame
 
 
 def derive_frame_endpoints(
-    node: Node, written_frames: Iterable[Frame], own_endpoints: Sequence[Endpoint]
+    node: Node, distro: str | None, written_frames: Iterable[Frame], own_endpoints: Sequence[Endpoint]
 ) -> Iterator[Endpoint]:
     """Yield what a node publishes for its frames, less the topics that it names itself (in a namespace too)."""
-    written_topics = {endpoint.name.rpartition("/")[2] for endpoint in own_endpoints if endpoint.use == "publishes"}
+    written_topics = {endpoint.label.rpartition("/")[2] for endpoint in own_endpoints if endpoint.use == "publishes"}
     first_frames: dict[str, Frame] = {}
     for frame in written_frames:
         if frame.topic.removeprefix("/") not in written_topics:
             first_frames.setdefault(frame.topic, frame)
+    names = NodeNames(node, distro)
     for topic, frame in first_frames.items():
+        wire = names.name_end(topic, None, "topic")
         yield Endpoint(
             node=node.id,
             use="publishes",
-            name=topic,
+            name=wire.name,
+            program_name=wire.program_name,
+            evidence=wire.evidence,
             flow="topic",
             port=None,
             component=frame.by if frame.by in node.implements else next(iter(node.implements), None),

@@ -12,6 +12,7 @@ from archgen.derivation.inner_memory import mark_inner_memory
 from archgen.derivation.media_channels import derive_channels
 from archgen.derivation.portless_endpoints import complete_message, count_shared_keys, derive_portless_endpoints
 from archgen.derivation.reading_endpoints import derive_reading_endpoints, index_writers
+from archgen.derivation.wire.running_state import complete_states
 from archgen.derivation.writing_endpoints import NodePart, derive_writing_endpoints, find_node_parts
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
@@ -35,6 +36,7 @@ def derive_low_level(architecture: Architecture, memory: DerivedParts | None = N
         memory.start_version(architecture, shared_topics)
         node_parts = memory.recall_parts(node_parts)
     endpoints = _derive_endpoints(with_planned, node_parts, shared_topics, memory)
+    endpoints = complete_states(with_planned, endpoints, memory)
     return replace(
         with_planned,
         endpoints=endpoints,
@@ -63,7 +65,8 @@ def _derive_endpoints(
         for node_id in architecture.nodes
     }
     portless = {
-        node_id: list(derive_portless_endpoints(node, shared_keys)) for node_id, node in architecture.nodes.items()
+        node_id: list(derive_portless_endpoints(node, architecture.distro, shared_keys))
+        for node_id, node in architecture.nodes.items()
     }
     portless_writers = (e for endpoints in portless.values() for e in endpoints if e.use in {"publishes", "serves"})
     writer_index = index_writers(
@@ -82,7 +85,9 @@ def _derive_endpoints(
         all_endpoints += (complete_message(endpoint, writer_index) for endpoint in portless[node_id])
         if node_id in frames_by_node:
             own_endpoints = (*writing[node_id], *portless[node_id])
-            all_endpoints += derive_frame_endpoints(architecture.nodes[node_id], frames_by_node[node_id], own_endpoints)
+            all_endpoints += derive_frame_endpoints(
+                architecture.nodes[node_id], architecture.distro, frames_by_node[node_id], own_endpoints
+            )
     return tuple(all_endpoints)
 
 
@@ -100,12 +105,13 @@ def _gather_topics(
     types: Mapping[str, ConceptualType],
     memory: DerivedParts | None,
 ) -> dict[str, Topic]:
-    """Gather endpoints by name and flow. Further flows with the same name get a key of their own: `/name (service)`."""
+    """Gather endpoints by name and flow; where a name is not known, by the model's connections. Further flows with the same name get a key of their own: `/name (service)`."""
     users: dict[tuple[str, FlowKind], _EndpointUsers] = {}
     for endpoint in endpoints:
-        topic_users = users.get((endpoint.name, endpoint.flow))
+        name = endpoint.label
+        topic_users = users.get((name, endpoint.flow))
         if topic_users is None:
-            topic_users = users[endpoint.name, endpoint.flow] = _EndpointUsers()
+            topic_users = users[name, endpoint.flow] = _EndpointUsers()
         (topic_users.writers if endpoint.use in {"publishes", "serves"} else topic_users.readers).append(endpoint)
     topics: dict[str, Topic] = {}
     for (name, flow), topic_users in users.items():

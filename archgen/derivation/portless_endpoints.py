@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from archgen.derivation import ros_names
 from archgen.derivation.reading_endpoints import WriterIndex
+from archgen.derivation.wire.remap_rules import NodeNames
 from archgen.derivation.writing_endpoints import DEFAULT_QOS, flow_of_use
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, FlowKind, Node, PortUse, UseKind
@@ -33,28 +34,28 @@ def count_shared_keys(architecture: Architecture) -> SharedKeyCounts:
     return node_counts
 
 
-def derive_portless_endpoints(node: Node, shared_keys: SharedKeyCounts) -> Iterator[Endpoint]:
+def derive_portless_endpoints(node: Node, distro: str | None, shared_keys: SharedKeyCounts) -> Iterator[Endpoint]:
     """Yield the endpoints of a node that have no port. `complete_message` adds the messages of readers later."""
-    for use in node.uses:
-        if use.internal or not node.implements:
-            yield from _endpoints_of_use(node, use, shared_keys)
+    portless_uses = [use for use in node.uses if use.internal or not node.implements]
+    if portless_uses:
+        names = NodeNames(node, distro)
+        for use in portless_uses:
+            yield from _endpoints_of_use(node, names, use, shared_keys)
 
 
-def _endpoints_of_use(node: Node, use: PortUse, shared_keys: SharedKeyCounts) -> Iterator[Endpoint]:
+def _endpoints_of_use(node: Node, names: NodeNames, use: PortUse, shared_keys: SharedKeyCounts) -> Iterator[Endpoint]:
     """Yield the endpoints of one entry, one for each name that it lists."""
     # Below the component's name, so that internal topics of two components with the same key never meet.
     component = _find_owning_component(node, use.key, shared_keys) if use.internal else None
-    default_name = (
-        ros_names.default_port_name(f"{component}.{use.key}")
-        if component
-        else ros_names.resolve_ros_name(use.key, node)
-    )
+    default_name = ros_names.default_port_name(f"{component}.{use.key}") if component else names.expand(use.key)
     flow_kind = flow_of_use(use.message, use)
-    for name in [ros_names.resolve_ros_name(topic, node) for topic in use.topics] or [default_name]:
+    for wire in names.name_use(use, flow_kind, default_name):
         yield Endpoint(
             node=node.id,
             use=_USE_BY_FLOW[use.use][flow_kind == "topic"],
-            name=name,
+            name=wire.name,
+            program_name=wire.program_name,
+            evidence=wire.evidence,
             flow=flow_kind,
             port=None,
             component=component,
@@ -77,7 +78,7 @@ def _find_owning_component(node: Node, key: str, shared_keys: SharedKeyCounts) -
 
 def complete_message(endpoint: Endpoint, writer_index: WriterIndex) -> Endpoint:
     """Add the message, type and flow of a writer with the same name to a reading endpoint that has no message."""
-    if endpoint.message is not None or endpoint.use in {"publishes", "serves"}:
+    if endpoint.message is not None or endpoint.name is None or endpoint.use in {"publishes", "serves"}:
         return endpoint
     # A caller without a message does not say whether it calls a service or an action.
     flows: tuple[FlowKind, ...] = ("topic",) if endpoint.flow == "topic" else ("service", "action")

@@ -7,7 +7,15 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from archgen.derivation import ros_names
-from archgen.derivation.writing_endpoints import DEFAULT_QOS, UNWRITTEN_USE, NodePart, filter_uses, flow_of_use
+from archgen.derivation.wire.remap_rules import WireName
+from archgen.derivation.writing_endpoints import (
+    DEFAULT_QOS,
+    UNWRITTEN_USE,
+    NodePart,
+    filter_uses,
+    flow_of_use,
+    invents_names,
+)
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Input
@@ -26,6 +34,8 @@ class WriterIndex:
     shared_topics: frozenset[str]
     by_output: Mapping[str, Sequence[Endpoint]]
     by_name: Mapping[NameAndFlow, Sequence[Endpoint]]
+    existing_components: frozenset[str]
+    """Components whose programs all exist: what they call their outputs is not archgen's to say."""
     outputs_by_input: Mapping[str, Sequence[str]]
     """The ids of the outputs that feed an input, without those that are no ROS, by input id."""
 
@@ -37,14 +47,18 @@ def index_writers(
     by_output: dict[str, list[Endpoint]] = defaultdict(list)
     by_name: dict[NameAndFlow, list[Endpoint]] = defaultdict(list)
     for writer in writers:
-        by_name[writer.name, writer.flow].append(writer)
+        if writer.name is not None:
+            by_name[writer.name, writer.flow].append(writer)
         if writer.port:
             by_output[writer.port].append(writer)
     outputs_by_input: dict[str, list[str]] = defaultdict(list)
     for edge in architecture.edges:
         if uses_ros(architecture.outputs[edge.output]):
             outputs_by_input[edge.input].append(edge.output)
-    return WriterIndex(architecture, shared_topics, dict(by_output), dict(by_name), dict(outputs_by_input))
+    nodes = architecture.nodes.values()
+    made = {component for node in nodes if invents_names(node) for component in node.implements}
+    existing = frozenset(component for node in nodes for component in node.implements) - made
+    return WriterIndex(architecture, shared_topics, dict(by_output), dict(by_name), existing, dict(outputs_by_input))
 
 
 def derive_reading_endpoints(writer_index: WriterIndex, node_part: NodePart) -> Iterator[Endpoint]:
@@ -100,11 +114,12 @@ class _InputReader:
         message = self.writer_index.architecture.message_of(source_output)
         flow_kind = flow_of(message)
         use: UseKind = "publishes" if flow_kind == "topic" else "serves"
+        is_known = source_output.component not in self.writer_index.existing_components
         return (
             Endpoint(
                 "",
                 use,
-                ros_names.default_port_name(output_id),
+                ros_names.default_port_name(output_id) if is_known else None,
                 flow_kind,
                 output_id,
                 source_output.component,
@@ -118,30 +133,41 @@ class _InputReader:
 
         A source without any known output has no topic that could be named: nothing is read from it.
         """
+        is_generated = invents_names(self.node_part.node)
+        names = self.node_part.names
         if writers:
-            writers_by_topic: dict[NameAndFlow, list[Endpoint]] = {}
+            writers_by_topic: dict[tuple[str | None, str, FlowKind], list[Endpoint]] = {}
             for writer in writers:
-                writers_by_topic.setdefault((writer.name, writer.flow), []).append(writer)
-            for (name, flow_kind), topic_writers in writers_by_topic.items():
-                yield self._make_endpoint(use, name, flow_kind, topic_writers)
+                # Generated code follows its writer. A program that exists reads what it reads: the model's name, at best.
+                name = writer.name if is_generated or use.own_name or not writer.is_moved else None
+                key = (name, (name is None and writer.port) or "", writer.flow)
+                writers_by_topic.setdefault(key, []).append(writer)
+            for (name, _, flow_kind), topic_writers in writers_by_topic.items():
+                wire = names.name_end(name, use.own_name, flow_kind, use.at)
+                yield self._make_endpoint(use, wire, flow_kind, topic_writers)
         elif not self.port.from_written:
-            name = ros_names.default_port_name(self.port.id)
-            yield self._make_endpoint(use, name, flow_of_use(use.message or self._expected_message(), use), ())
+            flow_kind = flow_of_use(use.message or self._expected_message(), use)
+            default_name = ros_names.default_port_name(self.port.id) if is_generated else None
+            wire = names.name_end(default_name, use.own_name, flow_kind, use.at)
+            yield self._make_endpoint(use, wire, flow_kind, ())
 
     def _written_endpoints(self, use: PortUse, writers: Sequence[Endpoint]) -> Iterator[Endpoint]:
         """Yield one endpoint for each topic that the node names for the input."""
-        for topic in use.topics:
-            name = ros_names.resolve_ros_name(topic, self.node_part.node)
-            flow_kind = writers[0].flow if writers else flow_of_use(use.message or self._expected_message(), use)
+        flow_kind = writers[0].flow if writers else flow_of_use(use.message or self._expected_message(), use)
+        for wire in self.node_part.names.name_use(use, flow_kind, None):
             # If no source is on this topic (`unaccounted-topic` reports it), message and type still come from them.
-            endpoint = self._make_endpoint(use, name, flow_kind, [w for w in writers if w.name == name] or writers)
+            endpoint = self._make_endpoint(use, wire, flow_kind, [w for w in writers if w.name == wire.name] or writers)
             yield replace(endpoint, name_written=True)
 
-    def _make_endpoint(self, use: PortUse, name: str, flow_kind: FlowKind, writers: Sequence[Endpoint]) -> Endpoint:
+    def _make_endpoint(
+        self, use: PortUse, wire: WireName, flow_kind: FlowKind, writers: Sequence[Endpoint]
+    ) -> Endpoint:
         return Endpoint(
             node=self.node_part.node.id,
             use="subscribes" if flow_kind == "topic" else "calls",
-            name=name,
+            name=wire.name,
+            program_name=wire.program_name,
+            evidence=wire.evidence,
             flow=flow_kind,
             port=self.port.id,
             component=self.node_part.component.id,
@@ -151,18 +177,19 @@ class _InputReader:
             qos=use.qos or DEFAULT_QOS,
             own_name=use.own_name,
             written=use is not UNWRITTEN_USE,
-            sources=self._arriving_outputs(name, flow_kind, writers),
+            sources=self._arriving_outputs(wire.name, flow_kind, writers),
             at=use.at,
             message_at=use.message_at,
         )
 
-    def _arriving_outputs(self, name: str, flow_kind: FlowKind, writers: Sequence[Endpoint]) -> tuple[str, ...]:
+    def _arriving_outputs(self, name: str | None, flow_kind: FlowKind, writers: Sequence[Endpoint]) -> tuple[str, ...]:
         """Return the ids of the outputs that arrive: all that are written on the topic, unless all nodes share it."""
         # On a shared topic such as /tf every node writes: there only the input's own sources count.
-        direct_outputs = [writer.port for writer in writers if writer.name == name]
+        # Where a name is not known, the model's connection is all that tells.
+        direct_outputs = [w.port for w in writers if w.name in {name, None} or name is None]
         topic_outputs = (
             []
-            if name in self.writer_index.shared_topics
+            if name is None or name in self.writer_index.shared_topics
             else [w.port for w in self.writer_index.by_name.get((name, flow_kind), ())]
         )
         return tuple(dict.fromkeys(port for port in (*direct_outputs, *topic_outputs) if port))

@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import field
 
 from archgen.derivation import ros_names
+from archgen.derivation.wire.remap_rules import NodeNames
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Output
@@ -30,6 +31,7 @@ class NodePart:
     uses_by_port: Mapping[str, tuple[PortUse, ...]]
     """The entries by the port's complete id. Those of the node's other components are among them."""
     is_only_node: bool
+    names: NodeNames
     given_ports: Mapping[str, str] = field(default_factory=dict)
     """Of a node that is all of a composed component: its outputs by the leaves' outputs that they pass on."""
 
@@ -47,12 +49,14 @@ def find_node_parts(architecture: Architecture) -> dict[str, tuple[NodePart, ...
             if use.port and not use.internal:
                 uses.setdefault(use.port, []).append(use)
         by_port = {port: tuple(port_uses) for port, port_uses in uses.items()}
+        names = NodeNames(node, architecture.distro)
         node_parts[node.id] = tuple(
             NodePart(
                 node,
                 architecture.components[component_id],
                 by_port,
                 node_counts[component_id] == 1,
+                names,
                 _find_given_ports(architecture, node) if node.wholes else {},
             )
             for component_id in node.implements
@@ -84,6 +88,11 @@ def filter_uses(uses: Iterable[PortUse], use_kinds: Collection[UseKind]) -> tupl
     return tuple(use for use in uses if use.use in use_kinds)
 
 
+def invents_names(node: Node) -> bool:
+    """Whether archgen may say what a port is called: of a program that exists, nobody but itself knows."""
+    return node.status != "existing"
+
+
 def flow_of_use(message: str | None, use: PortUse) -> FlowKind:
     """Return the kind of flow by the message; if unknown, by the section that the entry is written in."""
     if message is None and use.use in {"serves", "calls"}:
@@ -97,13 +106,14 @@ def _endpoints_of_output(
     """Yield the endpoints of one output for one entry."""
     message = use.message or architecture.message_of(output)
     flow_kind = flow_of_use(message, use)
-    for name in [ros_names.resolve_ros_name(topic, node_part.node) for topic in use.topics] or [
-        ros_names.default_port_name(node_part.given_ports.get(output.id, output.id))
-    ]:
+    default_name = ros_names.default_port_name(node_part.given_ports.get(output.id, output.id))
+    for wire in node_part.names.name_use(use, flow_kind, default_name if invents_names(node_part.node) else None):
         yield Endpoint(
             node=node_part.node.id,
             use="publishes" if flow_kind == "topic" else "serves",
-            name=name,
+            name=wire.name,
+            program_name=wire.program_name,
+            evidence=wire.evidence,
             flow=flow_kind,
             port=output.id,
             component=node_part.component.id,

@@ -123,6 +123,15 @@ class Rule:
         return cls(function.__name__.replace("_", "-"), severity, doc, options=options)
 
 
+_NEW_RULE_NAMES = {"unactivated-node": "silent-node"}
+"""What rules are called by now that had another name: settings, comments and baselines may still have that."""
+
+
+def name_rule(written_name: str) -> str:
+    """Return what a rule is called that is written under this name, or under the one that it once had."""
+    return _NEW_RULE_NAMES.get(written_name, written_name)
+
+
 def diagnose_repetition(  # noqa: PLR0913 - what a diagnostic has
     rule: str, message: str, span: Span, first_span: Span, *, help_line: str | None = None, element: str | None = None
 ) -> Diagnostic:

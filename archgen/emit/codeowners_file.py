@@ -1,6 +1,6 @@
 """Write CODEOWNERS, the file that tells GitHub and GitLab who reviews which file. The last line that matches counts.
 
-Every line names one file from the repository's root. GitHub takes neither comments behind a pattern nor `[` and `#`
+Every line names one file or folder from the repository's root. GitHub takes neither comments behind a pattern nor `[` and `#`
 escaped in it, and GitLab reads `[` as a section: `?` stands for such a character everywhere.
 """
 
@@ -18,7 +18,14 @@ REVIEWER_HANDLE = re.compile(
 )
 """What a line may name: `@user`, `@organisation/team` or an e-mail address."""
 _UNSUPPORTED_CHARACTER = re.compile(r"[^\w ./+@=~,:%&-]")
-_FILE_HEADER = (
+CODEOWNERS_PATHS = {
+    "github": (".github/CODEOWNERS", "CODEOWNERS", "docs/CODEOWNERS"),
+    "gitlab": ("CODEOWNERS", "docs/CODEOWNERS", ".gitlab/CODEOWNERS"),
+}
+"""Where each forge looks for the file, in its order: the first that exists counts."""
+_GUARDED_PATHS = ("/.github/", "/.gitlab/", "/.gitlab-ci.yml", "/CODEOWNERS", "/docs/CODEOWNERS")
+"""What decides who reviews and what is checked: whoever may change it alone needs nobody's review."""
+FILE_HEADER = (
     "# Who reviews which file: made by `archgen owners --format codeowners` from the owners in the architecture.\n"
     "# A file whose elements belong to several partners names all of them. The last line that matches a file counts:\n"
     "# add lines of your own below, and they win.\n"
@@ -36,8 +43,15 @@ class CodeownersFile:
 def render_codeowners(ownership: Ownership, prefix: str = "") -> CodeownersFile:
     """Render CODEOWNERS. `prefix` is the project's folder relative to the repository's root."""
     lines: list[str] = []
-    for file, partners in sorted(ownership.files.items()):
-        path = file_pattern(posixpath.normpath(posixpath.join(prefix, file)))
+    everybody = tuple(owned.partner for owned in ownership.partners if owned.partner)
+    # First, since the last line counts: what no other line names, as a file that is new.
+    rest = [(f"{file_pattern(prefix)}/" if prefix else "*", everybody)]
+    guards = [(path, everybody) for path in _GUARDED_PATHS]
+    files = [
+        (file_pattern(posixpath.normpath(posixpath.join(prefix, file))), partners)
+        for file, partners in sorted(ownership.files.items())
+    ]
+    for path, partners in (*rest, *files, *guards):
         # A dict, not a set: two partners may share a reviewer, and the order of the file must not change.
         handles = dict.fromkeys(
             name for partner in partners for name in partner.reviewers if REVIEWER_HANDLE.match(name)
@@ -45,7 +59,8 @@ def render_codeowners(ownership: Ownership, prefix: str = "") -> CodeownersFile:
         without_reviewers = [
             partner.id for partner in partners if not any(map(REVIEWER_HANDLE.match, partner.reviewers))
         ]
-        if without_reviewers:
+        # Of what is everybody's, the file of the policy says it.
+        if without_reviewers and partners is not everybody:
             lines.append(f"# {path}: {', '.join(without_reviewers)} without reviewers")
         if handles:
             lines.append(f"{path} {' '.join(handles)}")
@@ -58,7 +73,7 @@ def render_codeowners(ownership: Ownership, prefix: str = "") -> CodeownersFile:
         f'`{name}` owns files and has no reviewers: write `reviewers: "@organisation/team"` below `partners: {name}`'
         for name in without_reviewers
     ]
-    return CodeownersFile(_FILE_HEADER + ("\n" + "\n".join(lines) + "\n" if lines else ""), tuple(warnings))
+    return CodeownersFile(FILE_HEADER + ("\n" + "\n".join(lines) + "\n" if lines else ""), tuple(warnings))
 
 
 def file_pattern(path: str) -> str:

@@ -10,9 +10,6 @@ from typing import Any, Literal
 from archgen.forge.forge_api import ForgeApi, ForgeError
 
 CommentOutcome = Literal["created", "updated", "unchanged"]
-_PAGE_SIZE = 100
-_MAX_PAGES = 50
-"""5,000 comments. A server that always has another full page would be asked for ever."""
 _KEY_PATTERN = re.compile(r"[A-Za-z0-9_./-]+")
 
 
@@ -31,8 +28,8 @@ class CommentTarget:
     max_length: int
 
 
-def put_comment(target: CommentTarget, text: str, key: str) -> CommentOutcome:
-    """Update our comment of this key, or create it. Raise ForgeError."""
+def put_comment(target: CommentTarget, text: str, key: str, *, creates: bool = True) -> CommentOutcome:
+    """Update our comment of this key, or create it unless `creates` is False. Raise ForgeError."""
     if not _KEY_PATTERN.fullmatch(key):
         msg = f"the key {key!r} may hold letters, digits, `_`, `.`, `/` and `-` only"
         raise ForgeError(msg)
@@ -50,6 +47,8 @@ def put_comment(target: CommentTarget, text: str, key: str) -> CommentOutcome:
             return "unchanged"
         target.api.send_request(target.change_method, f"{target.comment_path}/{comment['id']}", {"body": body})
         return "updated"
+    if not creates:
+        return "unchanged"
     target.api.send_request("POST", target.list_path, {"body": body})
     return "created"
 
@@ -57,18 +56,8 @@ def put_comment(target: CommentTarget, text: str, key: str) -> CommentOutcome:
 def _own_comments(target: CommentTarget) -> Iterator[dict[str, Any]]:
     """Yield the comments that we wrote; the comment of a stranger who copies the mark is never changed."""
     user_key, id_key, our_id = target.author_path
-    for page in range(1, _MAX_PAGES + 1):
-        comments = target.api.send_request("GET", f"{target.list_path}?per_page={_PAGE_SIZE}&page={page}")
-        if not isinstance(comments, list):
-            msg = "the list of comments is no list"
-            raise ForgeError(msg)
-        for comment in comments:
-            author = comment.get(user_key) if isinstance(comment, dict) else None
-            # The number becomes part of an address.
-            if isinstance(author, dict) and author.get(id_key) == our_id and isinstance(comment.get("id"), int):
-                yield comment
-        # A short page is the last one; the Link header is not needed.
-        if len(comments) < _PAGE_SIZE:
-            return
-    msg = f"the pull request has more than {_MAX_PAGES * _PAGE_SIZE:,} comments, and ours is not among them"
-    raise ForgeError(msg)
+    for comment in target.api.list_items(target.list_path, "comments, and ours is not among them"):
+        author = comment.get(user_key) if isinstance(comment, dict) else None
+        # The number becomes part of an address.
+        if isinstance(author, dict) and author.get(id_key) == our_id and isinstance(comment.get("id"), int):
+            yield comment

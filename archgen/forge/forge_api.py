@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from http.client import HTTPException
 from typing import Any
@@ -13,6 +13,9 @@ from urllib.request import HTTPRedirectHandler, Request, build_opener
 
 _TIMEOUT_SECONDS = 30
 _MAX_ANSWER_BYTES = 64 * 1024 * 1024
+_PAGE_SIZE = 100
+_MAX_PAGES = 50
+"""5,000 items. A server that always has another full page would be asked for ever."""
 _LOOPBACK_HOSTS = frozenset({"127.0.0.1", "::1", "localhost"})
 
 
@@ -48,6 +51,21 @@ class ForgeApi:
         if url_parts.scheme != "https" and not (url_parts.scheme == "http" and url_parts.hostname in _LOOPBACK_HOSTS):
             msg = f"the API's address {self.url!r} does not begin with https://"
             raise ForgeError(msg)
+
+    def list_items(self, path: str, noun: str) -> Iterator[Any]:
+        """Yield the items of a list, page after page; `noun` says in an error what there are too many of. Raise ForgeError."""
+        separator = "&" if "?" in path else "?"
+        for page in range(1, _MAX_PAGES + 1):
+            items = self.send_request("GET", f"{path}{separator}per_page={_PAGE_SIZE}&page={page}")
+            if not isinstance(items, list):
+                msg = f"the list of {noun} is no list"
+                raise ForgeError(msg)
+            yield from items
+            # A short page is the last one; the Link header is not needed.
+            if len(items) < _PAGE_SIZE:
+                return
+        msg = f"there are more than {_MAX_PAGES * _PAGE_SIZE:,} {noun}"
+        raise ForgeError(msg)
 
     def send_request(self, method: str, path: str, body: Mapping[str, Any] | None = None) -> Any:  # noqa: ANN401 - JSON
         """Send one request and return its answer as plain data. Raise ForgeError."""

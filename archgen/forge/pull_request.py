@@ -18,6 +18,19 @@ MAX_COMMENT_LENGTH = 65_536
 
 def find_pull_request(environment: Mapping[str, str]) -> CommentTarget:
     """Find the pull request that the job runs for. GITHUB_TOKEN needs the permission `pull-requests: write`."""
+    api, repository = open_github(environment)
+    return _target_pull_request(api, repository, _find_number(environment, api, repository))
+
+
+def find_request(environment: Mapping[str, str], number: int) -> CommentTarget:
+    """Return the pull or merge request of a number, in the repository that the job runs in."""
+    if environment.get("GITLAB_CI"):
+        return _target_merge_request(open_gitlab(environment), find_gitlab_project(environment), number)
+    return _target_pull_request(*open_github(environment), number)
+
+
+def open_github(environment: Mapping[str, str]) -> tuple[ForgeApi, str]:
+    """Return GitHub's API with the job's token, and the repository."""
     token = environment.get("GITHUB_TOKEN") or environment.get("GH_TOKEN")
     repository = environment.get("GITHUB_REPOSITORY", "")
     if not token:
@@ -28,11 +41,18 @@ def find_pull_request(environment: Mapping[str, str]) -> CommentTarget:
         msg = "GITHUB_REPOSITORY names no repository"
         raise ForgeError(msg)
     headers = {"Authorization": f"Bearer {token}", "X-GitHub-Api-Version": "2022-11-28"}
-    api = ForgeApi(environment.get("GITHUB_API_URL", "https://api.github.com"), headers)
+    return ForgeApi(environment.get("GITHUB_API_URL", "https://api.github.com"), headers), repository
+
+
+def _target_pull_request(api: ForgeApi, repository: str, number: int) -> CommentTarget:
     issues = f"/repos/{repository}/issues"
-    comments = f"{issues}/{_find_number(environment, api, repository)}/comments"
     return CommentTarget(
-        api, comments, f"{issues}/comments", "PATCH", ("user", "login", _token_author(api)), MAX_COMMENT_LENGTH
+        api,
+        f"{issues}/{number}/comments",
+        f"{issues}/comments",
+        "PATCH",
+        ("user", "login", _token_author(api)),
+        MAX_COMMENT_LENGTH,
     )
 
 
@@ -79,20 +99,41 @@ MAX_NOTE_LENGTH = 1_000_000
 
 
 def find_merge_request(environment: Mapping[str, str]) -> CommentTarget:
-    """Find the merge request that the job runs for. ARCHGEN_TOKEN is a project access token with the scope `api`."""
+    """Find the merge request that the job runs for."""
+    api = open_gitlab(environment)
+    number = environment.get("CI_MERGE_REQUEST_IID", "")
+    if not (number.isascii() and number.isdecimal()):
+        msg = "this job runs for no merge request"
+        raise ForgeError(msg)
+    # A fork's pipeline runs in the fork, whose merge requests are others.
+    project = environment.get("CI_MERGE_REQUEST_PROJECT_ID") or environment.get("CI_PROJECT_ID", "")
+    return _target_merge_request(api, _require_number(project), int(number))
+
+
+def open_gitlab(environment: Mapping[str, str]) -> ForgeApi:
+    """Return GitLab's API with ARCHGEN_TOKEN, a project access token with the scope `api`."""
     token = environment.get("ARCHGEN_TOKEN")
     if not token:
         msg = (
             "ARCHGEN_TOKEN is not set: a job's own token cannot write comments, a project access token (scope api) can"
         )
         raise ForgeError(msg)
-    # A fork's pipeline runs in the fork, whose merge requests are others.
-    project = environment.get("CI_MERGE_REQUEST_PROJECT_ID") or environment.get("CI_PROJECT_ID", "")
-    number = environment.get("CI_MERGE_REQUEST_IID", "")
-    if not (project.isascii() and project.isdecimal() and number.isascii() and number.isdecimal()):
-        msg = "this job runs for no merge request"
+    return ForgeApi(environment.get("CI_API_V4_URL", "https://gitlab.com/api/v4"), {"PRIVATE-TOKEN": token})
+
+
+def find_gitlab_project(environment: Mapping[str, str]) -> str:
+    """Return the number of the project that the job runs in."""
+    return _require_number(environment.get("CI_PROJECT_ID", ""))
+
+
+def _require_number(text: str) -> str:
+    if not (text.isascii() and text.isdecimal()):
+        msg = "this job runs for no merge request: CI_PROJECT_ID names no project"
         raise ForgeError(msg)
-    api = ForgeApi(environment.get("CI_API_V4_URL", "https://gitlab.com/api/v4"), {"PRIVATE-TOKEN": token})
+    return text
+
+
+def _target_merge_request(api: ForgeApi, project: str, number: int) -> CommentTarget:
     notes = f"/projects/{project}/merge_requests/{number}/notes"
     user = api.send_request("GET", "/user")
     if not isinstance(user, dict) or "id" not in user:

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from archgen.compare.review_facts import ReviewFacts, name_author
 from archgen.products.reviewed_change import ReviewedRequest
 
 _MERGE_REF = re.compile(r"refs/pull/\d+/merge")
@@ -33,6 +34,38 @@ def find_reviewed_request(environment: Mapping[str, str] = os.environ) -> Review
         str(head.get("sha", "")),
         environment.get("GITHUB_SHA", "") if is_merge_ref else None,
     )
+
+
+def find_request_authors(environment: Mapping[str, str] = os.environ) -> ReviewFacts:
+    """Return for whom a job of a forge runs: who opened the request, and who moved it; nobody outside of a job.
+
+    Only what the forge sets is asked. A queue runs for who put the request there: its author was judged before.
+    """
+    if login := environment.get("GITLAB_USER_LOGIN"):
+        source, target = (environment.get(f"CI_MERGE_REQUEST_{name}PROJECT_ID") for name in ("SOURCE_", ""))
+        return ReviewFacts(
+            (name_author(login, environment.get("GITLAB_USER_EMAIL", "")),),
+            trusts_mails=source is not None and source == target,
+            is_decided=environment.get("CI_MERGE_REQUEST_EVENT_TYPE") == "merge_train",
+        )
+    actor = environment.get("GITHUB_ACTOR")
+    if not actor:
+        return ReviewFacts()
+    request = _read_event(environment).get("pull_request") or {}
+    logins = dict.fromkeys(filter(None, (_look_up(request, "user", "login"), actor)))
+    source, target = (_look_up(request, side, "repo", "full_name") for side in ("head", "base"))
+    return ReviewFacts(
+        tuple(name_author(login) for login in logins),
+        trusts_mails=bool(source) and source == target,
+        is_decided=environment.get("GITHUB_EVENT_NAME") == "merge_group",
+    )
+
+
+def _look_up(data: object, *keys: str) -> str:
+    """Return the text at a path in data from a forge, empty where there is none."""
+    for key in keys:
+        data = data.get(key) if isinstance(data, dict) else None
+    return data if isinstance(data, str) else ""
 
 
 def _describe_merge_request(environment: Mapping[str, str]) -> ReviewedRequest:

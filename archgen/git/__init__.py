@@ -7,7 +7,7 @@ without running it.
 What only a merge or an editor needs is imported from its module, so that `archgen check` does not load it.
 """
 
-from archgen.git.branch_base import BaseCommit, find_branch_base, find_common_commit
+from archgen.git.branch_base import BaseCommit, find_branch_base, find_common_commit, find_unpushed_base
 from archgen.git.commit_log import find_object_ids, list_first_parents
 from archgen.git.git_errors import GitError, NoCommitsError, NoRepositoryError, ShallowError, UnknownRevisionError
 from archgen.git.object_reader import GitObjects, TreeEntry
@@ -33,6 +33,7 @@ __all__ = [
     "find_common_commit",
     "find_object_ids",
     "find_repository",
+    "find_unpushed_base",
     "list_cut_commits",
     "list_first_parents",
     "look_up_tree",

@@ -39,6 +39,16 @@ def find_branch_base(repository: GitRepository, setting: str | None = None) -> B
     return BaseCommit(commit, "HEAD" if commit == head_commit else f"where this branch left {main_line}")
 
 
+def find_unpushed_base(repository: GitRepository) -> BaseCommit | None:
+    """Return the commit at which HEAD left the main line of the remote `origin`; None where this clone knows of none.
+
+    Raise what `find_common_commit` raises.
+    """
+    remote_lines = [name for name in _list_main_lines(repository) if name.startswith("origin/")]
+    main_line = next((name for name in remote_lines if look_up_commit(repository, name)), None)
+    return find_common_commit(repository, main_line, "HEAD") if main_line else None
+
+
 def find_common_commit(repository: GitRepository, left: str, right: str) -> BaseCommit:
     """Return the newest commit that two revisions have in common. Raise ShallowError or GitError."""
     result = run_git(
@@ -63,8 +73,12 @@ def _find_main_line(repository: GitRepository, setting: str | None) -> str:
     if setting:
         setting_name = next((name for name in (setting, f"origin/{setting}") if look_up_commit(repository, name)), "")
         return setting_name if setting_name or repository.is_shallow else resolve_revision(repository, setting)
+    return next((name for name in _list_main_lines(repository) if look_up_commit(repository, name)), "")
+
+
+def _list_main_lines(repository: GitRepository) -> tuple[str, ...]:
+    """Return the names that the main line may have, the likeliest first."""
     remote_default = run_git(
         repository.top, "symbolic-ref", "--quiet", "--short", "refs/remotes/origin/HEAD"
     ).text.strip()
-    names = (remote_default, *_MAIN_LINES) if remote_default else _MAIN_LINES
-    return next((name for name in names if look_up_commit(repository, name)), "")
+    return (remote_default, *_MAIN_LINES) if remote_default else _MAIN_LINES

@@ -44,7 +44,7 @@ KEYS: Mapping[str, Mapping[str, str]] = {
     },
     "ros": {
         "distro": "ros.distro", "interfaces": "files", "shared_topics": "shared_topics", "parameters": "ros_parameters",
-        "definitions": "definitions", "parameter_texts": "parameter_texts",
+        "environment": "start_environment", "definitions": "definitions", "parameter_texts": "parameter_texts",
     },
     "rules.large-jitter": {
         "severity": "severity", "limit": "percentage",
@@ -99,17 +99,17 @@ KEYS: Mapping[str, Mapping[str, str]] = {
         "pictures": "report.pictures",
     },
     "review.breaking": {
-        "wire": "severity", "promise": "severity", "meaning": "severity", "source": "severity",
+        "wire": "severity", "promise": "severity", "meaning": "severity", "source": "severity", "foreign": "severity",
     },
     "review": {
         "main": "text", "breaking": "review.breaking", "accepted": "review.accepted", "backends": "review.backends",
         "noise": "percentage", "passes": "review.passes",
     },
     "accepted": {
-        "reason": "text", "key": "text",
+        "reason": "text", "key": "text", "was": "text",
     },
     "accepted_key": {
-        "reason": "text", "key": "text",
+        "reason": "text", "key": "text", "was": "text",
     },
     "site": {
         "repository": "repository_address", "branch": "text", "folder": "text", "forge": "forge",
@@ -179,10 +179,11 @@ KEYS: Mapping[str, Mapping[str, str]] = {
         "name": "text", "namespace": "text", "kind": "node_kinds", "package": "text", "executable": "text",
         "plugin": "text", "language": "code_language", "command": "command", "arguments": "texts", "remaps": "remaps",
         "container": "component_node.container", "host": "component_node.host", "threads": "count",
-        "scheduling": "executor_order", "reentrant": "flag", "status": "node_status", "publishes": "topics",
-        "subscribes": "topics", "serves": "calls", "calls": "calls", "parameters": "component_node.parameters",
-        "parameter_files": "texts", "parameter_commands": "parameter_commands", "start": "start", "tags": "tags",
-        "urls": "urls", "properties": "properties", "hints": "hints", "whole": "flag",
+        "scheduling": "executor_order", "reentrant": "flag", "status": "node_status", "observed": "flag",
+        "publishes": "topics", "subscribes": "topics", "serves": "calls", "calls": "calls",
+        "parameters": "component_node.parameters", "parameter_files": "texts",
+        "parameter_commands": "parameter_commands", "start": "start", "tags": "tags", "urls": "urls",
+        "properties": "properties", "hints": "hints", "whole": "flag",
     },
     "input": {
         "from": "input.from", "external": "text", "medium": "input.medium", "type": "type_name", "optional": "flag",
@@ -254,10 +255,11 @@ KEYS: Mapping[str, Mapping[str, str]] = {
         "namespace": "text", "kind": "node_kinds", "package": "text", "executable": "text", "plugin": "text",
         "language": "code_language", "command": "command", "arguments": "texts", "remaps": "remaps",
         "container": "node.container", "host": "node.host", "threads": "count", "scheduling": "executor_order",
-        "callback_groups": "callback_groups", "reentrant": "flag", "status": "node_status", "publishes": "topics",
-        "subscribes": "topics", "serves": "calls", "calls": "calls", "internal": "internal", "timing": "timing",
-        "parameters": "node.parameters", "parameter_files": "texts", "parameter_commands": "parameter_commands",
-        "start": "start", "tags": "tags", "urls": "urls", "properties": "properties", "hints": "hints",
+        "callback_groups": "callback_groups", "reentrant": "flag", "status": "node_status", "observed": "flag",
+        "publishes": "topics", "subscribes": "topics", "serves": "calls", "calls": "calls", "internal": "internal",
+        "timing": "timing", "parameters": "node.parameters", "parameter_files": "texts",
+        "parameter_commands": "parameter_commands", "start": "start", "tags": "tags", "urls": "urls",
+        "properties": "properties", "hints": "hints",
     },
     "internal": {
         "publishes": "internal_topics", "subscribes": "internal_topics", "serves": "internal_calls",
@@ -275,8 +277,8 @@ KEYS: Mapping[str, Mapping[str, str]] = {
         "liveliness": "qos_liveliness", "lease_duration": "duration",
     },
     "host": {
-        "title": "text", "cores": "count", "scheduling": "host_scheduling", "description": "prose", "tags": "tags",
-        "properties": "properties", "hints": "hints",
+        "title": "text", "cores": "count", "scheduling": "host_scheduling", "description": "prose",
+        "environment": "start_environment", "tags": "tags", "properties": "properties", "hints": "hints",
     },
     "container": {
         "title": "text", "namespace": "text", "name": "text", "package": "text", "executable": "text",
@@ -486,8 +488,9 @@ ATTRIBUTES: Mapping[str, tuple[str, ...]] = {
     "parameter_declaration.from": ("handed_from",), "parameter_declaration.hints": ("hints", "hint_places"),
     "frame.by": ("by", "by_kind", "by_written"), "node.kind": ("kinds",),
     "host.scheduling": ("scheduling", "core_scheduling", "core_places"),
-    "link.connects": ("connects", "devices", "unresolved"), "link.latency": ("best", "worst"),
-    "start.by": ("by", "by_written"), "policy.forbid": ("forbid_from", "forbid_to", "from_at", "to_at"),
+    "host.environment": ("environment", "environment_places"), "link.connects": ("connects", "devices", "unresolved"),
+    "link.latency": ("best", "worst"), "start.by": ("by", "by_written"),
+    "policy.forbid": ("forbid_from", "forbid_to", "from_at", "to_at"),
     "policy.accepted": ("accepted", "accepted_places"), "forbid.from": ("forbid_from",), "forbid.to": ("forbid_to",),
     "timing.wcet": ("wcet", "measured_times"), "timing_input.stored": ("stored_at_once",),
     "chain.through": ("through", "unresolved"), "chain.requirements": ("requirements", "requirement_places"),

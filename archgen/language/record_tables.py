@@ -26,6 +26,7 @@ LASTING_SECTIONS: frozenset[str] = frozenset({
 RECORD_KEYS: Mapping[str, Mapping[str, str]] = {
     "project": {
         "id": "", "title": "", "version": "", "description": "", "middleware": "", "distro": "", "parameters": "",
+        "environment": "",
     },
     "partner": {
         "title": "", "description": "", "contact": "", "reviewers": "", "properties": "annotations",
@@ -80,8 +81,8 @@ RECORD_KEYS: Mapping[str, Mapping[str, str]] = {
         "full_name": "", "kind": "", "command": "", "arguments": "", "remaps": "", "start": "start", "co_owners": "",
         "implements": "", "callback_groups": "", "reentrant": "flag", "derived": "flag", "endpoints": "endpoint[]",
         "timing": "timing{}", "parameters": "", "parameter_files": "", "parameter_commands": "",
-        "effective_parameters": "effective_parameter{}", "tags": "", "urls": "", "properties": "annotations",
-        "hints": "annotations",
+        "effective_parameters": "effective_parameter{}", "observed": "flag", "tags": "", "urls": "",
+        "properties": "annotations", "hints": "annotations",
     },
     "topic": {
         "name": "", "flow": "", "messages": "", "types": "", "writers": "", "readers": "", "size": "B",
@@ -95,8 +96,8 @@ RECORD_KEYS: Mapping[str, Mapping[str, str]] = {
         "part_fields": "part_fields", "constants": "constant{}", "properties": "annotations", "hints": "annotations",
     },
     "host": {
-        "title": "", "description": "", "cores": "", "tags": "", "scheduling": "", "properties": "annotations",
-        "hints": "annotations",
+        "title": "", "description": "", "cores": "", "tags": "", "scheduling": "", "environment": "",
+        "properties": "annotations", "hints": "annotations",
     },
     "container": {
         "title": "", "host": "", "threads": "", "scheduling": "", "name": "", "package": "", "executable": "",
@@ -159,8 +160,9 @@ RECORD_KEYS: Mapping[str, Mapping[str, str]] = {
         "directory": "", "user": "", "once": "flag", "state": "", "by": "",
     },
     "endpoint": {
-        "use": "", "name": "", "own_name": "", "flow": "", "message": "", "type": "", "port": "", "internal": "flag",
-        "sources": "", "qos": "qos",
+        "use": "", "name": "", "own_name": "", "program_name": "", "from": "evidence{}", "unknown": "", "flow": "",
+        "message": "", "type": "", "port": "", "internal": "flag", "sources": "", "qos": "qos", "qos_override": "",
+        "qos_if_ignored": "qos", "domain": "", "clock": "", "runs": "",
     },
     "effective_parameter": {
         "origin": "", "value": "",
@@ -197,6 +199,9 @@ RECORD_KEYS: Mapping[str, Mapping[str, str]] = {
     },
     "start_ready": {
         "port": "", "file": "", "topic": "", "service": "", "log": "", "wait": "ns", "within": "ns",
+    },
+    "evidence": {
+        "by": "", "rule": "", "at": "",
     },
     "qos": {
         "profile": "", "reliability": "", "durability": "", "history": "", "depth": "", "liveliness": "",

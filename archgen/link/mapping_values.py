@@ -14,6 +14,7 @@ from archgen.model import quantity
 from archgen.model.component import DiagramLayout
 from archgen.model.declared_timing import SchedulingOrder
 from archgen.model.message_types import full_message_name
+from archgen.model.parameter import ParameterValue
 from archgen.model.path_resolver import title_from_id
 from archgen.model.port_media import normalise_medium
 from archgen.model.quantity import Quantity
@@ -117,6 +118,13 @@ def get_text_mapping(mapping: MappingNode, key: str) -> Mapping[str, str]:
     """Return a mapping of texts, such as `urls`."""
     texts_mapping = get_mapping(mapping, key)
     return {e.key: e.value.text for e in texts_mapping if type(e.value) is ScalarNode and e.value.value is not None}
+
+
+def list_placed_texts(mapping: MappingNode, key: str) -> Iterator[ParameterValue]:
+    """Yield the texts of a mapping, each with its place."""
+    for name, text in get_text_mapping(mapping, key).items():
+        entry = get_mapping(mapping, key).entries[name]
+        yield ParameterValue(name, text, entry.value.span, entry.key_span)
 
 
 def list_hint_places(hints: MappingNode) -> Iterator[tuple[tuple[str | int, ...], Span]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from archgen.compose import ExpandedProject
+from archgen.derivation.wire.remap_rules import apply_launch_names
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.link import mapping_values
@@ -74,6 +75,9 @@ def link_project(  # noqa: PLR0913 - all by name
         NodeContext(element_outline, resolver, components, containers, timing_merger, memory),
         implemented,
     )
+    ros_section = mapping_values.get_mapping(root, "ros")
+    distro = mapping_values.get_text(ros_section, "distro")
+    nodes = {name: apply_launch_names(node, distro) if node.arguments else node for name, node in nodes.items()}
     declared_sections = declare_sections(root, resolver)
     use_cases = declare_use_cases(root, resolver)
     chains = section_declaration.declare_chains(root, resolver, implements, declared_groups.list_leaf_ports)
@@ -84,13 +88,13 @@ def link_project(  # noqa: PLR0913 - all by name
     views = section_declaration.declare_views(root, resolver)
     glossary = property_declaration.declare_glossary(root, diagnostics)
     suspected_ids = resolver.finish_resolving()
-    ros_section = mapping_values.get_mapping(root, "ros")
     architecture = Architecture(  # of values only: nothing below resolves a reference
         project=section_declaration.declare_project(root, default_id, default_title),
-        distro=mapping_values.get_text(ros_section, "distro"),
+        distro=distro,
         distro_at=mapping_values.get_span(ros_section, "distro"),
         shared_topics=mapping_values.get_texts(ros_section, "shared_topics"),
         ros_parameters=tuple(flatten_parameters(mapping_values.get_mapping(ros_section, "parameters"))),
+        ros_environment=tuple(mapping_values.list_placed_texts(ros_section, "environment")),
         layout=mapping_values.get_layout(root, "layout"),
         **declared_sections,
         use_cases=use_cases,

@@ -203,6 +203,11 @@ def _read_host_orders(
     )
 
 
+def _read_placed_mapping(mapping: MappingNode, key: str) -> tuple[Mapping[str, str], Mapping[str, Span]]:
+    places = {each.name: each.at for each in mapping_values.list_placed_texts(mapping, key)}
+    return mapping_values.get_text_mapping(mapping, key), places
+
+
 VALUE_READERS: Mapping[str, ValueReader | None] = {
     # What takes more than its value.
     **dict.fromkeys(("chain.deadline", "component_type.abstract", "input.freshness", "frame.rate"), None),
@@ -249,6 +254,7 @@ VALUE_READERS: Mapping[str, ValueReader | None] = {
     "performance": _read_performance,
     "component_requirements": _read_requirement_uses,
     "host_scheduling": _read_host_orders,
+    "host.environment": _read_placed_mapping,
     "chain.requirements": _read_placed_texts,
 }
 """What reads a value, by its type; and single keys (`KIND.KEY`) that are read otherwise, or have no type of their own."""

@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+import posixpath
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from archgen import pipeline, project
-from archgen.diagnostics.diagnostic import Diagnostic
+from archgen import git, pipeline, project
+from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.finding_identity import FindingIdentity, identify_finding
 from archgen.git import GitError
 from archgen.git.merged_trees import MergeFolder, PathConflict, open_merge_folder
+from archgen.git.repository_lookup import look_up_tree
+from archgen.merge.double_renames import find_double_renames
 from archgen.merge.file_merge import merge_contents
 from archgen.merge.slice_reading import read_normal_tree
 from archgen.merge.tree_merge import MergeConflictError, merge_values, read_merged_value
+from archgen.model.review_settings import BreakPolicy
 from archgen.pipeline import CheckedProject, VersionCache
 from archgen.project import TrackedProject
 from archgen.syntax.file_patterns import YAML_ENDINGS
 from archgen.syntax.project_files import MAX_BYTES
+from archgen.syntax.yaml_tree import MappingNode, YamlNode
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,18 +34,78 @@ class FileConflict:
 
 
 @dataclass(frozen=True, slots=True)
+class JointBreaks:
+    """What two sides break only together, as findings: what the second one takes from what the first one brought."""
+
+    by_theirs: tuple[Diagnostic, ...] = ()
+    """What breaks where our side is merged first, and then theirs."""
+    by_ours: tuple[Diagnostic, ...] = ()
+    partners: tuple[str, ...] = ()
+    """What people call those who lose something, sorted."""
+
+    @property
+    def findings(self) -> tuple[Diagnostic, ...]:
+        """All of them, once each."""
+        return tuple(dict.fromkeys((*self.by_theirs, *self.by_ours)))
+
+
+BreakFinder = Callable[[CheckedProject, CheckedProject, CheckedProject, CheckedProject], JointBreaks]
+"""Says what two sides break only together, from what both began with, ours, theirs, and both merged."""
+
+
+@dataclass(frozen=True, slots=True)
 class BranchMerge:
     """What the main line would be with some branches merged into it.
 
     `new_findings` are those that neither the main line nor a branch (nor fewer of them together) has; they need not
     be wrong in any branch. `checked_project` is None where people have to settle conflicts first, or where the merged
-    commit holds no project.
+    commit holds no project. `sides` are the branches of what was merged: none of them is the main line.
     """
 
     branches: tuple[str, ...]
     conflicts: tuple[FileConflict, ...] = ()
     new_findings: tuple[Diagnostic, ...] = ()
     checked_project: CheckedProject | None = None
+    sides: tuple[tuple[str, ...], tuple[str, ...]] = ((), ())
+    joint_breaks: JointBreaks = field(default_factory=JointBreaks)
+
+    @property
+    def goes_in_no_order(self) -> bool:
+        """Whether each side breaks somebody where it is merged second."""
+        return bool(self.joint_breaks.by_theirs and self.joint_breaks.by_ours)
+
+    @property
+    def order(self) -> tuple[tuple[str, ...], tuple[str, ...]] | None:
+        """The sides in the only order in which the second one breaks nobody; None where there is no such order or none
+        is needed. Whoever comes second relies on what the first one changed, and has to look.
+        """
+        if bool(self.joint_breaks.by_theirs) == bool(self.joint_breaks.by_ours):
+            return None
+        return self.sides if self.joint_breaks.by_ours else self.sides[::-1]
+
+    @property
+    def unread_files(self) -> tuple[str, ...]:
+        """The files that could not be read: what the merge breaks cannot be judged then."""
+        errors = self.checked_project.reading_errors if self.checked_project else ()
+        return tuple(sorted({error.span.file for error in errors}))
+
+    @property
+    def is_refused(self) -> bool:
+        """Whether the project's policy refuses what cannot be judged, as `archgen diff --breaking` does."""
+        if self.checked_project is None:
+            return True
+        policy = self.checked_project.architecture.review.breaking or BreakPolicy()
+        return bool(self.unread_files) and policy.gravest is Severity.ERROR
+
+    @property
+    def findings(self) -> tuple[Diagnostic, ...]:
+        """All that is wrong with the merged project and with none of its branches."""
+        return (*self.joint_breaks.findings, *self.new_findings)
+
+    @property
+    def has_news(self) -> bool:
+        """Whether the merge brings anything that none of its branches has by itself."""
+        return bool(self.conflicts or self.findings)
 
     @property
     def is_blocked(self) -> bool:
@@ -50,22 +115,28 @@ class BranchMerge:
 
 @dataclass(frozen=True, slots=True)
 class _MergeState:
-    """A commit, the branches that are merged into the main line in it (none: the main line), and what is found there."""
+    """A commit, the branches that are merged into the main line in it (none: the main line), and what is found there.
+
+    `parts` are the states that were merged into the main line one after the other, in a state of several branches.
+    """
 
     branches: tuple[str, ...]
     commit: str
     known_findings: frozenset[FindingIdentity]
     checked_project: CheckedProject | None
+    parts: tuple[_MergeState, ...] = ()
 
 
 class BranchMerger:
     """Merges branches of one project. All that is read is read once."""
 
-    def __init__(self, tracked_project: TrackedProject, merge_folder: MergeFolder) -> None:
+    def __init__(self, tracked_project: TrackedProject, merge_folder: MergeFolder, find_breaks: BreakFinder) -> None:
         self._merge_folder = merge_folder
         self._tracked_project = tracked_project
         self._merged_project = TrackedProject(merge_folder.objects, tracked_project.locations)
         self._version_cache = VersionCache()
+        self._find_breaks = find_breaks
+        self._checked_trees: dict[str, CheckedProject | None] = {}
 
     def read_state(self, revision: str, branches: tuple[str, ...]) -> _MergeState:
         """Read a commit as it is; one without the project has no findings. Raise GitError for unknown revisions."""
@@ -74,6 +145,13 @@ class BranchMerger:
         return _MergeState(branches, commit, _identify_findings(checked_project), checked_project)
 
     def _check_commit(self, commit: str, name: str) -> CheckedProject | None:
+        # A branch that has all of the main line is what it is merged into: one tree, checked once.
+        tree = look_up_tree(self._merge_folder.objects.repository, commit) or commit
+        if tree not in self._checked_trees:
+            self._checked_trees[tree] = self._check_tree(commit, name)
+        return self._checked_trees[tree]
+
+    def _check_tree(self, commit: str, name: str) -> CheckedProject | None:
         try:
             loaded_project = project.load_at_commit(
                 self._merged_project, commit, self._version_cache.parsed_slices, name
@@ -83,13 +161,13 @@ class BranchMerger:
         return pipeline.check_loaded_project(loaded_project, self._version_cache)
 
     def merge_states(
-        self, ours: _MergeState, theirs: _MergeState, *, finds_more: bool = True
+        self, ours: _MergeState, theirs: _MergeState, *, is_checked: bool = True
     ) -> tuple[BranchMerge, _MergeState | None]:
         """Merge what `theirs` stands for into `ours`; return what came out, and the merged state if there is one.
 
-        Without `finds_more` only conflicts are asked for: checking what was merged takes most of the time.
+        Unless `is_checked` only conflicts of files are asked for: checking and comparing takes most of the time.
         """
-        branches = (*ours.branches, *theirs.branches)
+        branches, sides = (*ours.branches, *theirs.branches), (ours.branches, theirs.branches)
         tree_merge = self._merge_folder.merge_commits(ours.commit, theirs.commit)
         settled_contents, conflicts = {}, []
         for conflict in tree_merge.conflicts:
@@ -98,19 +176,65 @@ class BranchMerger:
             if problem is None:
                 settled_contents[conflict.path] = (conflict.mode, content)
         if any(conflict.problem for conflict in conflicts):
-            return BranchMerge(branches, tuple(conflicts)), None
+            return BranchMerge(branches, tuple(conflicts), sides=sides), None
         tree = self._merge_folder.replace_files(tree_merge.tree, settled_contents)
-        checked_project = self._check_commit(tree, " + ".join(branches)) if finds_more else ours.checked_project
+        checked_project = self._check_commit(tree, " + ".join(branches)) if is_checked else ours.checked_project
+        joint_breaks, double_renames = self._judge_merge(ours, theirs, checked_project)
+        if double_renames:
+            return BranchMerge(branches, (*conflicts, *double_renames), sides=sides), None
         known_findings = ours.known_findings | theirs.known_findings
-        new_findings = tuple(
-            finding
-            for finding in (checked_project.findings if checked_project else ())
-            if identify_finding(finding) not in known_findings
-        )
+        findings = checked_project.findings if checked_project else ()
+        new_findings = tuple(each for each in findings if identify_finding(each) not in known_findings)
+        branch_merge = BranchMerge(branches, tuple(conflicts), new_findings, checked_project, sides, joint_breaks)
         commit = self._merge_folder.commit_tree(tree, (ours.commit, theirs.commit))
         known_findings |= _identify_findings(checked_project)
-        merged_state = _MergeState(branches, commit, known_findings, checked_project)
-        return BranchMerge(branches, tuple(conflicts), new_findings, checked_project), merged_state
+        parts = (*(ours.parts or (ours,)), theirs)
+        return branch_merge, _MergeState(branches, commit, known_findings, checked_project, parts)
+
+    def join_states(self, states: Sequence[_MergeState]) -> _MergeState | None:
+        """Merge states and check what comes out; None where they do not merge."""
+        joined: _MergeState | None = states[0]
+        for state in states[1:]:
+            joined = self.merge_states(joined, state, is_checked=False)[1] if joined else None
+        if joined is None or joined is states[0]:
+            return joined
+        checked_project = self._check_commit(joined.commit, " + ".join(joined.branches))
+        known_findings = joined.known_findings | _identify_findings(checked_project)
+        return replace(joined, checked_project=checked_project, known_findings=known_findings)
+
+    def _judge_merge(
+        self, ours: _MergeState, theirs: _MergeState, merged_project: CheckedProject | None
+    ) -> tuple[JointBreaks, tuple[FileConflict, ...]]:
+        """Return what both sides break only together, and what both sides call otherwise."""
+        our_project, their_project = ours.checked_project, theirs.checked_project
+        if our_project is None or their_project is None or merged_project is None:
+            return JointBreaks(), ()
+        # One side has all of the other one.
+        if merged_project is our_project or merged_project is their_project:
+            return JointBreaks(), ()
+        base_project = self._check_base(ours, theirs)
+        if base_project is None:
+            return JointBreaks(), ()
+        versions = base_project, our_project, their_project, merged_project
+        double_renames = tuple(
+            FileConflict(
+                self._path_in_repository(rename.at.file),
+                f"both sides renamed `{rename.old_id}`: it is `{rename.our_id}` and `{rename.their_id}` now, and there would be two",
+            )
+            for rename in find_double_renames(*(version.architecture for version in versions))
+        )
+        return JointBreaks() if double_renames else self._find_breaks(*versions), double_renames
+
+    def _check_base(self, ours: _MergeState, theirs: _MergeState) -> CheckedProject | None:
+        """Check the project where both sides parted; None where it was not there, or the clone does not reach back."""
+        try:
+            fork = git.find_common_commit(self._merge_folder.objects.repository, ours.commit, theirs.commit)
+        except GitError:
+            return None
+        return self._check_commit(fork.commit_id, fork.description)
+
+    def _path_in_repository(self, file: str) -> str:
+        return posixpath.normpath(posixpath.join(self._tracked_project.locations[0][0], file))
 
     def _settle_conflict(
         self, conflict: PathConflict, ours: _MergeState, theirs: _MergeState
@@ -127,7 +251,32 @@ class BranchMerger:
             merged = merge_contents(old_content, our_content, their_content)
         except GitError as error:
             return b"", str(error)
+        if merged.conflict_path:
+            return merged.content, self._describe_move(conflict, ours, theirs, merged.conflict_path) or merged.problem
         return merged.content, merged.problem
+
+    def _describe_move(
+        self, conflict: PathConflict, ours: _MergeState, theirs: _MergeState, path: tuple[str, ...]
+    ) -> str:
+        """Return where something stands now that one side moved out of this file while the other one changed it; empty
+        where it is not so: the models conflict then, too.
+        """
+        base_project = self._check_base(ours, theirs)
+        projects = base_project, ours.checked_project, theirs.checked_project
+        nodes = [_find_node(project, path) if project and not project.reading_errors else None for project in projects]
+        places = [self._path_in_repository(node.span.file) if node else "" for node in nodes]
+        new_place = next((place for place in places[1:] if place != conflict.path), "")
+        if not all(places) or not new_place:
+            return ""
+        try:
+            base, our, their = (read_merged_value(node, path) if node else None for node in nodes)
+            merge_values(base, our, their, path)
+        except MergeConflictError:
+            return ""
+        return (
+            f"one side moved `{'.'.join(path)}` to `{new_place}`, the other one changed it: git conflicts, what both sides say"
+            " does not; make the change where it stands now"
+        )
 
     def _describe_absence(self, conflict: PathConflict, other_side: _MergeState) -> str:
         """Return what happened to a file that one side changed and the other one does not have any more.
@@ -164,58 +313,104 @@ def _identify_findings(checked_project: CheckedProject | None) -> frozenset[Find
     return frozenset(identify_finding(finding) for finding in (checked_project.findings if checked_project else ()))
 
 
-def preview_merges(path: Path | None, main_line: str, branches: Sequence[str]) -> Iterator[BranchMerge]:
+def _find_node(checked_project: CheckedProject, path: Sequence[str]) -> YamlNode | None:
+    """Return what stands at a path of keys in the whole project, in whichever file."""
+    node: YamlNode | None = checked_project.merged_table
+    for key in path:
+        node = node.get(key) if isinstance(node, MappingNode) else None
+    return node
+
+
+def preview_merges(
+    path: Path | None,
+    main_line: str,
+    branches: Sequence[str],
+    find_breaks: BreakFinder,
+    *,
+    leaves_out_unmergeable: bool = False,
+) -> Iterator[BranchMerge]:
     """Yield each branch merged into the main line, then what only several of them together do.
 
-    Raise `git.GitError` and `project.ProjectNotFoundError`.
+    Raise `git.GitError` and `project.ProjectNotFoundError`; with `leaves_out_unmergeable` a branch that git cannot find or
+    merge is a conflict of its own, since it may be a stranger's.
     """
     tracked_project = project.find_tracked_project(path)
     with open_merge_folder(tracked_project.objects.repository) as merge_folder:
-        merger = BranchMerger(tracked_project, merge_folder)
+        merger = BranchMerger(tracked_project, merge_folder, find_breaks)
         main_state = merger.read_state(main_line, ())
         merged_states = []
         for branch in dict.fromkeys(branches):
-            branch_merge, merged_state = merger.merge_states(main_state, merger.read_state(branch, (branch,)))
+            try:
+                branch_merge, merged_state = merger.merge_states(main_state, merger.read_state(branch, (branch,)))
+            except GitError as error:
+                if not leaves_out_unmergeable:
+                    raise
+                yield BranchMerge((branch,), (FileConflict("", str(error)),), sides=((), (branch,)))
+                continue
             yield branch_merge
             if merged_state is not None:
-                merged_states.append(merged_state)
+                merged_states.append(replace(merged_state, parts=()))
         yield from _merge_together(merger, merged_states)
 
 
-def _merge_together(merger: BranchMerger, states: Iterable[_MergeState]) -> Iterator[BranchMerge]:
+def _merge_together(merger: BranchMerger, states: Sequence[_MergeState]) -> Iterator[BranchMerge]:
     """Merge branches one after the other; yield where one does not go with those before it, and at last all of them if
     they do.
+
+    A branch that conflicts with those before it begins a line of its own, and each branch is merged into each line: so every
+    pair is seen, and pairs are merged by themselves only where a line says that something is wrong.
     """
-    merged_states: list[_MergeState] = []
-    together: _MergeState | None = None
-    whole_merge: BranchMerge | None = None
-    has_new_findings = False
+    lines: list[_MergeState] = []
+    whole_merge, is_sound = None, True
     for state in states:
-        branch_merge, merged_state = merger.merge_states(together, state) if together else (None, state)
-        if branch_merge is not None and (branch_merge.conflicts or branch_merge.new_findings):
-            yield from _find_partners(merger, merged_states, state, branch_merge)
-        if branch_merge is not None and not branch_merge.is_blocked:
-            whole_merge = replace(branch_merge, conflicts=(), new_findings=())
-            has_new_findings |= bool(branch_merge.new_findings)
-        # A branch that conflicts with those before it is left out of what follows.
-        if merged_state is not None:
-            together = merged_state
-            merged_states.append(state)
-    if whole_merge is not None and not has_new_findings:
+        home = None
+        for number, line in enumerate(lines):
+            branch_merge, merged_state = merger.merge_states(line, state)
+            if branch_merge.has_news:
+                yield from _find_partners(merger, line, state, branch_merge)
+            if number == 0 and merged_state is not None:
+                whole_merge = replace(branch_merge, conflicts=())
+                is_sound &= not whole_merge.has_news
+            if home is None and merged_state is not None:
+                home = number
+                lines[number] = merged_state
+        if home is None:
+            lines.append(state)
+    if whole_merge is not None and is_sound:
         yield whole_merge
 
 
 def _find_partners(
-    merger: BranchMerger, earlier_states: Sequence[_MergeState], state: _MergeState, branch_merge: BranchMerge
+    merger: BranchMerger, line: _MergeState, state: _MergeState, branch_merge: BranchMerge
 ) -> Iterator[BranchMerge]:
-    """Yield the pairs that do what a branch does with all earlier ones; where no pair does, all of them."""
-    finds_more = bool(branch_merge.new_findings)
-    pairs = [merger.merge_states(earlier, state, finds_more=finds_more)[0] for earlier in earlier_states]
-    guilty_pairs = [pair for pair in pairs if pair.conflicts or pair.new_findings]
-    shown_conflicts = {conflict for pair in guilty_pairs for conflict in pair.conflicts}
-    shown_findings = {identify_finding(finding) for pair in guilty_pairs for finding in pair.new_findings}
+    """Yield the pairs that do what a branch does with a line of merged branches; where no pair does, the whole line."""
+    if not line.parts:
+        yield branch_merge
+        return
+    # Where files conflict a look at the files suffices.
+    is_checked = bool(branch_merge.findings)
+    pairs = [merger.merge_states(earlier, state, is_checked=is_checked)[0] for earlier in line.parts]
+    rest = [earlier for earlier, pair in zip(line.parts, pairs, strict=True) if not pair.is_blocked]
+    if branch_merge.is_blocked and len(rest) < len(pairs):
+        yield from (pair for pair in pairs if pair.is_blocked)
+        # The branch was not judged with those with which it does not conflict.
+        rest_line = merger.join_states(rest) if rest else None
+        rest_merge = merger.merge_states(rest_line, state)[0] if rest_line else None
+        if rest_line and rest_merge and rest_merge.has_news:
+            yield from _find_partners(merger, rest_line, state, rest_merge)
+        return
+    if branch_merge.is_blocked:
+        # Elements have two names, which no file says.
+        pairs = [merger.merge_states(earlier, state)[0] for earlier in line.parts]
+    guilty_pairs = [pair for pair in pairs if pair.has_news]
     yield from guilty_pairs
+    shown_conflicts = {conflict for pair in guilty_pairs for conflict in pair.conflicts}
+    shown_findings = {identity for pair in guilty_pairs for identity in _identify_news(pair)}
     if not shown_conflicts.issuperset(branch_merge.conflicts) or not shown_findings.issuperset(
-        map(identify_finding, branch_merge.new_findings)
+        _identify_news(branch_merge)
     ):
         yield branch_merge
+
+
+def _identify_news(branch_merge: BranchMerge) -> Iterator[FindingIdentity]:
+    yield from map(identify_finding, branch_merge.findings)

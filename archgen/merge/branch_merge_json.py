@@ -25,8 +25,16 @@ def format_merges_json(main_line: str, branch_merges: Iterable[BranchMerge]) -> 
                         {"file": conflict.file, "problem": conflict.problem} for conflict in branch_merge.conflicts
                     ],
                     "new_findings": [finding_to_json(finding) for finding in branch_merge.new_findings],
+                    "breaks": [finding_to_json(finding) for finding in branch_merge.joint_breaks.findings],
+                    "order": _order_to_json(branch_merge),
                 }
                 for branch_merge in branch_merges
             ],
         }
     )
+
+
+def _order_to_json(branch_merge: BranchMerge) -> str | dict[str, list[str]]:
+    if branch_merge.order is None:
+        return "neither" if branch_merge.goes_in_no_order else "any"
+    return {name: list(branches) for name, branches in zip(("first", "then"), branch_merge.order, strict=True)}

@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
+from archgen.merge.renamed_keys import KeyRename
 from archgen.merge.slice_reading import TreeReader, convert_lines, find_line_end
 from archgen.merge.tree_merge import ItemSet, merge_values, read_merged_value
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode, node_to_data
@@ -254,6 +255,24 @@ def _count_blanks(line: str) -> int:
 
 def _items_of(node: YamlNode) -> list[YamlNode]:
     return node.items if isinstance(node, SequenceNode) else []
+
+
+def rename_keys(text: str, root: MappingNode, renames: Iterable[KeyRename]) -> str:
+    """Return a text with other keys; those that it does not have stay out."""
+    placed = _PlacedText(text, root)
+    replacements = []
+    for rename in renames:
+        mapping: YamlNode | None = root
+        for key in rename.path:
+            mapping = mapping.get(key) if isinstance(mapping, MappingNode) else None
+        entry = mapping.entries.get(rename.old_key) if isinstance(mapping, MappingNode) else None
+        if entry is not None:
+            start = placed.offset_of(entry.key_span.line, entry.key_span.column)
+            end = placed.offset_of(entry.key_span.end_line, entry.key_span.end_column)
+            replacements.append((start, end, format_scalar(rename.new_key)))
+    for start, end, new_text in sorted(replacements, reverse=True):
+        text = text[:start] + new_text + text[end:]
+    return text
 
 
 def transfer_changes(base: str, changed: str, target: str, read: TreeReader) -> Iterator[str]:

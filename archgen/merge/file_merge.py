@@ -12,10 +12,13 @@ from archgen.merge.tree_merge import FIELD_ORDER
 
 @dataclass(frozen=True, slots=True)
 class FileMerge:
-    """The merged content. `problem` says what a person has to settle in it, None for nothing."""
+    """The merged content. `problem` says what a person has to settle in it, None for nothing; `conflict_path` are the keys
+    that lead to what both sides changed, none where only the text is in the way.
+    """
 
     content: bytes
     problem: str | None = None
+    conflict_path: tuple[str, ...] = ()
 
 
 def merge_contents(base: bytes, ours: bytes, theirs: bytes, marker_size: int = 7) -> FileMerge:
@@ -28,11 +31,13 @@ def merge_contents(base: bytes, ours: bytes, theirs: bytes, marker_size: int = 7
         return FileMerge(merged_slice.encode())
     line_merge = merge_lines(base, ours, theirs, marker_size=marker_size)
     if line_merge.conflict_count:
-        return FileMerge(line_merge.content, _describe_conflict(merged_slice))
+        return FileMerge(line_merge.content, _describe_conflict(merged_slice), merged_slice.conflict_path)
     # git merges lines that say different things of one element, such as two sentences of one description: as it would
     # without this driver. But where both sides can be said together, lines that say anything else are wrong.
     if merged_slice.is_settled:
         return FileMerge(line_merge.content, "its lines merge, but the result does not say what both sides say")
+    if merged_slice.rename_conflict:
+        return FileMerge(line_merge.content, f"{merged_slice.rename_conflict}, and git takes the lines of both")
     # One id at two places with two contents: lines of both sides merge into a key that is there twice.
     if merged_slice.conflict_path and not _is_readable(line_merge.content):
         return FileMerge(line_merge.content, f"{_describe_conflict(merged_slice)}, and git takes the lines of both")
@@ -44,6 +49,8 @@ def _is_readable(content: bytes) -> bool:
 
 
 def _describe_conflict(merged_slice: UnmergedSlice) -> str:
+    if merged_slice.rename_conflict:
+        return merged_slice.rename_conflict
     *holder_keys, last_key = merged_slice.conflict_path or ("",)
     if last_key == FIELD_ORDER:
         return f"both sides added to `{'.'.join(holder_keys)}` at one place, where order is that of the message"

@@ -9,17 +9,19 @@ from __future__ import annotations
 import itertools
 import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
 from archgen.git import GitError
 from archgen.git.text_merge import merge_lines
-from archgen.merge.change_transfer import transfer_changes
+from archgen.merge.change_transfer import rename_keys, transfer_changes
+from archgen.merge.renamed_keys import KeyRename, find_renames
 from archgen.merge.sequence_merge import ConflictingRun, MergedRun, merge_sequences
 from archgen.merge.slice_reading import TreeReader, convert_lines, find_line_end, read_normal_tree, read_tree
 from archgen.merge.tree_merge import MergeConflictError, merge_values, read_merged_value
 from archgen.syntax import yaml_parser
+from archgen.syntax.yaml_tree import MappingNode
 
 _WORD = re.compile(r"[^\S\n]+|\n|[\w./-]+|.", re.DOTALL)
 _MARKER_SIZE = 61
@@ -51,11 +53,13 @@ class UnmergedSlice:
     """Why no text was found.
 
     `conflict_path` are the keys that lead to what both sides changed; none where a text cannot be read, or
-    where nothing is contradictory (`is_settled`) and only the text is in the way.
+    where nothing is contradictory (`is_settled`) and only the text is in the way. `rename_conflict` says how ids contradict,
+    which lines need not do.
     """
 
     conflict_path: tuple[str, ...] = ()
     is_settled: bool = False
+    rename_conflict: str = ""
 
 
 def merge_slices(versions: SliceVersions) -> str | UnmergedSlice:
@@ -85,10 +89,15 @@ def _merge_texts(versions: SliceVersions, read: TreeReader) -> str | UnmergedSli
     base, ours, theirs = (read(text) for text in texts)
     if base is None or ours is None or theirs is None:
         return UnmergedSlice()
+    values = read_merged_value(base), read_merged_value(ours), read_merged_value(theirs)
     try:
-        expected_value = merge_values(read_merged_value(base), read_merged_value(ours), read_merged_value(theirs))
+        renames = list(find_renames(*values))
+        followed = _follow_renames(versions, (base, ours, theirs), renames)
+        if followed is not None:
+            return _merge_texts(followed, read)
+        expected_value = merge_values(*values)
     except MergeConflictError as conflict:
-        return UnmergedSlice(conflict.path)
+        return UnmergedSlice(() if conflict.reason else conflict.path, rename_conflict=conflict.reason)
     comments = _CommentBalance(*map(_count_comments, texts))
     for proposal in _propose_texts(versions, read):
         if comments.accepts(proposal):
@@ -96,6 +105,18 @@ def _merge_texts(versions: SliceVersions, read: TreeReader) -> str | UnmergedSli
             if tree is not None and read_merged_value(tree) == expected_value:
                 return proposal
     return UnmergedSlice(is_settled=True)
+
+
+def _follow_renames(
+    versions: SliceVersions, roots: tuple[MappingNode, MappingNode, MappingNode], renames: Sequence[KeyRename]
+) -> SliceVersions | None:
+    """Return the versions with the new ids in all of them, so that what stands below is merged; None where none is new."""
+    sides = list(zip((None, True, False), (versions.base, versions.ours, versions.theirs), roots, strict=True))
+    texts = [
+        rename_keys(text, root, [each for each in renames if each.is_ours is not is_ours])
+        for is_ours, text, root in sides
+    ]
+    return SliceVersions(*texts) if texts != [text for _, text, _ in sides] else None
 
 
 @lru_cache(maxsize=_REMEMBERED_TEXTS)

@@ -55,11 +55,14 @@ _EMPTY_ENTRY = ScalarValue(type(None).__name__, "")
 
 
 class MergeConflictError(Exception):
-    """Both sides changed one thing, each in its own way. `path` are the keys that lead to it."""
+    """Both sides changed one thing, each in its own way. `path` are the keys that lead to it; `reason` says what they did
+    where that is not plain.
+    """
 
-    def __init__(self, path: tuple[str, ...]) -> None:
+    def __init__(self, path: tuple[str, ...], reason: str = "") -> None:
         super().__init__(".".join(path))
         self.path = path
+        self.reason = reason
 
 
 def read_merged_value(node: YamlNode, path: tuple[str, ...] = ()) -> MergedValue:

@@ -204,6 +204,8 @@ class Architecture:
     shared_topics: tuple[str, ...] = ()
     ros_parameters: tuple[ParameterValue, ...] = field(default=())
     """What `ros.parameters` says to every node."""
+    ros_environment: tuple[ParameterValue, ...] = field(default=())
+    """The variables with which `ros.environment` says that everything is started."""
     layout: DiagramLayout = field(default_factory=DiagramLayout)
     partners: Mapping[str, Partner] = field(default_factory=dict)
     use_cases: Mapping[str, UseCase] = field(default_factory=dict)

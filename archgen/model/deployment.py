@@ -26,11 +26,14 @@ class Host:
     scheduling: SchedulingOrder | None = None
     core_scheduling: Mapping[int, SchedulingOrder] = field(default_factory=dict)
     description: str | None = None
+    environment: Mapping[str, str] = field(default_factory=dict)
+    """Variables with which all processes on it are started."""
     tags: tuple[str, ...] = ()
     annotations: ElementAnnotations = NO_ANNOTATIONS
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     core_places: Mapping[int, Span] = field(default_factory=dict, compare=False, repr=False)
     """Where the scheduling of single cores is written."""
+    environment_places: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

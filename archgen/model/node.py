@@ -97,7 +97,7 @@ class Node:
     arguments: tuple[str, ...] = ()
     """What the program gets on its command line, before the arguments of ROS."""
     remaps: Mapping[str, str] = field(default_factory=dict)
-    """New names by those that the program uses, for what is none of its ports."""
+    """New names by those that the program uses."""
     container: str | None = None
     host: str | None = None
     """The node's own host, else its container's."""
@@ -109,6 +109,8 @@ class Node:
     reentrant: bool = False
     """Whether all of its callbacks may run at once."""
     status: NodeStatus | None = None
+    observed: bool = False
+    """Whether the names in `uses` were seen on the running robot: they are those after all remaps."""
     uses: tuple[PortUse, ...] = ()
     timing: Mapping[str, Timing] = field(default_factory=dict)
     """By component id (one entry for each activity), or by "" for a node that implements no component."""
@@ -128,6 +130,8 @@ class Node:
     kind_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     container_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     command_at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    remap_places: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
+    argument_places: tuple[Span, ...] = field(default=(), compare=False, repr=False)
     executor_places: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
     """The spans of `threads`, `scheduling`, `callback_groups` and `reentrant`, where they are written."""
     own_values: tuple[ParameterValue, ...] = field(default=(), compare=False, repr=False)
@@ -143,6 +147,11 @@ class Node:
     def is_program(self) -> bool:
         """Whether it is no node of ROS: it has no node name, no parameters and no life cycle there."""
         return "program" in self.kinds
+
+    @property
+    def is_generated(self) -> bool:
+        """Whether generators make its program: nobody says that it exists, and nothing else starts it."""
+        return self.status in {None, "planned"} and not (self.is_program or self.command)
 
     @property
     def full_name(self) -> str:
@@ -168,7 +177,7 @@ class Evidence:
 class Endpoint:
     """The use of one topic, service or action by one node, written or derived.
 
-    `name` is absolute (`/camera/rgbd`). `port` is the complete id of the component's port, None for internal endpoints.
+    `name` is absolute (`/camera/rgbd`), as it is on the wire; None where nobody says it. `port` is the complete id of the component's port, None for internal endpoints.
     `message` is the full name (`pkg/msg/Name`), None if unknown. `written`: the node itself names the port;
     `name_written`: also the topic. `sources` (for subscribes and calls) are the ids of the outputs that arrive here.
     An internal one that is not written follows from the frames that the node writes.
@@ -176,7 +185,7 @@ class Endpoint:
 
     node: str
     use: UseKind
-    name: str
+    name: str | None
     flow: FlowKind
     port: str | None
     component: str | None
@@ -195,6 +204,8 @@ class Endpoint:
     """What the program says, made absolute, before remaps; None where that is unknown."""
     qos_override: OverrideEffect | None = None
     """What parameters named `qos_overrides` do to its `qos`; None where there are none for it."""
+    qos_if_ignored: Qos | None = None
+    """Where it is unknown whether its program takes overrides: what counts if it does not, beside `qos`."""
     domain: int | None = None
     """Its `ROS_DOMAIN_ID`, where something sets one; None is the usual one, the same for all."""
     clock: Clock | None = "system"
@@ -206,10 +217,21 @@ class Endpoint:
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     message_at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
+    @property
+    def is_moved(self) -> bool:
+        """Whether a launch moves it away from where the model puts it; the rule of its own port (`own_name`) puts it there."""
+        reason = self.evidence.get("name")
+        return reason is not None and reason.kind == "written" and reason.at != self.at
+
+    @property
+    def label(self) -> str:
+        """The name, else words that say that it is not known: the same ones at all ends of one output's connections."""
+        return self.name or f"{self.sources[0] if self.sources else self.port or self.node} (name not known)"
+
 
 @dataclass(frozen=True, slots=True)
 class Topic:
-    """A topic, service or action with its absolute name, and the endpoints that use it; `size` in B."""
+    """A topic, service or action, and the endpoints that use it; `size` in B. `name` is their label."""
 
     name: str
     flow: FlowKind
@@ -225,3 +247,13 @@ class Topic:
     """What it travels over; anything but `ros` stands in the architecture's `channels`."""
     shared: bool = False
     """Whether all nodes share it: /tf and the like, and the project's `ros.shared_topics`."""
+
+    @property
+    def label(self) -> str:
+        """What people call it, as of an endpoint."""
+        return self.name
+
+    @property
+    def is_known(self) -> bool:
+        """Whether its name is known: else it stands for connections of the model alone."""
+        return any(each.name is not None for each in (*self.writers, *self.readers))

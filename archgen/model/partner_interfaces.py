@@ -55,7 +55,7 @@ class PartnerInterface:
     @property
     def topic_names(self) -> tuple[str, ...]:
         """Return the topics (services, actions) that carry it."""
-        return tuple(dict.fromkeys(endpoint.name for endpoint in self.giver_endpoints))
+        return tuple(dict.fromkeys(endpoint.name for endpoint in self.giver_endpoints if endpoint.name))
 
 
 def find_interfaces_between(

@@ -114,7 +114,7 @@ def label_of_medium(carrier: Input | Output | Topic | Endpoint) -> str:
 
 def key_of_carrier(endpoint: Endpoint) -> str:
     """Return the key of what an endpoint uses, in the architecture's topics or channels: a call has a key of its own."""
-    return make_channel_key(endpoint.name, endpoint.flow) if endpoint.medium != ROS else endpoint.name
+    return make_channel_key(endpoint.label, endpoint.flow) if endpoint.medium != ROS else endpoint.label
 
 
 def make_channel_key(name: str, flow: PortFlow) -> str:
@@ -124,17 +124,17 @@ def make_channel_key(name: str, flow: PortFlow) -> str:
 
 def label_of_carrier(carrier: Topic | Endpoint) -> str:
     """Return how people call a topic or channel: its name in ROS, else what is written of it with its medium in brackets."""
-    return carrier.name if carrier.medium == ROS else f"{name_on_medium(carrier)} ({name_medium(carrier.medium)})"
+    return carrier.label if carrier.medium == ROS else f"{name_on_medium(carrier)} ({name_medium(carrier.medium)})"
 
 
 def key_of_channel(carrier: Topic | Endpoint) -> str:
     """Return the key of a channel, or of what an endpoint uses, among the architecture's channels."""
-    return make_channel_key(carrier.name, carrier.flow)
+    return make_channel_key(carrier.label, carrier.flow)
 
 
 def name_on_medium(carrier: Topic | Endpoint) -> str:
     """Return the name of a topic or channel without the word of its medium."""
-    return carrier.name if carrier.medium == ROS else carrier.name.removeprefix(f"{carrier.medium} ")
+    return carrier.label if carrier.medium == ROS else carrier.label.removeprefix(f"{carrier.medium} ")
 
 
 def describe_carried(port: Input | Output) -> str:

@@ -11,10 +11,10 @@ from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
 
 AGREEMENT_FOLDER, AGREEMENT_SUFFIX = "review", ".yaml"
-BreakCategory = Literal["wire", "promise", "meaning", "source"]
+BreakCategory = Literal["wire", "promise", "meaning", "source", "foreign"]
 """What a partner loses: what programs send each other, what was promised of it, what it means, or only the ids and files
-that its own files name."""
-BREAK_CATEGORIES: tuple[BreakCategory, ...] = ("wire", "promise", "meaning", "source")
+that its own files name; `foreign` is what somebody else edits of its elements."""
+BREAK_CATEGORIES: tuple[BreakCategory, ...] = ("wire", "promise", "meaning", "source", "foreign")
 
 
 def agreement_file(partner_id: str) -> str:
@@ -36,10 +36,11 @@ class BreakPolicy:
     promise: Severity = Severity.WARNING
     meaning: Severity = Severity.WARNING
     source: Severity = Severity.NOTE
+    foreign: Severity = Severity.OFF
 
     @classmethod
     def from_severity(cls, severity: Severity) -> BreakPolicy:
-        """Return what a single severity means: texts and ids count no more than they do by default.
+        """Return what a single severity means: texts and ids count no more than they do by default, nor do foreign edits.
 
         Files that say `error` may be older than these categories: no job may turn red over a text because of them.
         """
@@ -63,20 +64,25 @@ class BreakPolicy:
         """Return the policy as files write it, in the shorter form where that says the same."""
         if self == BreakPolicy.from_severity(self.wire):
             return str(self.wire)
-        return f"{{{', '.join(f'{category}: {self.severity_of(category)}' for category in BREAK_CATEGORIES)}}}"
+        severities = {category: self.severity_of(category) for category in BREAK_CATEGORIES}
+        # Which is what it is where nobody writes it, as in all projects that are older.
+        told = [f"{name}: {each}" for name, each in severities.items() if (name, each) != ("foreign", Severity.OFF)]
+        return f"{{{', '.join(told)}}}"
 
 
 @dataclass(frozen=True, slots=True)
 class AcceptedChange:
     """A breaking change that was agreed on: the element as the diff names it, what of it changed, and the reason.
 
-    Without a `key` it excuses nothing, since it would excuse whatever happens to the element later.
+    Without a `key` it excuses nothing, since it would excuse whatever happens to the element later. `was` is the hash of
+    the change that was agreed on (`archgen.compare.change_hashes`).
     """
 
     element: str
     reason: str
     key: str | None = None
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
+    was: str | None = None
 
     @property
     def partner(self) -> str | None:

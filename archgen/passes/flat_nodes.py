@@ -167,7 +167,7 @@ class FlatNodes:
         flat_id = self._flat_ids.get(endpoint.component or "") if endpoint else None
         if endpoint is None or key in body.entries or endpoint.name == default_port_name(f"{flat_id}.{use.key}"):
             return use
-        text = ScalarNode(endpoint.name, endpoint.name, use.key_span)
+        text = ScalarNode(endpoint.label, endpoint.label, use.key_span)
         value = SequenceNode([text], use.key_span) if key == "topic" else text
         named = {**body.entries, key: MappingEntry(key, use.key_span, value)}
         return MappingEntry(use.key, use.key_span, MappingNode(named, use.key_span))
@@ -194,11 +194,15 @@ class FlatNodes:
             body = dict(mapping_values.get_body(written).entries) if written else {}
             # A reader follows what it reads; what nothing in the project feeds is named after the port alone.
             is_named_by_port = endpoint.use in {"publishes", "serves"} or not endpoint.sources
-            is_otherwise = is_named_by_port and endpoint.name != default_port_name(f"{flat_id}.{name}")
+            # `remaps` stay as they are: what they are applied to is written.
+            model_name = endpoint.name if endpoint.own_name else endpoint.program_name
+            is_otherwise = (
+                is_named_by_port and model_name is not None and model_name != default_port_name(f"{flat_id}.{name}")
+            )
             if written is None and not is_otherwise:
                 continue
-            if is_otherwise and _USES[endpoint.use] not in body:
-                text = ScalarNode(endpoint.name, endpoint.name, place)
+            if is_otherwise and model_name and _USES[endpoint.use] not in body:
+                text = ScalarNode(model_name, model_name, place)
                 value = SequenceNode([text], place) if _USES[endpoint.use] == "topic" else text
                 body[_USES[endpoint.use]] = MappingEntry(_USES[endpoint.use], place, value)
             if old_key is not None:

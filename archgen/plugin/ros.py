@@ -1,6 +1,6 @@
 """What archgen knows of ROS: distributions, messages and interface files, names, files of parameters."""
 
-from archgen.analyses.name_validity import find_name_fault, find_node_name_fault
+from archgen.derivation.wire.name_expansion import find_name_fault, find_node_name_fault
 from archgen.link.data_types.message_names import spell_message_name
 from archgen.link.interface_sources import load_interfaces
 from archgen.link.parameter_flattening import flatten_parameters

@@ -9,11 +9,13 @@ from pathlib import Path
 from archgen import git, pipeline, project
 from archgen.compare import Comparison
 from archgen.compare.compare_versions import compare_versions
+from archgen.compare.review_facts import ReviewFacts
 from archgen.diagnostics.common_wording import shorten_hash
 from archgen.frozen import dataclass, replace
 from archgen.model.variant import BASE_NAME
 from archgen.pipeline import CheckedProject, VersionCache
 from archgen.products.comparison_input import make_comparison_input
+from archgen.products.review_history import find_review_facts
 from archgen.project.project_search import find_project
 
 _PATH_PREFIXES = ("./", "../", "/", "~")
@@ -191,13 +193,18 @@ def read_variant(version: ProjectVersion, standing_project: CheckedProject, name
     return replace(version, name=f"{version.name}, {suffix}", checked_project=standing_project)
 
 
-def compare_named_versions(before: ProjectVersion, after: ProjectVersion) -> Comparison:
-    """Compare two versions.
+def compare_named_versions(
+    before: ProjectVersion, after: ProjectVersion, *, forge_facts: ReviewFacts | None = None
+) -> Comparison:
+    """Compare two versions. `forge_facts` are what the forge says of who changed the one into the other.
 
     Findings are not reported as cured where the newer version has errors of reading or linking: they hide findings.
     """
+    facts = find_review_facts(
+        before.checked_project, after.checked_project, before.commit, forge_facts or ReviewFacts()
+    )
     comparison = compare_versions(
-        make_comparison_input(before.checked_project), make_comparison_input(after.checked_project)
+        make_comparison_input(before.checked_project), make_comparison_input(after.checked_project), facts=facts
     )
     comparison = replace(comparison, left_out_files=_find_left_out_files(before.checked_project, after.checked_project))
     if comparison.changes and before.checked_project.variants and after.checked_project.variants:
@@ -214,7 +221,9 @@ def _compare_variants(comparison: Comparison, before: CheckedProject, after: Che
     if not (before.architecture.partners or after.architecture.partners):
         return {}
     return {
-        new_name: compare_versions(make_comparison_input(variant), make_comparison_input(after.variants[new_name]))
+        new_name: compare_versions(
+            make_comparison_input(variant), make_comparison_input(after.variants[new_name]), facts=comparison.facts
+        )
         for name, variant in before.variants.items()
         if (new_name := comparison.matched_ids.find_new_id("variant", name) or "") in after.variants
     }

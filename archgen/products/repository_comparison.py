@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from archgen import git
+from archgen.compare.review_facts import ReviewFacts
 from archgen.diagnostics.common_wording import join_words
 from archgen.pipeline import CheckedProject
 from archgen.products.compared_versions import ProjectVersion, compare_named_versions, read_versions, split_range
@@ -82,7 +83,11 @@ def _find_revisions(path: Path | None, first: str | None, second: str | None) ->
 
 
 def compare_projects_below(
-    path: Path | None, projects: Iterable[ComparedProject], first: str | None, second: str | None
+    path: Path | None,
+    projects: Iterable[ComparedProject],
+    first: str | None,
+    second: str | None,
+    forge_facts: ReviewFacts | None = None,
 ) -> Iterator[ProjectComparison]:
     """Yield what changed in each project. `first` and `second` are the versions, as for `read_versions`.
 
@@ -91,14 +96,16 @@ def compare_projects_below(
     for project in projects:
         if project.is_before and project.is_after:
             folder = (path or Path()) / project.folder
-            yield _compare_project(project.folder, *read_versions(first, second, folder))
+            yield _compare_project(project.folder, *read_versions(first, second, folder), forge_facts)
         else:
             summary = "not there before" if project.is_after else "not there any more"
             yield ProjectComparison(project.folder, summary, has_changes=True)
 
 
-def _compare_project(folder: str, old_version: ProjectVersion, new_version: ProjectVersion) -> ProjectComparison:
-    comparison = compare_named_versions(old_version, new_version)
+def _compare_project(
+    folder: str, old_version: ProjectVersion, new_version: ProjectVersion, forge_facts: ReviewFacts | None
+) -> ProjectComparison:
+    comparison = compare_named_versions(old_version, new_version, forge_facts=forge_facts)
     if comparison.is_empty:
         return ProjectComparison(folder, "nothing changed", has_changes=False)
     document = describe_versions(comparison, old_version, new_version)

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from archgen import git, project
 from archgen.compare import Comparison
+from archgen.compare.review_facts import ReviewFacts
 from archgen.diagnostics.common_wording import shorten_hash
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.git.project_revision import differs_from_head
@@ -69,12 +70,13 @@ def find_merge_target(path: Path | None, base: str, request: ReviewedRequest | N
     return "HEAD^1" if is_checked_out and is_merge else base
 
 
-def compare_change(
+def compare_change(  # noqa: PLR0913, PLR0917 - what is compared, and all that is known of it
     checked_project: CheckedProject,
     path: Path | None,
     target: str,
     request: ReviewedRequest | None,
     version_cache: VersionCache,
+    forge_facts: ReviewFacts | None = None,
 ) -> ReviewedChange:
     """Compare a project with where it left `target`. Raise `git.GitError`, or `project.NotAtRevisionError` where it did
     not exist there.
@@ -88,7 +90,7 @@ def compare_change(
     old_name = request.target_branch if request and request.target_branch else fork.description
     new_version = _name_version(checked_project, tracked_project, request, version_cache)
     old_version = read_at_base(git.BaseCommit(fork.commit_id, old_name), path, version_cache, new_version)
-    comparison = compare_named_versions(old_version, new_version)
+    comparison = compare_named_versions(old_version, new_version, forge_facts=forge_facts)
     return ReviewedChange(
         old_version,
         new_version,

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
-from archgen.diagnostics.diagnostic import Diagnostic, Rule
+from archgen.diagnostics.diagnostic import Diagnostic, Rule, name_rule
 from archgen.diagnostics.finding_identity import BaselineEntry
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.syntax import project_files, yaml_parser
@@ -79,7 +79,7 @@ def _read_entry(item: YamlNode, rules: Mapping[str, Rule], diagnostics: list[Dia
         return
     entry_diagnostics = [*_find_unknown_keys(item, _FINDING_KEYS), *_find_wrong_values(item), *_find_missing_keys(item)]
     diagnostics += entry_diagnostics
-    rule, message = _get_text(item, "rule"), _get_text(item, "message")
+    rule, message = name_rule(_get_text(item, "rule")), _get_text(item, "message")
     if entry_diagnostics:
         return
     if rule not in rules or rules[rule].fixed:

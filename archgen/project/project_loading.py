@@ -7,7 +7,7 @@ from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics.diagnostic import Diagnostic, Severity, name_rule
 from archgen.diagnostics.rule_options import WrittenOption
 from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.frozen import dataclass
@@ -25,12 +25,12 @@ from archgen.project.source_patterns import expand_source_pattern
 from archgen.project.source_reading import read_slice, read_sources
 from archgen.syntax.folder_files import FolderFiles
 from archgen.syntax.project_files import ProjectFiles
-from archgen.syntax.yaml_tree import IgnoreComment, MappingNode, ScalarNode, SequenceNode, YamlDocument
+from archgen.syntax.yaml_tree import IgnoreComment, MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlDocument
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from archgen.syntax.yaml_tree import MappingEntry, YamlNode
+    from archgen.syntax.yaml_tree import YamlNode
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,7 +158,13 @@ def _finish_loading(state: ReadingState, first_file: str, libraries: tuple[Loade
 def _list_rule_entries(state: ReadingState) -> Iterator[MappingEntry]:
     """Yield the entries of all `rules:` sections."""
     for mapping in _list_nodes_at(state, "rules"):
-        yield from mapping if isinstance(mapping, MappingNode) else ()
+        yield from list_rule_entries(mapping)
+
+
+def list_rule_entries(rules: YamlNode | None) -> Iterator[MappingEntry]:
+    """Yield the entries of a `rules:` section, each below the name that the rule has today."""
+    for entry in rules if isinstance(rules, MappingNode) else ():
+        yield MappingEntry(name_rule(entry.key), entry.key_span, entry.value)
 
 
 def find_severity_setting(setting: YamlNode) -> ScalarNode | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from archgen.diagnostics.diagnostic import Severity
-from archgen.project.project_loading import LoadedProject, find_severity_setting, read_rule_options
+from archgen.project.project_loading import LoadedProject, find_severity_setting, list_rule_entries, read_rule_options
 from archgen.project.reading_state import ReadingState
 from archgen.project.source_patterns import expand_source_pattern
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
@@ -26,7 +26,7 @@ def changes_settings(variant: MappingEntry) -> bool:
 def adopt_settings(loaded_project: LoadedProject, root: MappingNode) -> LoadedProject:
     """Return a loaded project with the settings that its merged slices have in a variant."""
     rules, ros = root.get("rules"), root.get("ros")
-    rule_entries = list(rules) if isinstance(rules, MappingNode) else []
+    rule_entries = list(list_rule_entries(rules))
     distro = ros.get("distro") if isinstance(ros, MappingNode) else None
     patterns = ros.get("interfaces") if isinstance(ros, MappingNode) else None
     # What is wrong with a pattern is told where the project itself is read, or as a message that is not known.

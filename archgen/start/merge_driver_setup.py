@@ -20,16 +20,19 @@ _DRIVER_ARGUMENTS = "merge-driver --marker-size=%L %O %A %B %P"
 
 
 def list_driver_settings() -> dict[str, str]:
-    """Return the settings of git that name the driver.
-
-    Where the shell that git calls would not find `archgen`, they name this Python: git takes a program that is missing for
-    a conflict, and leaves our side without any marker.
-    """
-    program = "archgen" if shutil.which("archgen") else f"{shlex.quote(Path(sys.executable).as_posix())} -m archgen"
+    """Return the settings of git that name the driver."""
     return {
         "merge.archgen.name": "slices of archgen by what they say",
-        "merge.archgen.driver": f"{program} {_DRIVER_ARGUMENTS}",
+        "merge.archgen.driver": f"{find_program()} {_DRIVER_ARGUMENTS}",
     }
+
+
+def find_program() -> str:
+    """Return how the shell that git calls starts archgen: by this Python where it would not find `archgen`.
+
+    git takes a driver that is missing for a conflict, and leaves our side without any marker.
+    """
+    return "archgen" if shutil.which("archgen") else f"{shlex.quote(Path(sys.executable).as_posix())} -m archgen"
 
 
 def format_setting(name: str, value: str) -> str:

@@ -9,8 +9,10 @@ from itertools import chain
 from pathlib import Path
 
 from archgen import pipeline
+from archgen.checking import code_ownership
+from archgen.emit.codeowners_file import CODEOWNERS_PATHS
 from archgen.pipeline import CheckedProject
-from archgen.products import code_ownership, editor_schema_file, editor_schema_marks
+from archgen.products import editor_schema_file, editor_schema_marks
 from archgen.project import PROJECT_FILE
 from archgen.project.project_loading import load_from_files
 from archgen.start import start_templates
@@ -18,12 +20,6 @@ from archgen.start.start_answers import StartAnswers
 from archgen.syntax import file_patterns
 from archgen.syntax.folder_files import FolderFiles
 from archgen.syntax.overlaid_files import OverlaidFiles
-
-_CODEOWNERS_PATHS = {
-    "github": (".github/CODEOWNERS", "CODEOWNERS", "docs/CODEOWNERS"),
-    "gitlab": ("CODEOWNERS", "docs/CODEOWNERS", ".gitlab/CODEOWNERS"),
-}
-"""Where each forge looks for the file, in its order: the first that exists counts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +61,7 @@ def plan_files(
     reviewers_missing = bool(answers.partners) and not any(partner.reviewers for partner in answers.partners)
     if any(partner.reviewers for partner in answers.partners):
         # Without a forge any of them may be meant.
-        possible_paths = _CODEOWNERS_PATHS.get(answers.forge) or dict.fromkeys(chain(*_CODEOWNERS_PATHS.values()))
+        possible_paths = CODEOWNERS_PATHS.get(answers.forge) or dict.fromkeys(chain(*CODEOWNERS_PATHS.values()))
         codeowners_path = next(
             (name for name in possible_paths if os.path.lexists(repository_folder / name)), "CODEOWNERS"
         )
@@ -100,7 +96,12 @@ def _forge_files(answers: StartAnswers, project_path: str, repository_folder: Pa
         is_taken = bool(project_path) and os.path.lexists(repository_folder / folder / name)
         if is_taken:
             name = f"architecture-{start_templates.make_project_slug(project_path) or 'project'}.yml"
-        return {f"{folder}/{name}": start_templates.fill_workflow(project_path, publishes=not is_taken)}
+        return {
+            f"{folder}/{name}": start_templates.fill_workflow(project_path, publishes=not is_taken),
+            f"{folder}/{name.replace('architecture', 'open-requests', 1)}": start_templates.fill_nightly_workflow(
+                project_path
+            ),
+        }
     return {".gitlab-ci.yml": start_templates.fill_pipeline(project_path)} if answers.forge == "gitlab" else {}
 
 

@@ -11,6 +11,7 @@ import jinja2
 import yaml as pyyaml
 
 from archgen import resources
+from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.safe_text import make_visible
 from archgen.emit.markdown.escaped_text import escape_markdown
 from archgen.start.start_answers import EXAMPLE_GROUPS, GroupAnswer, StartAnswers
@@ -19,6 +20,7 @@ from archgen.syntax.file_patterns import YAML_ENDINGS
 
 _PLAIN_PATH_PATTERN = re.compile(r"[A-Za-z0-9._/-]+\Z")
 """Folders without characters that have a meaning in a workflow's path filter."""
+_RUN_GROUP = "${{ github.event_name == 'pull_request' && github.ref || github.run_id }}"
 PORT_HINTS = {
     "inputs": "                      # where the data comes from: group.component.output",
     "outputs": "                     # what it gives: a conceptual type each",
@@ -68,8 +70,15 @@ def fill_project_file(answers: StartAnswers, *, sources: bool) -> bytes:
         title=answers.title,
         distro=answers.distro,
         partners=answers.partners,
+        foreign=_choose_foreign(answers),
         sources=sources,
     )
+
+
+def _choose_foreign(answers: StartAnswers) -> Severity:
+    """Return how serious it is to edit what belongs to others: who is in a team, or stands for nobody, cannot be told."""
+    names_people = all(partner.reviewers and "/" not in partner.reviewers for partner in answers.partners)
+    return Severity.ERROR if names_people else Severity.WARNING
 
 
 def fill_agreements(partner_title: str, *, has_schema: bool = True) -> bytes:
@@ -99,9 +108,21 @@ def fill_workflow(folder: str, *, publishes: bool = True) -> bytes:
         paths=paths,
         # Two projects of a repository must not cancel each other's runs.
         workflow_name=f"Architecture of {inert_folder}" if folder else "Architecture",
-        group="-".join(filter(None, ("architecture", inert_folder, "${{ github.ref }}"))),
+        group="-".join(filter(None, ("architecture", inert_folder, _RUN_GROUP))),
         key=f"diff/{make_project_slug(folder)}",
         publishes=publishes,
+    )
+
+
+def fill_nightly_workflow(folder: str) -> bytes:
+    """Return GitHub's workflow that holds open pull requests against each other."""
+    inert_folder = folder.replace("${{", "${{ '${{' }}")
+    return fill_template(
+        "github_nightly.yml.j2",
+        folder=inert_folder,
+        workflow_name=f"Open pull requests of {inert_folder}" if folder else "Open pull requests",
+        group="-".join(filter(None, ("requests", inert_folder))),
+        key="/".join(filter(None, ("requests", make_project_slug(folder)))),
     )
 
 

@@ -6,7 +6,7 @@ import re
 from bisect import bisect_right
 from typing import TYPE_CHECKING
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label
+from archgen.diagnostics.diagnostic import Diagnostic, Label, name_rule
 from archgen.diagnostics.source_span import Span
 from archgen.syntax.yaml_tree import IgnoreComment
 
@@ -60,7 +60,7 @@ def read_ignore_comments(file: str, text: str, quoted_ranges: Sequence[tuple[int
         if match.start() and text[match.start() - 1] not in " \t\r\n":
             continue
         line_starts = line_starts or LineStarts(text)
-        rule_names = tuple(name.strip() for name in (match[1] or "").split(",") if name.strip())
+        rule_names = tuple(name_rule(name.strip()) for name in (match[1] or "").split(",") if name.strip())
         end = match.end() - (len(match[2]) - len(match[2].rstrip()))
         yield IgnoreComment(rule_names, match[2].strip(), line_starts.span_between(file, match.start(), end))
 

@@ -128,7 +128,7 @@ def topic_link(topic_name: str) -> Text:
 def name_carrier(carrier: Topic | Endpoint) -> Inlines:
     """Return the name of a topic, service or action as a link; of what is no ROS with its medium."""
     if carrier.medium == ROS:
-        return (topic_link(carrier.name),)
+        return (topic_link(name_on_medium(carrier)),)
     link = share_text(name_on_medium(carrier), f"channel:{key_of_channel(carrier)}", code=True)
     return (link, Text(f" ({name_medium(carrier.medium)})"))
 

@@ -89,7 +89,7 @@ def list_offered_names(architecture: Architecture, library_types: Mapping[str, s
         "topics": tuple(
             OfferedName(each.name, ", ".join(each.messages))
             for each in architecture.topics.values()
-            if each.flow == "topic"
+            if each.flow == "topic" and each.is_known
         ),
         "topic_messages": tuple(OfferedName(name, "") for name in messages if "/msg/" in name),
         "call_messages": tuple(OfferedName(name, "") for name in messages if "/msg/" not in name),

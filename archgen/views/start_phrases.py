@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from archgen.bringup.plan_shapes import DroppedWait, StartStep, Wait, WaitEnd, WaitReason
 from archgen.diagnostics.common_wording import join_words
 from archgen.frozen import dataclass
-from archgen.model.node import Node
+from archgen.model.node import Endpoint, Node
 from archgen.model.quantity import Quantity
 from archgen.model.start_up import ReadyConditions
 
@@ -145,6 +145,31 @@ def describe_start(node: Node) -> str:
     parts += [f"with {name}={value}" for name, value in start.environment.items()]
     parts.append(_describe_respawn(start.respawn_delay) if start.respawn else "")
     return "; ".join(part for part in parts if part)
+
+
+def list_running_facts(endpoints: Iterable[Endpoint]) -> Iterator[tuple[str, str]]:
+    """Yield the domain and the clock of a node, and whether it runs, by its ends: what is no default, each with its place."""
+    evidence = {name: (each, end) for end in endpoints for name, each in end.evidence.items()}
+    for name, field in (("domain", "domain"), ("clock", "clock"), ("state", "runs")):
+        found, endpoint = evidence.get(field, (None, None))
+        value = getattr(endpoint, field, None)
+        if found and value != "planned":
+            place = f" ({found.at.file}:{found.at.line})" if found.at.file else ""
+            yield name, f"{'unknown:' if value is None else f'{value}, by'} {found.rule}{place}"
+
+
+def describe_override(endpoint: Endpoint) -> str:
+    """Return what parameters do to the quality of service of an end; empty where there are none."""
+    words = {
+        "obeyed": "overridden by",
+        "unknown": "overridden, if its program allows that, by",
+        "ignored": "not overridden: its program ignores",
+    }
+    if endpoint.qos_override is None:
+        return ""
+    names = {each.rule: each.at for name, each in endpoint.evidence.items() if name.startswith("qos.")}
+    rules = [f"{rule} ({at.file}:{at.line})" for rule, at in names.items()]
+    return f"{words[endpoint.qos_override]} {join_words(rules) or 'what it is given'}"
 
 
 def _describe_respawn(delay: Quantity | None) -> str:

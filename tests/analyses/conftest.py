@@ -193,11 +193,11 @@ class _Sketch:
         return Waypoint(kind, text, at)  # type: ignore[arg-type]
 
     def topics(self) -> Iterator[Topic]:
-        for name in dict.fromkeys(end.name for end, _ in self.ends):
-            here = [end for end, _ in self.ends if end.name == name]
+        for name in dict.fromkeys(end.label for end, _ in self.ends):
+            here = [end for end, _ in self.ends if end.label == name]
             writers = tuple(end for end in here if end.use in {"publishes", "serves"})
             readers = tuple(end for end in here if end not in writers)
-            shared = any(flag for end, flag in self.ends if end.name == name)
+            shared = any(flag for end, flag in self.ends if end.label == name)
             yield Topic(name, here[0].flow, (), (), writers, readers, shared=shared)
 
     def finish(self) -> Architecture:

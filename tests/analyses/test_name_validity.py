@@ -6,7 +6,8 @@ from collections.abc import Callable
 
 import pytest
 
-from archgen.analyses.name_validity import duplicate_node_name, find_name_fault, find_node_name_fault, invalid_ros_name
+from archgen.analyses.name_validity import duplicate_node_name, invalid_ros_name
+from archgen.derivation.wire.name_expansion import find_name_fault, find_node_name_fault
 
 Found = Callable[..., list[str]]
 _LETTERS = "and only letters (a to z), digits and `_` are allowed"

@@ -96,7 +96,7 @@ def name_topics(folder: Path, text: str, node: str) -> dict[str, str]:
     farm = check_project(file).architecture
     nodes = [each for each in farm.nodes.values() if each.id == node or (node == "reader" and each.id != "guard")]
     named = group_endpoints(nodes, index_endpoints(farm))
-    return {key: each.name for (use, _, key), ends in named.items() if use == "subscribes" for each in ends}
+    return {key: each.label for (use, _, key), ends in named.items() if use == "subscribes" for each in ends}
 
 
 @pytest.mark.parametrize(

@@ -50,7 +50,8 @@ def run(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> 
 
     for name in ("FORCE_COLOR", "COLUMNS"):  # pytest's workers set COLUMNS
         monkeypatch.delenv(name, raising=False)
-    monkeypatch.delenv("GITHUB_WORKSPACE", raising=False)
+    for name in ("GITHUB_WORKSPACE", "GITHUB_ACTOR", "GITHUB_EVENT_NAME", "GITHUB_EVENT_PATH", "GITLAB_USER_LOGIN"):
+        monkeypatch.delenv(name, raising=False)
     collecting = gc.isenabled()
     yield call
     if collecting:

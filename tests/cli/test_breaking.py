@@ -38,7 +38,7 @@ MISSING = """\
       # review/sssa.yaml
       review:
         accepted:
-          sensing.camera.image: {key: type, reason: THE REASON}
+          sensing.camera.image: {key: type, was: a8601b, reason: THE REASON}
 """
 STRICT = "review: {breaking: error}\n"
 ENTRY = "sensing.camera.image"
@@ -118,7 +118,7 @@ def accepting(entries: str) -> str:
     return f"review: {{breaking: error, accepted: {{{entries}}}}}\n"
 
 
-AGREED = "{key: type, reason: agreed in March}"
+AGREED = "{key: type, was: a8601b, reason: agreed in March}"
 REFUSED = """
 error: 1 breaking change for SSSA (wire); `review.breaking: error` refuses what is not accepted
   = help: mend it, or SSSA says why it is right:
@@ -143,7 +143,7 @@ def test_what_the_partner_accepts_in_its_own_file_is_shown_with_its_reason(run: 
             f"review/sssa.yaml: {ENTRY}: 'agreed: in March'",
             (
                 "said in `review/sssa.yaml` without a `key`, which would accept whatever changes: write "
-                '`review: {accepted: {sensing.camera.image: {key: type, reason: "agreed: in March"}}}`'
+                '`review: {accepted: {sensing.camera.image: {key: type, was: a8601b, reason: "agreed: in March"}}}`'
             ),
         ),
     ],
@@ -206,12 +206,12 @@ def test_all_that_is_refused_is_accepted_by_the_entries_of_the_help_line(run: Ru
       # review/sssa.yaml
       review:
         accepted:
-          sensing.camera.image: {key: type, reason: THE REASON}
+          sensing.camera.image: {key: type, was: a8601b, reason: THE REASON}
       # review/tum.yaml
       review:
         accepted:
-          sensing.camera.depth: {key: removed, reason: THE REASON}
-          sensing.camera.image: {key: type, reason: THE REASON}
+          sensing.camera.depth: {key: removed, was: "1e0eca", reason: THE REASON}
+          sensing.camera.image: {key: type, was: a8601b, reason: THE REASON}
 """
     )
     for block in entries.split("      # ")[1:]:
@@ -310,7 +310,7 @@ def test_json(run: Run, both: Path) -> None:
     assert change["said"] == [{"file": "more.yaml", "key": "type", "reason": "because"}]
     assert data["breaking"] == {
         "severity": "error",
-        "policy": {"wire": "error", "promise": "error", "meaning": "warning", "source": "note"},
+        "policy": {"wire": "error", "promise": "error", "meaning": "warning", "source": "note", "foreign": "off"},
         "fails": True,
         "judged": True,
         "idle": [{"element": ENTRY, "key": "qos", "reason": "why not"}],

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import re
 from pathlib import Path
 from typing import Any
 
@@ -13,12 +14,14 @@ import yaml
 
 from archgen.emit import file_tree, new_files
 from archgen.pipeline import check_project
+from tests import repositories
 from tests.cli.conftest import Run
 from tests.running import ROOT, contents
 
 FILES = [
     ".gitattributes",
     ".github/workflows/architecture.yml",
+    ".github/workflows/open-requests.yml",
     ".gitignore",
     ".vscode/archgen.schema.json",
     ".vscode/extensions.json",
@@ -181,6 +184,8 @@ def test_a_second_project_of_a_repository_has_a_workflow_of_its_own(run: Run, tm
     } == {
         "architecture.yml": ("robots/alpha", True),
         "architecture-robots-beta.yml": ("robots/beta", False),
+        "open-requests.yml": ("robots/alpha", False),
+        "open-requests-robots-beta.yml": ("robots/beta", False),
     }
 
 
@@ -370,3 +375,48 @@ def test_each_partner_gets_a_file_for_its_agreements_that_codeowners_gives_to_it
     assert {entry.partner for entry in check_project(tmp_path).architecture.review.accepted} == {"eye", "arm"}
     owners = (tmp_path / "CODEOWNERS").read_text(encoding="utf-8").splitlines()
     assert {"/archgen.yaml @eye/x @arm/y", "/review/arm.yaml @arm/y", "/review/eye.yaml @eye/x"} <= set(owners)
+
+
+@pytest.mark.parametrize(("reviewers", "severity"), [("@eva", "error"), ("@eye/x", "warning"), ("", "warning")])
+def test_a_new_project_has_a_gate(run: Run, tmp_path: Path, reviewers: str, severity: str) -> None:
+    partners = ("--partner", f"eye=Eye Lab {reviewers}", "--partner", "arm=Arm @ann")
+    assert run("init", tmp_path, *partners, "--group", "see=eye", "--group", "act=arm", "--yes").status == 0
+    assert findings(tmp_path) == []
+    policy = check_project(tmp_path).architecture.review.breaking
+    assert str(policy) == f"{{wire: error, promise: error, meaning: warning, source: note, foreign: {severity}}}"
+    assert "breaking" not in re.sub("(?m)^#.*", "", fill_alone(run, tmp_path / "alone"))
+
+
+def fill_alone(run: Run, folder: Path) -> str:
+    """Make the project of one who works alone, and give its first file."""
+    assert run("init", folder, "--yes").status == 0
+    return (folder / "archgen.yaml").read_text(encoding="utf-8")
+
+
+def test_what_init_writes_is_the_gate_of_the_workflow(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    repositories.repository(tmp_path)
+    partners = (
+        "--partner",
+        "eye=Eye Lab @eva",
+        "--partner",
+        "arm=Arm @ann",
+        "--group",
+        "see=eye",
+        "--group",
+        "act=arm",
+    )
+    assert run("init", tmp_path, *partners, "--ci", "github", "--yes").status == 0
+    repositories.commit(tmp_path, {})
+    repositories.git(tmp_path, "checkout", "-q", "-b", "work")
+    text = (tmp_path / "groups/act.yaml").read_text(encoding="utf-8")
+    repositories.commit(tmp_path, {"groups/act.yaml": text.replace("role: filter", "role: reactive", 1)})
+    monkeypatch.setenv("GITHUB_ACTOR", "eva")
+    ran = run("review", tmp_path, "--base", "main", "--no-build")
+    assert (ran.status, "breaks Arm (foreign)" in ran.out) == (1, True)
+    monkeypatch.setenv("GITHUB_ACTOR", "ann")
+    assert run("review", tmp_path, "--base", "main", "--no-build").status == 0
+    # A file more: CODEOWNERS does not name it.
+    repositories.commit(tmp_path, {"groups/more.yaml": "hosts: {pc: PC}\n"})
+    assert "stale-codeowners" in run("check", tmp_path).out

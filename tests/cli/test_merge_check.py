@@ -131,6 +131,37 @@ def test_a_file_that_one_side_split_says_whether_the_models_conflict(
     assert ran.out.splitlines()[2:] == ["main + edit + split: conflicts", f"  groups/sense.yaml: {reason}"]
 
 
+@pytest.mark.parametrize(
+    ("new_eye", "reason"),
+    [
+        (
+            "image: Image",
+            (
+                "one side moved `groups.sense.components.eye` to `groups/eyes.yaml`, the other one changed it: git conflicts,"
+                " what both sides say does not; make the change where it stands now"
+            ),
+        ),
+        ("image: Colour", "both sides changed `groups.sense.components.eye`"),
+    ],
+)
+def test_what_one_side_moved_out_of_a_file_is_said_to_stand_elsewhere(
+    run: Run, robot: Path, new_eye: str, reason: str
+) -> None:
+    ear = "      ear: {outputs: {sound: Sound}}\n"
+    repositories.commit(robot, {"groups/sense.yaml": BASE["groups/sense.yaml"] + ear})
+    branch(robot, "edit", {"groups/sense.yaml": ("image: Image", "image: Depth")})
+    repositories.git(robot, "checkout", "-q", "-b", "split", "main")
+    moved = SPLIT["groups/eyes.yaml"].replace("image: Image", new_eye)
+    repositories.commit(
+        robot, {"groups/sense.yaml": BASE["groups/sense.yaml"].replace(EYE, ear), "groups/eyes.yaml": moved}
+    )
+    repositories.git(robot, "checkout", "-q", "main")
+    for branches in (("edit", "split"), ("split", "edit")):
+        ran = run("merge-check", "-C", robot, "main", *branches)
+        assert ran.status == 1
+        assert ran.out.splitlines()[3:] == [f"  groups/sense.yaml: {reason}"]
+
+
 def test_warnings_count_where_they_are_asked_to(run: Run, robot: Path) -> None:
     # Each branch takes one of two readers away; only together nobody is left.
     repositories.commit(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 
@@ -47,6 +48,7 @@ def test_in_a_project_that_is_there_nothing_else_is_touched(run: Run, tmp_path: 
         "ran, for this clone (every other one needs `archgen init --merge-driver` too):",
         "    git config --local merge.archgen.name 'slices of archgen by what they say'",
         f"    git config --local merge.archgen.driver '{DRIVER}'",
+        f"wrote {folder / '.git/hooks/post-merge'} (checks the project after each merge, in this clone)",
     ]
     ran = run("init", folder, "--merge-driver")
     assert ran.status == 0
@@ -117,3 +119,52 @@ def test_git_merges_with_what_was_set_up_also_where_archgen_is_on_no_path(
     repositories.commit(folder, {"archgen.yaml": PROJECT.replace("executable: x", "executable: y")})
     repositories.git(folder, "merge", "-q", "--no-edit", "other")
     assert (folder / "archgen.yaml").read_text() == "archgen: 1\nnodes:\n  n: {package: c_d, executable: y}\n"
+
+
+def test_after_a_clean_merge_the_whole_is_checked(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(shutil, "which", lambda _name: None)
+    monkeypatch.setenv("PYTHONPATH", str(ROOT))
+    eye = "groups: {g: {components: {eye: {outputs: {image: Image}}}}}\n"
+    top = repositories.repository(
+        tmp_path / "top",
+        {"my robot/archgen.yaml": "archgen: 1\nproject: {id: r}\nsources: ['*.yaml']\n", "my robot/eye.yaml": eye},
+    )
+    assert run("init", top / "my robot", "--merge-driver").status == 0
+    repositories.commit(top, {})
+    repositories.git(top, "checkout", "-q", "-b", "rename")
+    repositories.commit(top, {"my robot/eye.yaml": eye.replace("image:", "picture:")})
+    repositories.git(top, "checkout", "-q", "main")
+    reader = "groups: {h: {components: {base: {inputs: {i: eye.image}}}}}\n"
+    repositories.commit(top, {"my robot/base.yaml": reader})
+    done = subprocess.run(
+        ["git", "-c", "user.name=x", "-c", "user.email=x@y", "merge", "--no-edit", "rename"],  # noqa: S607 - as people call it
+        cwd=top,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0
+    assert "error[unknown-reference]: no component or output named `eye.image`" in done.stderr
+    assert done.stderr.endswith("archgen: git merged, and the architecture has errors\n")
+
+
+def test_a_second_project_checks_too_and_a_hook_of_somebody_s_is_left_alone(run: Run, tmp_path: Path) -> None:
+    top = repositories.repository(tmp_path / "top", {"a/archgen.yaml": PROJECT, "b/archgen.yaml": PROJECT})
+    hook = top / ".git/hooks/post-merge"
+    for name in ("a", "b", "b"):
+        assert run("init", top / name, "--merge-driver").status == 0
+    text = hook.read_text()
+    assert [line.split()[2] for line in text.splitlines() if line.startswith("archgen check ")] == ["a", "b"]
+    assert hook.stat().st_mode & 0o111
+    hook.write_text("#!/bin/sh\nmine\n")
+    ran = run("init", top / "a", "--merge-driver")
+    assert hook.read_text() == "#!/bin/sh\nmine\n"
+    assert "add there\n    archgen check a --quiet --changed-since ORIG_HEAD >&2\n" in ran.out
+
+
+def test_hooks_in_a_folder_of_their_own_are_left_alone(run: Run, tmp_path: Path) -> None:
+    folder = repositories.repository(tmp_path / "robot", {"archgen.yaml": PROJECT})
+    repositories.git(folder, "config", "core.hooksPath", "tools/hooks")
+    ran = run("init", folder, "--merge-driver")
+    assert (ran.status, "git looks elsewhere for hooks" in ran.out) == (0, True)
+    assert not (folder / ".git/hooks/post-merge").exists()

@@ -118,13 +118,19 @@ def test_codeowners(run: Run, duo: Path) -> None:
     assert ran.err == (
         'warning: `west` owns files and has no reviewers: write `reviewers: "@organisation/team"` below `partners: west`\n'
     )
+    both = "@duo/north @duo/south lee@south.example"
     assert (duo / ".github" / "CODEOWNERS").read_text(encoding="utf-8").splitlines()[3:] == [
         "",
+        f"* {both}",
         "# /archgen.yaml: west without reviewers",
         "/archgen.yaml @duo/north @duo/south lee@south.example",
         "/review/north.yaml @duo/north",
         "/review/south.yaml @duo/south lee@south.example",
         "# /review/west.yaml: west without reviewers",
+        *(
+            f"{path} {both}"
+            for path in ("/.github/", "/.gitlab/", "/.gitlab-ci.yml", "/CODEOWNERS", "/docs/CODEOWNERS")
+        ),
     ]
 
 

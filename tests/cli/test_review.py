@@ -37,7 +37,7 @@ MESSAGE = (
     "it is read by `display.screen.image`; this gives "
     "`sensor_msgs/msg/CompressedImage` instead of `sensor_msgs/msg/Image` as `sensing.camera.image`; `display.screen.image` of South reads it"
 )
-ACCEPTED = "review: {accepted: {sensing.camera.image: {key: type, reason: THE REASON}}}"
+ACCEPTED = "review: {accepted: {sensing.camera.image: {key: type, was: a8601b, reason: THE REASON}}}"
 HELP = f"mend it, or South says why it is right, in `review/south.yaml`: `{ACCEPTED}`"
 UNUSED = "types: {Old: {message: std_msgs/msg/Empty}}\n"
 """Makes an `unused-type`."""

@@ -2,15 +2,36 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
+
 import pytest
 
-from archgen.compare.agreements import judge_agreements, names_change
+from archgen import pipeline
+from archgen.compare.agreements import AgreementJudge, names_change
+from archgen.compare.change_hashes import hash_change, hash_values, summarize_change
 from archgen.compare.comparison import Change, PartnerBreak
+from archgen.compare.connection_maps import ConnectionMap
 from archgen.compare.matched_ids import MatchedIds
+from archgen.compare.review_facts import ReviewFacts, name_author
+from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.source_span import Span
-from archgen.model.review_settings import AcceptedChange
+from archgen.model.architecture import Partner
+from archgen.model.review_settings import AcceptedChange, ReviewSettings
+from archgen.project.project_loading import load_from_files
+from archgen.syntax.overlaid_files import OverlaidFiles
 
 TYPE = Change("changed", "output", "g.a.x", key="type")
+EMPTY = pipeline.judge_project(
+    load_from_files(OverlaidFiles(Path(), {"archgen.yaml": b"archgen: 1"}), "archgen.yaml")
+).architecture
+NO_ENDS = ConnectionMap({}, {})
+VERSIONS = VersionPair(NO_ENDS, NO_ENDS, {}, {}, ({}, {}))
+PARTNERS = {
+    "p": Partner("p", "P", reviewers=("@Paula", "paula@p.example")),
+    "q": Partner("q", "Q", reviewers=("@quinn",)),
+    "old": Partner("old", "Old"),
+}
 MATCHED = MatchedIds(old_ids={"partner": {"new": "old"}})
 
 
@@ -22,6 +43,16 @@ def read_entries(text: str) -> list[AcceptedChange]:
         file = f"review/{partner}.yaml" if partner else "archgen.yaml"
         entries.append(AcceptedChange(element, reason, key or None, Span.of_file(file)))
     return entries
+
+
+def judge_between(
+    old: list[AcceptedChange], new: list[AcceptedChange], facts: ReviewFacts | None = None
+) -> AgreementJudge:
+    """Make the judge of two versions that accept something; each has the partners p, q and old."""
+    before, after = (
+        replace(EMPTY, review=ReviewSettings(accepted=tuple(entries)), partners=PARTNERS) for entries in (old, new)
+    )
+    return AgreementJudge(before, after, MATCHED, VERSIONS, facts or ReviewFacts())
 
 
 @pytest.mark.parametrize(
@@ -63,6 +94,40 @@ def test_a_partner_agrees_in_its_own_file_to_this_change_alone(
     entries: tuple[str, str], partners: str, agreements: list[str | None], claims: list[str]
 ) -> None:
     breaks = [PartnerBreak(partner, "loses it") for partner in partners.split()]
-    judged = judge_agreements(TYPE, breaks, (read_entries(entries[0]), read_entries(entries[1])), MATCHED)
+    judged = judge_between(read_entries(entries[0]), read_entries(entries[1])).judge(TYPE, breaks)
     assert [each.agreement for each in judged.breaks] == agreements
     assert [claim.reason for claim in judged.claims] == claims
+
+
+HASH = hash_change(TYPE, VERSIONS, "p")
+OTHER = replace(TYPE, after="Other")
+ENTRY = AcceptedChange("g.a.x", "fine", "type", Span.of_file("review/p.yaml"))
+
+
+@pytest.mark.parametrize(
+    ("entry", "facts", "flaw"),
+    [
+        (replace(ENTRY, was=HASH), ReviewFacts(), None),
+        (replace(ENTRY, was="000000"), ReviewFacts(), "other change"),
+        # Without a hash: what had changed when it was written, if anybody knows.
+        (ENTRY, ReviewFacts(), None),
+        (ENTRY, ReviewFacts(agreed_hashes=lambda _: {("g.a.x", "type"): hash_values(summarize_change(TYPE, VERSIONS))}), None),
+        (ENTRY, ReviewFacts(agreed_hashes=lambda _: {("g.a.x", "type"): hash_values(summarize_change(OTHER, VERSIONS))}), "other change"),
+        (ENTRY, ReviewFacts(agreed_hashes=lambda _: {}), "other change"),
+        # Written by somebody else.
+        (ENTRY, ReviewFacts((name_author("paula"),)), None),
+        (ENTRY, ReviewFacts((name_author("quinn"),)), "other author"),
+        (ENTRY, ReviewFacts((name_author("quinn"), name_author("paula"))), None),
+        (ENTRY, ReviewFacts((name_author("quinn"),), agreement_authors={"review/p.yaml": frozenset({name_author(mail="1+Paula@users.noreply.github.com")})}), None),
+        (ENTRY, ReviewFacts((name_author("quinn"),), agreement_authors={"review/p.yaml": frozenset({name_author(mail="paula@p.example")})}, trusts_mails=False), "other author"),
+        (ENTRY, ReviewFacts(agreement_authors={"review/p.yaml": frozenset({name_author(mail="quinn@users.noreply.github.com")})}), "other author"),
+        (ENTRY, ReviewFacts(agreement_authors={"review/p.yaml": frozenset({name_author(mail="who@x.example")})}), None),
+    ],
+)  # fmt: skip
+def test_an_entry_holds_for_this_change_and_from_the_partner_itself(
+    entry: AcceptedChange, facts: ReviewFacts, flaw: str | None
+) -> None:
+    judge = judge_between([], [entry], facts)
+    judged = judge.judge(TYPE, [PartnerBreak("p", "loses it")])
+    assert judge.find_flaw(entry, judged) == flaw
+    assert judged.breaks[0].agreement == (None if flaw else "fine")

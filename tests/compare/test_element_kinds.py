@@ -67,6 +67,7 @@ TABLE_ONLY_FOR_SCHEMA = {
     "project distro": "below `ros`",
     "project shared_topics": "below `ros`",
     "project parameters": "below `ros`",
+    "project environment": "below `ros`",
     "project layout": "a section of its own",
     "project chapters": "below `report`",
     "project review": "a section of its own",
@@ -143,7 +144,9 @@ KINDS_NOT_IN_RECORD = {
     "policy": "a rule, not a part of the system",
 }
 CARD_ONLY = {
-    "state": "what serves and verifies it",
+    "state": "what serves and verifies it, or whether it runs",
+    "clock": "what `use_sim_time` says",
+    "domain": "what the environment says",
     "parent": "the beginning of the id",
     "ROS name": "made of name and namespace",
     "group": "the beginning of the id",
@@ -158,10 +161,10 @@ NOT_ON_CARDS = {
     "component": "autoconnect components containers description frames from layout node open performance same_as urls",
     "output": "external from to",
     "input": "external from optional",
-    "node": "arguments calls description internal language parameter_commands parameter_files plugin publishes remaps "
+    "node": "arguments calls description internal language observed parameter_commands parameter_files plugin publishes remaps "
     "serves subscribes tags urls",
     "type": "constants feedback request response status",
-    "host": "tags",
+    "host": "environment tags",
     "link": "latency",
     "view": "colour depth layout level",
     "policy": "accepted forbid require",
@@ -181,7 +184,7 @@ SEARCH_WORDS = {"output": "port", "input": "port"}
 _ROBOT = """\
 archgen: 1
 project: {id: robot, title: Robot, version: "1", description: D, middleware: orocos}
-ros: {distro: jazzy, parameters: {use_sim_time: true}}
+ros: {distro: jazzy, parameters: {use_sim_time: true}, environment: {A: "1"}}
 partners: {certh: {title: C, description: D, contact: c@d.eu, reviewers: "@c", properties: {q: 1}, hints: {x: {a: 1}}}, sssa: S}
 use_cases: {UC-1: {title: U, description: D, actors: {p: P}, steps: [{from: p, to: a, say: S}, {from: a, to: p}], properties: {q: 1}, hints: {x: {a: 1}}}}
 requirements: {R-0: W, R-1: {title: R, description: D, parent: R-0, kind: k, priority: p, rationale: W, source: S, verified_by: [UC-1, c, t.py, by hand], use_cases: [UC-1], tags: [t], urls: {a: "https://a.eu"}, properties: {q: 1}, hints: {x: {a: 1}}}}
@@ -270,11 +273,11 @@ nodes:
     properties: {q: 1}
     hints: {x: {a: 1}}
     publishes: {o: {topic: /o, own_name: w}}
-  m: b
+  m: {implements: b, observed: true}
   r: [whole, copy]
   s: {timing: {rate: 1 Hz}}
   t: [d, e]
-hosts: {pc: {title: P, cores: 4, scheduling: edf, description: D, tags: [t], properties: {q: 1}, hints: {x: {a: 1}}}, arm: {scheduling: {0: fifo}}}
+hosts: {pc: {title: P, cores: 4, environment: {A: "1"}, scheduling: edf, description: D, tags: [t], properties: {q: 1}, hints: {x: {a: 1}}}, arm: {scheduling: {0: fifo}}}
 containers: {bare: pc, box: {title: B, host: pc, threads: 2, scheduling: fifo, namespace: /s, name: boxes, package: p, executable: e, parameters: {rate: 5}, properties: {q: 1}, hints: {x: {a: 1}}}}
 resources: {gpu: {title: G, host: pc, scheduling: fifo, properties: {q: 1}, hints: {x: {a: 1}}}}
 links: {lan: {title: L, connects: [pc, arm, b], protocol: can, bandwidth: 1 Gbit/s, latency: {best: 1 ms, worst: 2 ms}, properties: {q: 1}, hints: {x: {a: 1}}}}

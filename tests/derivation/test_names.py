@@ -1,4 +1,4 @@
-"""Names of the low level: what ROS makes of a written name, what planned nodes are called, what all nodes share."""
+"""Names of the low level: what planned nodes are called, what all nodes share."""
 
 from __future__ import annotations
 
@@ -6,32 +6,10 @@ from collections.abc import Callable
 
 import pytest
 
-from archgen.derivation.ros_names import default_port_name, resolve_ros_name, shared_topic_names
+from archgen.derivation.ros_names import default_port_name, shared_topic_names
 from archgen.model.architecture import Architecture
-from archgen.model.node import Node
 
 Derived = Callable[[str], Architecture]
-
-
-@pytest.mark.parametrize(
-    ("namespace", "written", "name"),
-    [
-        ("/", "a", "/a"),
-        ("/", "~a", "/cam/a"),
-        ("/", "~/a", "/cam/a"),
-        ("/", "~", "/cam"),
-        ("/", "//a", "/a"),
-        ("/front", "a", "/front/a"),
-        ("/front/", "a", "/front/a"),
-        ("front", "~/a", "/front/cam/a"),
-        ("/front", "/{ns}/a", "/front/a"),
-        ("/front", "{namespace}/{node}", "/front/front/cam"),
-        ("/", "{ns}", "/"),
-        ("/", "{ns}a", "/a"),
-    ],
-)
-def test_a_written_name_becomes_absolute(namespace: str, written: str, name: str) -> None:
-    assert resolve_ros_name(written, Node("n", "N", (), name="cam", namespace=namespace)) == name
 
 
 def test_a_port_without_a_topic_has_one_named_after_it() -> None:
@@ -72,7 +50,7 @@ def test_an_internal_entry_goes_where_its_message_belongs(derived: Derived) -> N
     subscribes: {t: {message: nav2_msgs/action/Wait}},
     calls: {u: {message: std_msgs/msg/Int8}, v: }}}"""
     architecture = derived(f"groups: {{g: {{components: {{c: }}}}}}\nnodes: {{n: {node}}}")
-    assert [(e.name[-1], e.use, e.flow, e.qos.profile, e.written) for e in architecture.endpoints] == [
+    assert [(e.label[-1], e.use, e.flow, e.qos.profile, e.written) for e in architecture.endpoints] == [
         ("p", "serves", "service", "default", True),
         ("q", "publishes", "topic", "sensor_data", True),
         ("t", "calls", "action", "default", True),

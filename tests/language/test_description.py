@@ -184,6 +184,7 @@ def test_a_key_is_in_the_record_unless_it_says_why_not(import_tool: Callable[[st
         "cores",
         "tags",
         "scheduling",
+        "environment",
         "properties",
         "hints",
         "voltage",

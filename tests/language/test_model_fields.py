@@ -82,7 +82,7 @@ FIELDS_WITHOUT_KEY = {
     "node.wholes": "the key `implements`",
     "node.uses": "the keys `publishes`, `subscribes`, `serves`, `calls` and `internal`",
     **dict.fromkeys(("node.written", "node.implements_written"), "whether and how it is written"),
-    **dict.fromkeys(("node.own_values", "node.executor_places"), "places"),
+    **dict.fromkeys(("node.own_values", "node.executor_places", "node.remap_places", "node.argument_places"), "places"),
     **dict.fromkeys(
         ("node.file_values", "node.unread_files", "node.file_remarks"), "the key `parameter_files`, read later"
     ),

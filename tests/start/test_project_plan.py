@@ -26,14 +26,19 @@ def _names(plan: project_plan.ProjectPlan) -> set[str]:
     return {path.relative_to(plan.repository_folder).as_posix() for path in plan.files}
 
 
+_WORKFLOWS = {".github/workflows/architecture.yml", ".github/workflows/open-requests.yml"}
+
+
 @pytest.mark.parametrize(
-    ("forge", "name"), [("github", ".github/workflows/architecture.yml"), ("gitlab", ".gitlab-ci.yml"), ("none", "")]
+    ("forge", "forge_names"), [("github", _WORKFLOWS), ("gitlab", {".gitlab-ci.yml"}), ("none", set())]
 )
-def test_what_a_forge_reads_stands_at_the_top_of_the_repository(tmp_path: Path, forge: ForgeName, name: str) -> None:
+def test_what_a_forge_reads_stands_at_the_top_of_the_repository(
+    tmp_path: Path, forge: ForgeName, forge_names: set[str]
+) -> None:
     (tmp_path / ".git").mkdir()
     names = _names(_plan(tmp_path / "robot", replace(ANSWERS, forge=forge)))
     assert {"robot/archgen.yaml", "robot/groups/sensing.yaml", "robot/README.md", "CODEOWNERS"} <= names
-    assert {other for other in names if other.startswith(".")} == ({name} if name else set())
+    assert {other for other in names if other.startswith(".")} == forge_names
 
 
 def test_outside_of_a_repository_all_stands_in_the_project(tmp_path: Path) -> None:

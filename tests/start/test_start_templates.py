@@ -52,11 +52,32 @@ def test_a_folder_is_no_expression_of_a_workflow(folder: str) -> None:
 
 def test_two_projects_of_a_repository_have_nothing_in_common_that_could_clash() -> None:
     first, second = (yaml.safe_load(start_templates.fill_workflow(f"robots/{name}")) for name in ("alpha", "beta"))
-    assert first["concurrency"]["group"] == "architecture-robots/alpha-${{ github.ref }}"
-    assert second["concurrency"]["group"] == "architecture-robots/beta-${{ github.ref }}"
+    assert (
+        first["concurrency"]["group"]
+        == "architecture-robots/alpha-${{ github.event_name == 'pull_request' && github.ref || github.run_id }}"
+    )
+    assert (
+        second["concurrency"]["group"]
+        == "architecture-robots/beta-${{ github.event_name == 'pull_request' && github.ref || github.run_id }}"
+    )
     assert [each["name"] for each in (first, second)] == ["Architecture of robots/alpha", "Architecture of robots/beta"]
     keys = [each["jobs"]["comment"]["steps"][0]["with"]["key"] for each in (first, second)]
     assert keys == ["diff/robots-alpha", "diff/robots-beta"]
+
+
+@pytest.mark.parametrize("folder", ["", "a b", "${{ secrets.X }}"])
+def test_open_requests_are_held_against_each_other_each_night(folder: str) -> None:
+    text = start_templates.fill_nightly_workflow(folder).decode()
+    workflow = yaml.safe_load(text)
+    assert "${{ secrets" not in text
+    assert workflow[True]["schedule"] == [{"cron": "23 2 * * *"}]
+    check, comment = (workflow["jobs"][name]["steps"][-1]["with"] for name in ("check", "comment"))
+    assert check.pop("project", "") == folder.replace("${{", "${{ '${{' }}")
+    assert check == {"requests": "true"}
+    assert comment["file"] == "requests.json"
+    assert comment["key"].startswith("requests")
+    # Whoever reads what strangers wrote may write nothing.
+    assert set(workflow["jobs"]["check"]["permissions"].values()) == {"read"}
 
 
 @pytest.mark.parametrize("folder", ["", "robot"])

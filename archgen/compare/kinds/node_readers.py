@@ -5,9 +5,9 @@ from __future__ import annotations
 import shlex
 from collections.abc import Iterable, Mapping
 
+from archgen.bringup.start_plan import resolve_conditions
 from archgen.compare.kinds.key_spec import ReadContext
 from archgen.compare.normal_values import freeze_value, parameter_leaves, unordered_values
-from archgen.derivation import ros_names
 from archgen.frozen import replace
 from archgen.model.component_type_patterns import PATTERN_GROUP
 from archgen.model.declared_timing import Timing
@@ -68,15 +68,12 @@ def find_untold_timing(node: Node, context: ReadContext) -> Mapping[str, Timing]
     }
 
 
-def find_start(node: Node, _context: ReadContext) -> StartUp | None:
+def find_start(node: Node, context: ReadContext) -> StartUp | None:
     """Return what a node says of its start-up, with the names of ROS that it waits for written out."""
     start = node.start
     if start is None:
         return None
-    topic, service = (
-        ros_names.resolve_ros_name(name, node) if name else None for name in (start.ready.topic, start.ready.service)
-    )
-    return replace(start, ready=replace(start.ready, topic=topic, service=service))
+    return replace(start, ready=resolve_conditions(start.ready, node, context.architecture.distro))
 
 
 def read_start_targets(start: StartUp, context: ReadContext) -> frozenset[str]:

@@ -30,6 +30,10 @@ def _read_parameters(_project: ProjectInfo, context: ReadContext) -> Mapping[str
     return {value.name: freeze_value(value.value) for value in context.architecture.ros_parameters}
 
 
+def _read_environment(_project: ProjectInfo, context: ReadContext) -> Mapping[str, object]:
+    return {each.name: each.value for each in context.architecture.ros_environment}
+
+
 def _read_declared_properties(_project: ProjectInfo, context: ReadContext) -> Mapping[str, object]:
     """Return what is declared of properties: that there is one by its id, what is said of it by `id:key`."""
     values: dict[str, object] = {}
@@ -77,6 +81,7 @@ def _group_accepted(review: ReviewSettings) -> Mapping[str, list[str]]:
 # Sections, and parts of sections, that belong to no other element.
 _SETTING_KEYS = (
     KeySpec("distro", lambda _, context: context.architecture.distro, noun="ROS distribution"),
+    KeySpec("environment.", _read_environment),
     KeySpec("shared_topics", lambda _, context: unordered_values(context.architecture.shared_topics)),
     KeySpec("parameters.", _read_parameters),
     KeySpec("layout", lambda _, context: context.architecture.layout.direction, Effect.TEXT),

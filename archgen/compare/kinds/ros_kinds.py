@@ -19,7 +19,8 @@ from archgen.compare.kinds.shared_features import (
 )
 from archgen.compare.kinds.type_kind import TYPE
 from archgen.compare.normal_values import unordered_values
-from archgen.derivation import ros_names
+from archgen.derivation.wire.remap_rules import NodeNames
+from archgen.derivation.writing_endpoints import flow_of_use
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.model.node import Node, PortUse, Qos
 
@@ -81,8 +82,14 @@ def default_qos(name: str) -> object:
     return getattr(_DEFAULT_QOS, name)
 
 
-def _resolve_topics(port: NodePort, _context: ReadContext) -> frozenset[str]:
-    return unordered_values(ros_names.resolve_ros_name(topic, port.node) for topic in port.use.topics)
+def _resolve_topics(port: NodePort, context: ReadContext) -> frozenset[str]:
+    """Return the names on the wire: a remap is told as it is written, and here as what comes of it."""
+    if not port.use.topics:
+        return frozenset()
+    names = NodeNames(port.node, context.architecture.distro)
+    flow = flow_of_use(port.use.message, port.use)
+    wires = zip(names.name_use(port.use, flow, None), port.use.topics, strict=True)
+    return unordered_values(wire.name or topic for wire, topic in wires)
 
 
 PORT = KindSpec(

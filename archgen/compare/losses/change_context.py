@@ -14,8 +14,10 @@ from archgen.compare.losses.loss_wording import decline_verb, tick_sorted_names
 from archgen.compare.losses.wire_heirs import find_wire_heirs
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.partner_titles import name_partner
+from archgen.compare.review_facts import ReviewFacts
 from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.diagnostic import Severity
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint
 from archgen.model.review_settings import BreakCategory
@@ -30,6 +32,8 @@ class PartnerLoss:
     reason: str
     category: BreakCategory = "wire"
     fallen: tuple[str, str] | None = None
+    fallen_state: str | None = None
+    at_most: Severity = Severity.ERROR
 
 
 class LastingOutput(NamedTuple):
@@ -51,6 +55,9 @@ class ChangeContext:
     matched_ids: MatchedIds
     versions: VersionPair
     changes: Sequence[Change]
+    facts: ReviewFacts = field(default_factory=ReviewFacts)
+    followers: Collection[int] | None = None
+    """The changes, by identity, that only follow a component type; None where nobody asks whose edits they are."""
     _changes_by_key: dict[ElementKey, list[tuple[int, Change]]] = field(default_factory=lambda: defaultdict(list))
 
     def __post_init__(self) -> None:

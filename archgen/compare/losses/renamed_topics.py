@@ -19,7 +19,7 @@ def find_renamed_topics(context: ChangeContext) -> Iterator[PartnerLoss]:
     topics_by_port: dict[str, set[TopicKey]] = defaultdict(set)
     lasting_topics_by_port: dict[str, set[TopicKey]] = defaultdict(set)
     for (node, port), ends in new_endpoints.items():
-        topics = {(endpoint.name, endpoint.flow) for endpoint in ends}
+        topics = list_known_names(ends)
         topics_by_port[port] |= topics
         if context.after.nodes[node].status != "planned" or ("node", node) in context.versions.elements_before:
             lasting_topics_by_port[port] |= topics
@@ -27,12 +27,12 @@ def find_renamed_topics(context: ChangeContext) -> Iterator[PartnerLoss]:
     for node, port in sorted(old_endpoints):
         if port and ("output", port) not in context.versions.elements_after:
             continue  # the connection itself is gone
-        old_topics = {(endpoint.name, endpoint.flow) for endpoint in old_endpoints[node, port]}
+        old_topics = list_known_names(old_endpoints[node, port])
         # A new node that is only planned keeps no topic alive which the program that had it gives another name.
         new_topics = (lasting_topics_by_port if (node, port) in new_endpoints else topics_by_port)[port]
         indices = _find_causes(context, node, port) if old_topics - new_topics else []
         for name, flow in sorted(old_topics - new_topics):
-            own_topics = {(endpoint.name, endpoint.flow) for endpoint in new_endpoints.get((node, port), ())}
+            own_topics = list_known_names(new_endpoints.get((node, port), ()))
             replacements = sorted(
                 new_name for new_name, new_flow in (new_topics if port else own_topics) - old_topics if new_flow == flow
             )
@@ -51,6 +51,11 @@ def find_renamed_topics(context: ChangeContext) -> Iterator[PartnerLoss]:
             )
 
 
+def list_known_names(endpoints: Iterable[Endpoint]) -> set[TopicKey]:
+    """Return what endpoints use, as far as its name is known."""
+    return {(endpoint.name, endpoint.flow) for endpoint in endpoints if endpoint.name is not None}
+
+
 def list_topic_readers(context: ChangeContext) -> Mapping[TopicKey, list[Endpoint]]:
     """Return the readers of each name in the first version that can be broken: those of real nodes."""
     readers: dict[TopicKey, list[Endpoint]] = defaultdict(list)
@@ -61,7 +66,8 @@ def list_topic_readers(context: ChangeContext) -> Mapping[TopicKey, list[Endpoin
         if node.written and (
             endpoint.port is None or context.needs_source(context.matched_ids.common_id("input", endpoint.port))
         ):
-            readers[endpoint.name, endpoint.flow].append(endpoint)
+            for key in list_known_names([endpoint]):
+                readers[key].append(endpoint)
     return readers
 
 

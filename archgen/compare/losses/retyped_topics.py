@@ -14,9 +14,9 @@ def find_retyped_topics(context: ChangeContext) -> Iterator[PartnerLoss]:
     old_endpoints, new_endpoints = context.offered_endpoints
     readers = list_topic_readers(context)
     for node, port in sorted(old_endpoints):
-        new_messages = {endpoint.name: endpoint.message for endpoint in new_endpoints.get((node, port), ())}
+        new_messages = {endpoint.label: endpoint.message for endpoint in new_endpoints.get((node, port), ())}
         for endpoint in old_endpoints[node, port] if not port else ():
-            old_message, new_message = endpoint.message, new_messages.get(endpoint.name)
+            old_message, new_message = endpoint.message, new_messages.get(endpoint.label)
             if not (old_message and new_message):
                 continue
             if old_message == new_message:
@@ -27,9 +27,9 @@ def find_retyped_topics(context: ChangeContext) -> Iterator[PartnerLoss]:
                 for index, change in enumerate(context.changes)
                 if change.element_kind == "message" and change.old_id == old_message
             ]
-            users = [reader for reader in readers.get((endpoint.name, endpoint.flow), ()) if not reader.port]
+            users = [reader for reader in readers.get((endpoint.label, endpoint.flow), ()) if not reader.port]
             reason_text = (
-                f"sends {tick_name(new_message)} instead of {tick_name(old_message)} on {tick_name(endpoint.name)}, "
+                f"sends {tick_name(new_message)} instead of {tick_name(old_message)} on {tick_name(endpoint.label)}, "
                 "to which {}"
             )
             yield from context.shared_losses(indices, group_users(context, users), reason_text, "subscribes", "wire")

@@ -72,7 +72,7 @@ def _writers_by_key(architecture: Architecture, matched_ids: MatchedIds) -> Mapp
 
 
 def _writer_key(endpoint: Endpoint, matched_ids: MatchedIds) -> WriterKey:
-    port = matched_ids.common_id("output", endpoint.port) if endpoint.port else endpoint.name
+    port = matched_ids.common_id("output", endpoint.port) if endpoint.port else endpoint.label
     return matched_ids.common_id("node", endpoint.node), port
 
 
@@ -82,7 +82,7 @@ def _describe_clashes(context: ChangeContext, writer: Endpoint, clashes: tuple[Q
     )
     offered = " and ".join(clash.offered for clash in clashes)
     requested = " and ".join(clash.requested for clash in clashes)
-    return tuple(indices), f"{offered} on {tick_name(writer.name)}", requested
+    return tuple(indices), f"{offered} on {tick_name(writer.label)}", requested
 
 
 def _find_clashes(writer: Endpoint, reader: Endpoint) -> tuple[QosConflict, ...]:

@@ -63,7 +63,7 @@ def _describe_endpoint(endpoint: Endpoint) -> tuple[object, ...]:
     qos = endpoint.qos
     durations = [each and each.value for each in (qos.deadline, qos.lifespan, qos.lease_duration)]
     kept_qos = (qos.reliability, qos.durability, qos.history, qos.depth, qos.liveliness)
-    return endpoint.name, endpoint.flow, endpoint.message, *kept_qos, *durations
+    return endpoint.label, endpoint.flow, endpoint.message, *kept_qos, *durations
 
 
 def _is_same_output(old_output: ComparedElement, new_output: ComparedElement) -> bool:

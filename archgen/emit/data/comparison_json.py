@@ -95,6 +95,7 @@ def change_record(architecture_change: Change, origin: TypeKey | None = None) ->
                 "partner": partner_break.partner,
                 "category": partner_break.category,
                 "why": partner_break.reason,
+                "hash": partner_break.hash,
                 "agreed": partner_break.agreement,
                 **({"variants": list(partner_break.variants)} if partner_break.variants else {}),
                 **(

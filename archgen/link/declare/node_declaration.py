@@ -135,6 +135,8 @@ def _declare_node(node_id: str, entry: MappingEntry, context: NodeContext, imple
         own_values=tuple(_list_own_values(body)),
         written=node_id not in implemented.planned_ids,
         implements_written=body.get("implements") is not None,
+        remap_places={each.key: each.key_span for each in mapping_values.get_mapping(body, "remaps")},
+        argument_places=tuple(each.span for each in mapping_values.get_scalars(body, "arguments")),
         executor_places={key: mapping_values.get_span(body, key) for key in EXECUTOR_KEYS if key in body.entries},
     )
 

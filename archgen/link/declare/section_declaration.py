@@ -91,7 +91,9 @@ def declare_review(root: MappingNode) -> ReviewSettings:
         breaking=_read_policy(body),
         guards_margins=mapping_values.get_mapping(body, "breaking").get("promise") is not None,
         accepted=tuple(
-            AcceptedChange(entry.key, reason, mapping_values.get_text(item, "key"), item.span)
+            AcceptedChange(
+                entry.key, reason, mapping_values.get_text(item, "key"), item.span, mapping_values.get_text(item, "was")
+            )
             for entry in mapping_values.get_mapping(body, "accepted")
             if isinstance(entry.value, SequenceNode)
             for item in entry.value.items

@@ -35,7 +35,10 @@ def declare_start(body: MappingNode, resolver: ReferenceResolver, node_id: str) 
         ready=_read_conditions(mapping_values.get_mapping(start, "ready"), resolver, node_id),
         by=_resolve_target(manager, resolver, node_id) if manager else None,
         by_written=manager is not None,
-        places=_list_places(start),
+        places={
+            **_list_places(start),
+            **{f"environment.{each.name}": each.at for each in mapping_values.list_placed_texts(start, "environment")},
+        },
     )
 
 

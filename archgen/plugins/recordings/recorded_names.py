@@ -58,7 +58,8 @@ class RecordedNames:
         self._endpoints: dict[tuple[str, UseKind, str], dict[tuple[str, str], None]] = defaultdict(dict)
         for endpoint in architecture.endpoints:
             place = (activity_of_endpoint(activity_names, endpoint), endpoint_key(endpoint))
-            self._endpoints[endpoint.node, endpoint.use, endpoint.name][place] = None
+            if endpoint.name is not None:
+                self._endpoints[endpoint.node, endpoint.use, endpoint.name][place] = None
 
     def find_node(self, full_name: str) -> str:
         """Return the id of the node with a full name. Raise UnmappedError."""

@@ -45,7 +45,7 @@ def name_activities(architecture: Architecture) -> ActivityNames:
 
 def endpoint_key(endpoint: Endpoint) -> str:
     """Return the key under which an activity knows an endpoint: its port, or the name of an internal topic."""
-    return endpoint.port or endpoint.name
+    return endpoint.port or endpoint.label
 
 
 def endpoints_by_activity(architecture: Architecture, activity_names: ActivityNames) -> dict[str, list[Endpoint]]:
@@ -94,7 +94,7 @@ def _list_sources(
     architecture: Architecture, node: Node, component_id: str | None, endpoints: Sequence[Endpoint]
 ) -> ActivitySource:
     topics = architecture.topics
-    shared_flags = tuple([topic.shared if (topic := topics.get(each.name)) else False for each in endpoints])
+    shared_flags = tuple([topic.shared if (topic := topics.get(each.label)) else False for each in endpoints])
     return ActivitySource(node, architecture.components.get(component_id or ""), endpoints, shared_flags)
 
 
@@ -255,5 +255,5 @@ def _trigger_inputs(part: _NodePart) -> Iterator[str]:
 
 def _is_shared_by_all(part: _NodePart, endpoint: Endpoint) -> bool:
     """Whether an endpoint reads a shared topic without naming a source."""
-    topic = part.architecture.topics.get(endpoint.name)
+    topic = part.architecture.topics.get(endpoint.label)
     return bool(topic and topic.shared and not endpoint.sources)

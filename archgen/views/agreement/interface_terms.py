@@ -150,7 +150,7 @@ def _list_facts(lookup: Lookup, interface: PartnerInterface) -> Iterator[Fact]:
         yield Fact("", "Kind", inline_text.to_inlines("physical: neither message nor topic"))
     elif interface.medium:
         yield Fact("", "Kind", inline_text.to_inlines(f"{interface.medium}: no ROS"))
-        names = [endpoint.name.partition(" ")[2] for endpoint in interface.giver_endpoints if endpoint.name_written]
+        names = [endpoint.label.partition(" ")[2] for endpoint in interface.giver_endpoints if endpoint.name_written]
         if names:
             yield Fact("", "Name", inline_text.join_lines((Text(name, code=True),) for name in dict.fromkeys(names)))
     else:
@@ -277,7 +277,7 @@ def _end_rows(  # noqa: PLR0913 - the columns of a row
     rows: dict[tuple[str, str, str], None] = {}
     for endpoint in (endpoint for endpoint in endpoints if architecture.nodes[endpoint.node].written):
         # A dict as an ordered set: several endpoints of a node with one QoS are one row.
-        has_qos = endpoint.flow == "topic" and with_qos and endpoint.name.startswith("/")
+        has_qos = endpoint.flow == "topic" and with_qos and endpoint.medium == "ros"
         qos_texts = (describe_qos(endpoint), identify_qos(endpoint.qos)) if has_qos else ("", "")
         rows[endpoint.node, *qos_texts] = None
     for node, qos, qos_identity in rows:

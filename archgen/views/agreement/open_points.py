@@ -63,7 +63,7 @@ def find_late_chains(lookup: Lookup, chains: Iterable[ChainResult]) -> Iterator[
 def _find_qos_clashes(lookup: Lookup, interface: PartnerInterface) -> Iterator[str]:
     for writer in _list_written(lookup, interface.giver_endpoints):
         for reader in _list_written(lookup, interface.taker_endpoints):
-            conflicts = tuple(find_qos_conflicts(writer.qos, reader.qos)) if writer.name == reader.name else ()
+            conflicts = tuple(find_qos_conflicts(writer.qos, reader.qos)) if writer.label == reader.label else ()
             if conflicts:
                 requests = " and ".join(conflict.requested for conflict in conflicts)
                 offers = " and ".join(conflict.offered for conflict in conflicts)

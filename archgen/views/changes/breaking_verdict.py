@@ -8,7 +8,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from archgen.compare import Change, Comparison, PartnerBreak
-from archgen.compare.agreements import agreement_key, find_partner_id, list_agreement_targets
+from archgen.compare.agreements import AgreementJudge, find_partner_id, list_agreement_targets
+from archgen.compare.change_hashes import agreement_key
 from archgen.compare.sentence_words import tick_names
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Severity
@@ -24,6 +25,8 @@ from archgen.views.changes.partner_names import name_each, name_partners
 from archgen.views.inline_text import count_noun
 
 _MAX_FILES = 4
+_Target = tuple[str, str, str]
+"""What an entry names: element, key and hash."""
 _ALL_CLEAR = "no change breaks another partner"
 _PLAIN_TEXT = re.compile(r"[A-Za-z_](?:[\w ./-]*[\w])?", re.ASCII)
 """A text that YAML reads as itself; the words that it reads as something else are no ids."""
@@ -80,16 +83,16 @@ def write_missing_entries(comparison: Comparison) -> tuple[str, ...]:
     )
 
 
-def _find_refused_targets(comparison: Comparison) -> Mapping[str, Sequence[tuple[str, str]]]:
+def _find_refused_targets(comparison: Comparison) -> Mapping[str, Sequence[_Target]]:
     """Return what entries have to name to accept what the policy refuses, by the partner who did not agree. What cannot be
     judged is nothing that anybody could agree on.
     """
-    targets: dict[str, dict[tuple[str, str], None]] = {}
+    targets: dict[str, dict[_Target, None]] = {}
     for change in comparison.changes if comparison.is_judged else ():
-        refused_breaks = [each for each in change.breaks if each.agreement is None and _is_refused(each, comparison)]
-        for partner in dict.fromkeys(each.partner for each in refused_breaks):
-            own_breaks = [each for each in refused_breaks if each.partner == partner]
-            targets.setdefault(partner, {}).update(dict.fromkeys(list_agreement_targets(change, own_breaks)))
+        for each in change.breaks:
+            if each.agreement is None and _is_refused(each, comparison):
+                own_targets = list_agreement_targets(change, [each])
+                targets.setdefault(each.partner, {}).update(dict.fromkeys(own_targets))
     return {partner: list(names) for partner, names in targets.items()}
 
 
@@ -101,10 +104,8 @@ def describe_remedy(change: Change, comparison: Comparison) -> str:
     partner_ids = [find_partner_id(partner, comparison.matched_ids) for partner in partners]
     files = join_words([f"`{agreement_file(partner_id)}`" for partner_id in partner_ids])
     targets = list_agreement_targets(change, [each for each in change.breaks if each.agreement is None])
-    entry = (
-        "`review: {accepted: {" + ", ".join(_write_line(keys, "THE REASON") for keys in _group_keys(targets)) + "}}`"
-    )
-    return f"mend it, or {_say_why(partners, comparison)}, in {files}: {entry}"
+    entries = [_write_entry(target, "THE REASON") for target in targets]
+    return f"mend it, or {_say_why(partners, comparison)}, in {files}: {join_words(entries)}"
 
 
 def _say_why(partners: Sequence[str], comparison: Comparison) -> str:
@@ -128,15 +129,17 @@ def write_policy(comparison: Comparison) -> str:
 
 
 def _is_refused(partner_break: PartnerBreak, comparison: Comparison) -> bool:
-    return comparison.policy.severity_of(partner_break.category) is Severity.ERROR
+    return comparison.severity_of(partner_break) is Severity.ERROR
 
 
 def describe_agreements(change: Change, comparison: Comparison) -> Iterator[str]:
     """Yield which partners agreed on a breaking change and why, then the entries about it that excuse nothing."""
-    agreements = {each.partner: each.agreement for each in change.breaks if each.agreement is not None}
+    agreements = {each.partner: each for each in change.breaks if each.agreement is not None}
     partner_names = name_partners(comparison)
-    for partner, reason in sorted(agreements.items()):
-        yield f"accepted by {join_words(name_each([partner], partner_names))}: {reason}"
+    for partner, agreed in sorted(agreements.items()):
+        yield f"accepted by {join_words(name_each([partner], partner_names))}: {agreed.agreement}"
+        if not agreed.agreed_hash:
+            yield f"which says no hash, and so accepts what had changed when it was written: add `was: {agreed.hash}`"
     for entry in change.claims:
         yield _describe_claim(entry, change, comparison)
     # Where only breaking changes are shown, the verdict lists all idle entries.
@@ -149,12 +152,20 @@ def _describe_claim(entry: AcceptedChange, change: Change, comparison: Compariso
     """Describe an entry that excuses nothing: why not, and what to write where."""
     partners = [find_partner_id(partner, comparison.matched_ids) for partner in change.broken_partners]
     place = _describe_place(entry)
-    if entry.partner not in partners:
+    flaw = AgreementJudge.from_comparison(comparison).find_flaw(entry, change)
+    if flaw == "foreign file":
         names = join_words(name_each(change.broken_partners, name_partners(comparison)))
         return f"said in {place}, not by {names}: {entry.reason}"
-    if entry.key is None:
-        needed_entry = _write_entry(change, entry.reason)
+    partner = change.broken_partners[partners.index(entry.partner or "")]
+    targets = list_agreement_targets(change, [each for each in change.breaks if each.partner == partner])
+    needed_entry = join_words([_write_entry(target, entry.reason) for target in targets])
+    if flaw == "no key":
         return f"said in {place} without a `key`, which would accept whatever changes: write {needed_entry}"
+    if flaw == "other change":
+        return f"said in {place}, which agreed to another change than this one: now it would be {needed_entry}"
+    if flaw == "other author":
+        names = join_words(name_each([entry.partner or ""], name_partners(comparison)))
+        return f"said in {place}, not by {names}: none of its `reviewers` wrote it: {entry.reason}"
     return f"said in {place} before this change, of another one: {entry.reason}"
 
 
@@ -162,32 +173,26 @@ def _describe_place(entry: AcceptedChange) -> str:
     return f"`{entry.at.file}`" if entry.at.file else "the project"
 
 
-def _write_entry(change: Change, reason: str) -> str:
+def _write_entry(target: _Target, reason: str) -> str:
     """Return the entry that accepts a change, as it has to stand in a file."""
-    return f"`review: {{accepted: {{{_write_line((change.element_id, [agreement_key(change)]), reason)}}}}}`"
+    return f"`review: {{accepted: {{{_quote_text(target[0])}: {_write_body(target, reason)}}}}}`"
 
 
-def _write_entries(targets: Iterable[tuple[str, str]]) -> str:
-    """Return the section that accepts elements and keys, a line for each element."""
-    lines = ["review:", "  accepted:", *(f"    {_write_line(keys, 'THE REASON')}" for keys in _group_keys(targets))]
+def _write_entries(targets: Iterable[_Target]) -> str:
+    """Return the section that accepts changes, a line for each element."""
+    bodies_by_element: dict[str, list[str]] = {}
+    for target in targets:
+        bodies_by_element.setdefault(target[0], []).append(_write_body(target, "THE REASON"))
+    lines = ["review:", "  accepted:"]
+    for element_id, bodies in bodies_by_element.items():
+        text = ", ".join(bodies)
+        lines.append(f"    {_quote_text(element_id)}: {text if len(bodies) == 1 else f'[{text}]'}")
     return "\n".join(lines)
 
 
-def _group_keys(targets: Iterable[tuple[str, str]]) -> Iterable[tuple[str, list[str]]]:
-    keys_by_element: dict[str, list[str]] = {}
-    for element_id, key in dict.fromkeys(targets):
-        keys_by_element.setdefault(element_id, []).append(key)
-    return keys_by_element.items()
-
-
-def _write_line(element_keys: tuple[str, list[str]], reason: str) -> str:
-    element_id, keys = element_keys
-    bodies = ", ".join(_write_body(key, reason) for key in keys)
-    return f"{_quote_text(element_id)}: {bodies if len(keys) == 1 else f'[{bodies}]'}"
-
-
-def _write_body(key: str, reason: str) -> str:
-    return f"{{key: {_quote_text(key)}, reason: {_quote_text(reason)}}}"
+def _write_body(target: _Target, reason: str) -> str:
+    _, key, change_hash = target
+    return f"{{key: {_quote_text(key)}, was: {_quote_text(change_hash)}, reason: {_quote_text(reason)}}}"
 
 
 def _quote_text(text: str) -> str:

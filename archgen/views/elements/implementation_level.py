@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 
+from archgen.derivation.wire.remap_rules import list_written_remaps
 from archgen.model.component_nesting import find_component
 from archgen.model.node import Endpoint, Node
 from archgen.model.port_media import ROS
@@ -12,7 +13,7 @@ from archgen.views.elements.annotation_facts import list_annotation_facts
 from archgen.views.elements.parameter_blocks import make_effective_table
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Fact, Figure, Inlines, Markdown, Paragraph, Table, Text, show_facts
-from archgen.views.start_phrases import describe_start
+from archgen.views.start_phrases import describe_override, describe_start, list_running_facts
 from archgen.views.timing import element_timing
 
 _USE_ORDER = {"subscribes": 0, "publishes": 1, "serves": 2, "calls": 3}
@@ -74,6 +75,11 @@ def list_node_facts(lookup: Lookup, node: Node) -> list[Fact]:
         Fact("", "Language", inline_text.to_inlines(_LANGUAGE_TITLES[node.language]) if node.language else ()),
         Fact("", "Remaps", _remap_facts(lookup, node)),
         Fact("", "Start", _start_facts(node)),
+        *(
+            Fact("", name.capitalize(), inline_text.to_inlines(text))
+            for name, text in list_running_facts(lookup.endpoints_of.get(node.id, ()))
+            if not text.startswith("unknown")  # of most nodes of a design; cards say so
+        ),
         Fact("owner", "Owner", inline_text.owner_links(architecture, node.owners) if node.owners else ()),
         Fact("host", "Runs on", _location_cell(lookup, node)),
         Fact("activity", "Callbacks", inline_text.to_inlines(_describe_callbacks(node))),
@@ -100,10 +106,13 @@ def _to_code(text: str) -> Inlines:
 
 def _remap_facts(lookup: Lookup, node: Node) -> Inlines:
     """Return the names that become others when the node starts, those of its ports first."""
-    port_names = {each.own_name: each.name for each in lookup.endpoints_of.get(node.id, ()) if each.own_name}
+    ends = lookup.endpoints_of.get(node.id, ())
+    port_names = {each.own_name: each.label for each in ends if each.own_name}
+    port_names |= {each.evidence["name"].rule.partition(":=")[0]: each.label for each in ends if each.is_moved}
+    others = {own_name: name for own_name, name in list_written_remaps(node).items() if own_name not in port_names}
     return inline_text.join_inlines(
         (Text(own_name, code=True), Text(" is "), Text(name, code=True))
-        for own_name, name in (port_names | dict(node.remaps)).items()
+        for own_name, name in (port_names | others).items()
     )
 
 
@@ -148,12 +157,18 @@ def _endpoint_table(node: Node, endpoints: tuple[Endpoint, ...]) -> Table:
             (*inline_text.name_carrier(endpoint), *_internal_mark(endpoint)),
             _name_content(endpoint),
             inline_text.to_inlines(Text(endpoint.port.rsplit(".", 1)[-1], code=True)) if endpoint.port else (),
-            inline_text.format_qos_cell(endpoint.qos) if endpoint.flow == "topic" and endpoint.medium == ROS else (),
+            _qos_content(endpoint) if endpoint.flow == "topic" and endpoint.medium == ROS else (),
         )
         for endpoint in sorted(endpoints, key=lambda e: _USE_ORDER[e.use])
     )
     columns = (Column("Use", 0.7), Column("Name", 1.9), Column("Message", 2.0), Column("Port", 0.8), Column("QoS", 1.3))
     return Table(f"table:endpoints/{node.id}", f"{node.id}: topics, services and actions", columns, rows)
+
+
+def _qos_content(endpoint: Endpoint) -> Inlines:
+    words = describe_override(endpoint)
+    remark = (Text(f" {words}", muted=True),) if words else ()
+    return (*inline_text.format_qos_cell(endpoint.qos), *remark)
 
 
 def _name_content(endpoint: Endpoint) -> Inlines:

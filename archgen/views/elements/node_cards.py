@@ -17,11 +17,12 @@ from archgen.views.elements.card_parts import (
 )
 from archgen.views.elements.parameter_blocks import list_effective_lines
 from archgen.views.lookup import Lookup
-from archgen.views.start_phrases import describe_start
+from archgen.views.start_phrases import describe_override, describe_start, list_running_facts
 
 
 def make_node_card(lookup: Lookup, node: Node) -> ElementCard:
     """Make the card of a node."""
+    endpoints = lookup.endpoints_of.get(node.id, ())
     facts = [
         ("implements", ", ".join(node.implements)),
         ("owner", ", ".join(node.owners) or "?"),
@@ -32,6 +33,7 @@ def make_node_card(lookup: Lookup, node: Node) -> ElementCard:
         ("executable", node.executable or ""),
         ("command", shlex.join(node.command)),
         ("start", describe_start(node)),
+        *list_running_facts(endpoints),
         ("host", node.host or "?"),
         ("container", node.container or ""),
         ("threads", format_fact(node.threads)),
@@ -44,8 +46,9 @@ def make_node_card(lookup: Lookup, node: Node) -> ElementCard:
         ),
     ]
     lines = tuple(
-        f"{inline_text.ENDPOINT_USE_WORDS[endpoint.use]} {_describe_endpoint(endpoint)}"
-        for endpoint in lookup.endpoints_of.get(node.id, ())
+        f"{inline_text.ENDPOINT_USE_WORDS[endpoint.use]} {_describe_endpoint(endpoint)}{describe_move(endpoint)}"
+        f"{_tell_override(endpoint)}"
+        for endpoint in endpoints
     )
     lists = (
         ("topics, services and actions", lines),
@@ -58,8 +61,22 @@ def make_node_card(lookup: Lookup, node: Node) -> ElementCard:
 def _describe_endpoint(endpoint: Endpoint) -> str:
     """Return the name of what a node uses with its message; over another medium than ROS, with its type."""
     if endpoint.medium == ROS:
-        return f"{endpoint.name} ({endpoint.message or '?'})"
+        return f"{endpoint.label} ({endpoint.message or '?'})"
     return f"{name_on_medium(endpoint)} ({name_medium(endpoint.medium)}: {endpoint.type or '?'})"
+
+
+def _tell_override(endpoint: Endpoint) -> str:
+    words = describe_override(endpoint)
+    return f", QoS {words}" if words else ""
+
+
+def describe_move(endpoint: Endpoint) -> str:
+    """Return what a launch makes of the name that the program says, with the place of the rule; nothing where it is the same."""
+    if not endpoint.is_moved:
+        return ""
+    at = endpoint.evidence["name"].at
+    place = f" by {at.file}:{at.line}" if at.line else ""
+    return f"; says `{endpoint.program_name}`, is on `{endpoint.label}`{place}"
 
 
 def make_topic_card(lookup: Lookup, topic: Topic) -> ElementCard:

@@ -48,7 +48,7 @@ def record_ports(
 
 
 def _tell_unknown_message(endpoint: Endpoint, messages: set[str | None]) -> Diagnostic:
-    named = f"`{endpoint.port or endpoint.name}` of the node `{endpoint.node}`"
+    named = f"`{endpoint.port or endpoint.label}` of the node `{endpoint.node}`"
     if len(messages) > 1:
         shown = " and ".join(sorted(f"`{each}`" for each in messages if each))
         return tell_left_out(
@@ -67,7 +67,7 @@ def _tell_unknown_message(endpoint: Endpoint, messages: set[str | None]) -> Diag
 
 def _tell_bad_message(endpoint: Endpoint) -> Diagnostic:
     return tell_left_out(
-        f"`{endpoint.port or endpoint.name}` of the node `{endpoint.node}` is left out: no class can be called as its "
+        f"`{endpoint.port or endpoint.label}` of the node `{endpoint.node}` is left out: no class can be called as its "
         f"message `{endpoint.message}`",
         endpoint.at,
         element=endpoint.node,
@@ -87,7 +87,7 @@ def _record_port(
     return {
         "key": key,
         "topic": choose_own_name(key, endpoints, is_shared=is_shared),
-        "topics": {each.node: each.name for each in endpoints},
+        "topics": {each.node: each.name or "" for each in endpoints},
         "port": first.port or "",
         "internal": first.internal,
         "message": first.message,
@@ -153,7 +153,7 @@ def is_envelope(data_type: ConceptualType) -> bool:
 
 
 def _list_senders(architecture: Architecture, endpoint: Endpoint) -> list[str]:
-    topic = architecture.topics.get(endpoint.name)
+    topic = architecture.topics.get(endpoint.label)
     writers = topic.writers if topic else ()
     nodes = [architecture.nodes[each.node].full_name for each in writers if each.port in endpoint.sources]
     return sorted(set(nodes)) or [ANYBODY]

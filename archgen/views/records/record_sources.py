@@ -13,7 +13,7 @@ from archgen.model.component import Component, Group, Input, Output
 from archgen.model.declared_timing import Timing
 from archgen.model.deployment import Host
 from archgen.model.message_types import PART_KEYS
-from archgen.model.node import Node
+from archgen.model.node import Endpoint, Evidence, Node
 from archgen.model.parameter_values import EffectiveParameter, find_effective_parameters
 from archgen.model.port_media import ROS, is_physical, name_on_medium, word_of_medium
 from archgen.model.promise import Promise, describe_deprecation, format_range
@@ -54,6 +54,17 @@ def _list_port_types(ports: Mapping[str, str | None]) -> dict[str, str]:
 def _list_endpoints(node: Node, lookup: Lookup) -> list[object]:
     """Return what a node uses over ROS: who generates launch files from it knows nothing else."""
     return [each for each in lookup.endpoints_of.get(node.id, ()) if each.medium == ROS]
+
+
+def _list_reasons(endpoint: Endpoint, _lookup: Lookup) -> dict[str, Evidence]:
+    """Return where fields come from that are not as the program, or the model of its port, has them."""
+    told = {key: each for key, each in endpoint.evidence.items() if each.kind not in {"default", "unknown"}}
+    # That a node is planned stands at the node.
+    return {
+        key: each
+        for key, each in told.items()
+        if (key != "name" or endpoint.is_moved) and (key != "runs" or endpoint.runs != "planned")
+    }
 
 
 def _name_activities(node: Node, _lookup: Lookup) -> dict[str, Timing]:
@@ -132,6 +143,7 @@ _PARTS: Mapping[str, Mapping[str, Source]] = {
         "distro": lambda _, lookup: lookup.architecture.distro,
         # Of one name the last value counts.
         "parameters": lambda _, lookup: {each.name: each.value for each in lookup.architecture.ros_parameters},
+        "environment": lambda _, lookup: {each.name: each.value for each in lookup.architecture.ros_environment},
     },
     "use_case": {
         "actors": lambda use_case, _: {actor.id: actor.title for actor in use_case.actors.values()},
@@ -186,7 +198,18 @@ _PARTS: Mapping[str, Mapping[str, Source]] = {
         "timing": _name_activities,
         "effective_parameters": _list_effective,
     },
-    "endpoint": {"qos": lambda endpoint, _: endpoint.qos if endpoint.flow == "topic" else None},
+    "endpoint": {
+        "program_name": lambda endpoint, _: endpoint.program_name if endpoint.is_moved else None,
+        "from": _list_reasons,
+        "unknown": lambda endpoint, _: [key for key, each in endpoint.evidence.items() if each.kind == "unknown"],
+        "qos": lambda endpoint, _: endpoint.qos if endpoint.flow == "topic" else None,
+        "clock": lambda endpoint, _: endpoint.clock if endpoint.clock != "system" else None,
+        "runs": lambda endpoint, _: endpoint.runs if endpoint.runs != "active" else None,
+    },
+    "evidence": {
+        "by": lambda reason, _: reason.kind,
+        "at": lambda reason, _: str(reason.at) if reason.at.line else None,
+    },
     "topic": _CARRIER,
     "channel": {**_CARRIER, "name": lambda channel, _: name_on_medium(channel)},
     "start": {

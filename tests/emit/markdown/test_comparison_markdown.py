@@ -141,9 +141,9 @@ def test_what_breaks_a_partner_stands_first_with_whom_and_why(tmp_path: Path) ->
     kind, rate = found.changes
     assert (kind.element_kind, rate.element_kind) == ("type", "component")
     breaks = (
-        PartnerBreak("sssa", "`display.finder` takes `Image`", "agreed in May"),
-        PartnerBreak("sssa", "two", "agreed in May", "meaning"),
-        PartnerBreak("certh", "two", category="meaning"),
+        PartnerBreak("sssa", "`display.finder` takes `Image`", "agreed in May", hash="cfa9c1", agreed_hash="cfa9c1"),
+        PartnerBreak("sssa", "two", "agreed in May", "meaning", hash="cfa9c1", agreed_hash="cfa9c1"),
+        PartnerBreak("certh", "two", category="meaning", hash="cfa9c1"),
     )
     claims = (AcceptedChange("Image", "agreed in *June*", "message", Span("archgen.yaml", 1, 1, 1, 1)),)
     kind = replace(kind, breaks=breaks, claims=claims)
@@ -173,7 +173,7 @@ def test_what_breaks_a_partner_stands_first_with_whom_and_why(tmp_path: Path) ->
     refused = replace(found, changes=(kind,), policy=BreakPolicy(meaning=Severity.ERROR))
     assert (
         "\n`review.breaking: {meaning: error}` refuses this: mend it, or CERTH says why it is right:\n\n"
-        "```yaml\n# review/certh.yaml\nreview:\n  accepted:\n    Image: {key: message, reason: THE REASON}\n```\n"
+        "```yaml\n# review/certh.yaml\nreview:\n  accepted:\n    Image: {key: message, was: cfa9c1, reason: THE REASON}\n```\n"
     ) in written(refused, broken)
 
 

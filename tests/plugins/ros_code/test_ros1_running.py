@@ -73,8 +73,8 @@ def list_modelled(architecture: Architecture) -> tuple[set[tuple[str, str, str]]
             }
         elif endpoint.use != "calls":
             # Who calls a service is in no graph of ROS 1.
-            uses.add((node, endpoint.use, endpoint.name))
-            types[endpoint.name] = f"{package}/{name}"
+            uses.add((node, endpoint.use, endpoint.label))
+            types[endpoint.label] = f"{package}/{name}"
     return uses, types
 
 
@@ -305,7 +305,7 @@ def test_services_actions_and_nodes_written_by_hand_take_part(folder: Path, robo
     architecture = pipeline.check_project(folder / "p").architecture
     own = robot_workspace / "src" / "by_hand"
     own.mkdir()
-    (words,) = (each.name for each in architecture.endpoints if each.port == "g.det.words")
+    (words,) = (each.label for each in architecture.endpoints if each.port == "g.det.words")
     (own / "all.launch").write_text(OWN_LAUNCH.replace("WORDS", words), encoding="utf-8")
     (own / "package.xml").write_text(
         (robot_workspace / "src" / "rt_g" / "package.xml").read_text().replace("rt_g", "by_hand")

@@ -34,7 +34,7 @@ chains: {see: {through: [camera, screen], deadline: 100 ms}}
 """
 RETYPED = OLD.replace("msg/Image", "msg/CompressedImage")
 REFUSED = "mend it, or SSSA says why it is right:"
-MISSING = "sensing.camera.image: {key: type, reason: THE REASON}"
+MISSING = "sensing.camera.image: {key: type, was: a8601b, reason: THE REASON}"
 FORMS = ("terminal", "markdown", "page")
 Sides = tuple[ProjectVersion, ProjectVersion]
 ReadSides = Callable[[str, str], Sides]

@@ -142,8 +142,8 @@ class NodeProcess:
         name = self.features[part.key] = self.names.take_name(shell_port or part.name)
         properties = make_named_properties(name, shell_port or port.name)
         endpoint = next(iter(self.find_endpoints(part)), None)
-        if endpoint and endpoint.medium == "ros":
-            own_name = endpoint.own_name or endpoint.name
+        own_name = (endpoint.own_name or endpoint.name) if endpoint and endpoint.medium == "ros" else None
+        if own_name is not None:
             properties.append(make_property("topic_properties::Default_Name", write_aadl_string(own_name)))
         properties += make_text_properties(
             medium=port.medium if port.medium != "ros" else None,
@@ -171,9 +171,9 @@ class NodeProcess:
 
     def _make_internal_feature(self, types: TypeBook, endpoint: Endpoint) -> dict[str, Any]:
         classifier = types.name_type(endpoint.type or endpoint.message, endpoint.flow)
-        name = self.names.take_name(endpoint.name.strip("/").replace("/", "_") or "internal")
+        name = self.names.take_name(endpoint.label.strip("/").replace("/", "_") or "internal")
         properties = [
-            make_property("topic_properties::Default_Name", write_aadl_string(endpoint.own_name or endpoint.name)),
+            make_property("topic_properties::Default_Name", write_aadl_string(endpoint.own_name or endpoint.label)),
             make_property("archgen::Is_Internal", "true"),
         ]
         return make_item(name, f"{_INTERNAL_KINDS[endpoint.use]} {classifier}", properties)

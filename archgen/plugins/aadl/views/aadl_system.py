@@ -264,6 +264,6 @@ def _find_link_latencies(analysis: Analysis | None) -> dict[RouteEnds, tuple[Fra
 def _list_topic_properties(endpoint: Endpoint | None) -> list[AadlProperty]:
     return (
         []
-        if endpoint is None or endpoint.medium != "ros"
+        if endpoint is None or endpoint.name is None or endpoint.medium != "ros"
         else [make_property("topic_properties::Name", write_aadl_string(endpoint.name))]
     )

@@ -17,6 +17,7 @@ _WITH_VALUE = frozenset(
 def read_ros_arguments(node: LaunchedNode, add_file: Callable[[str], None]) -> None:
     """Take the arguments of ROS out of a node's arguments, and set what they say."""
     kept: list[str] = []
+    rules: dict[str, str] = {}
     words = iter(node.arguments)
     is_for_ros = False
     for word in words:
@@ -25,13 +26,21 @@ def read_ros_arguments(node: LaunchedNode, add_file: Callable[[str], None]) -> N
         elif word == "--" and is_for_ros:
             is_for_ros = False
         elif is_for_ros and word in _WITH_VALUE:
-            _read_rule(node, word, next(words, ""), add_file)
+            _read_rule(node, word, next(words, ""), rules, add_file)
         elif not is_for_ros:
             kept.append(word)
     node.arguments = kept
+    # On the command line they stand before those of groups and of the node itself, and the first rule for a name counts.
+    if "__ns" in rules:
+        node.namespace = join_names("", rules.pop("__ns"))
+    names = [rules.pop(key) for key in ("__node", "__name") if key in rules]
+    node.name = names[0] if names else node.name
+    node.remaps = rules | {name: value for name, value in node.remaps.items() if name not in rules}
 
 
-def _read_rule(node: LaunchedNode, word: str, rule: str, add_file: Callable[[str], None]) -> None:
+def _read_rule(
+    node: LaunchedNode, word: str, rule: str, rules: dict[str, str], add_file: Callable[[str], None]
+) -> None:
     name, joint, value = rule.partition(":=")
     if word == "--params-file":
         add_file(rule)
@@ -40,12 +49,7 @@ def _read_rule(node: LaunchedNode, word: str, rule: str, add_file: Callable[[str
     elif word in {"-p", "--param"}:
         node.parameters[name] = read_value_text(value)
     elif word in {"-r", "--remap"}:
-        if name == "__ns":
-            node.namespace = join_names("", value)
-        elif name in {"__node", "__name"}:
-            node.name = value
-        else:
-            node.remaps.setdefault(name, value)
+        rules.setdefault(name, value)
 
 
 def read_nodelet(node: LaunchedNode) -> None:

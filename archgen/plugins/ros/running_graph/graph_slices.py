@@ -62,10 +62,11 @@ class _SliceMaker:
             "name": "" if name == node_id else name,
             "namespace": namespace,
             "status": "existing",
+            "observed": bool(uses),
             **uses,
             "parameters": node.parameters,
         }
-        self._nodes[node_id] = {key: value for key, value in data.items() if value not in ("", {})}
+        self._nodes[node_id] = {key: value for key, value in data.items() if value not in ("", {}, False)}
         if any(ports.values()):
             self._component_types[node_id] = {key: ports[key] for key in ("inputs", "outputs")}
 

@@ -135,7 +135,7 @@ def _walk_changes(changes: tuple[Change, ...]) -> Iterator[Change]:
 
 def _endpoints_by_use(architecture: Architecture, matched_ids: MatchedIds) -> dict[UseKey, Endpoint]:
     return {
-        (matched_ids.common_id("node", endpoint.node), endpoint.name, endpoint.use): endpoint
+        (matched_ids.common_id("node", endpoint.node), endpoint.label, endpoint.use): endpoint
         for endpoint in architecture.endpoints
     }
 

@@ -260,3 +260,18 @@ def test_packages_lie_as_deep_as_they_like_and_folders_not_looked_through_are_to
     messages = [(note.message, note.fate) for note in read_launch(files).notes]
     words = "only the first 5 folders in it were looked through: packages that lie in others are not found"
     assert messages[-1] == (words, "noted")
+
+
+def test_arguments_come_before_the_rules_of_groups_and_those_before_the_nodes_own(tmp_path: Path) -> None:
+    """The order of the command line, of which ROS 2 takes the first rule for a name."""
+    body = """
+    return LaunchDescription([
+        SetRemap("a", "outer"),
+        SetRemap("b", "outer"),
+        Node(package="p", executable="e", name="n", remappings=[("a", "own"), ("b", "own"), ("c", "own"), ("d", "own")],
+            arguments=["--ros-args", "-r", "a:=argued", "-r", "c:=argued", "-r", "c:=second", "-r", "__node:=m", "-r", "__node:=k"]),
+    ])
+    """
+    (node,) = nodes_of(read_python(tmp_path, body)).values()
+    assert node["remaps"] == {"a": "argued", "c": "argued", "b": "outer", "d": "own"}
+    assert node.get("name", "m") == "m"

@@ -105,6 +105,7 @@ ROS_2_NODES = {
         "kind": "lifecycle",
         "namespace": "/front",
         "status": "existing",
+        "observed": True,
         "publishes": {
             "scan": {
                 "topic": "/front/scan",
@@ -125,6 +126,7 @@ ROS_2_NODES = {
     "planner": {
         "kind": "composable",
         "status": "existing",
+        "observed": True,
         "publishes": {"plan": {"topic": "/planner/plan", "message": "nav_msgs/msg/Path"}},
         "subscribes": {
             "front_scan": {
@@ -246,6 +248,7 @@ def test_a_graph_of_ros_1(tmp_path: Path) -> None:
         "driver": {
             "namespace": "/front",
             "status": "existing",
+            "observed": True,
             "publishes": {"scan": {"topic": "/front/scan", "message": "sensor_msgs/msg/LaserScan"}},
             "subscribes": {"go": {"topic": "/front/go", "message": "std_msgs/msg/Bool"}},
             "serves": {"reset": {"name": "/front/driver/reset", "message": "std_srvs/srv/Empty"}},
@@ -253,6 +256,7 @@ def test_a_graph_of_ros_1(tmp_path: Path) -> None:
         },
         "planner": {
             "status": "existing",
+            "observed": True,
             "subscribes": {"front_scan": {"topic": "/front/scan", "message": "sensor_msgs/msg/LaserScan"}},
             "serves": {"drive": {"name": "/drive", "message": "move_base_msgs/action/MoveBase"}},
         },
@@ -398,6 +402,7 @@ def test_what_the_tools_print_of_real_nodes_is_read(tmp_path: Path) -> None:
     assert imported.slices["running_nodes.yaml"]["nodes"] == {
         "planner": {
             "status": "existing",
+            "observed": True,
             "publishes": {
                 "plan": {
                     "topic": "/plan",
@@ -419,6 +424,7 @@ def test_what_the_tools_print_of_real_nodes_is_read(tmp_path: Path) -> None:
         },
         "driver": {
             "status": "existing",
+            "observed": True,
             "serves": {"drive": {"name": "/drive", "message": "nav2_msgs/action/NavigateToPose"}},
         },
     }

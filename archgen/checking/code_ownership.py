@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+from archgen.checking.checked_project import CheckedProject
 from archgen.emit import codeowners_file as emitter
 from archgen.emit.codeowners_file import CodeownersFile
 from archgen.git import NoRepositoryError, find_repository
 from archgen.link.element_files import find_element_files
 from archgen.model.review_settings import agreement_file
-from archgen.pipeline import CheckedProject
 from archgen.views.partner_ownership import Ownership
 from archgen.views.partner_ownership import assign_ownership as sorted_out
 

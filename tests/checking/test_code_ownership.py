@@ -13,11 +13,11 @@ import pytest
 import archgen
 from archgen import resources
 from archgen.analyses.size_counts import measure_progress
+from archgen.checking import code_ownership
 from archgen.emit.codeowners_file import REVIEWER_HANDLE, file_pattern
 from archgen.model.architecture import Architecture
 from archgen.model.selector_evaluation import evaluate_selector
 from archgen.pipeline import check_project, check_text
-from archgen.products import code_ownership
 from archgen.views.elements import element_card
 from archgen.views.tables import element_rows
 from tests.agreeing import DUO, checked, view
@@ -125,7 +125,13 @@ SLICES = {
     "nodes of p.yaml": "nodes: {n: {implements: a.x}}\n",
     "timing.yaml": "groups: {a: {components: {x: {timing: {rate: 1 Hz}}}}, b: {components: {z: {timing: {rate: 1 Hz}}}}}\n",
 }
+EVERYBODY = "@a/p @a/q q@x.org"
+GUARDS = [
+    f"{path} {EVERYBODY}" for path in ("/.github/", "/.gitlab/", "/.gitlab-ci.yml", "/CODEOWNERS", "/docs/CODEOWNERS")
+]
 LINES = [
+    # First, since the last one counts: what is new, and in no line below.
+    f"/robot/ {EVERYBODY}",
     "# /robot/archgen.yaml: r without reviewers",
     "/robot/archgen.yaml @a/p @a/q q@x.org",
     "/robot/groups/a.yaml @a/p @a/q q@x.org",
@@ -140,6 +146,7 @@ LINES = [
     "/robot/review/q.yaml @a/q q@x.org",
     "# /robot/review/r.yaml: r without reviewers",
     "/robot/timing.yaml @a/p @a/q q@x.org",
+    *GUARDS,
 ]
 
 
@@ -197,5 +204,5 @@ def test_every_line_is_a_pattern_with_handles(tmp_path: Path) -> None:
         assert (
             not line
             or line.startswith("#")
-            or (path.startswith("/") and handles and all(map(REVIEWER_HANDLE.match, handles)))
+            or ((path == "*" or path.startswith("/")) and handles and all(map(REVIEWER_HANDLE.match, handles)))
         )

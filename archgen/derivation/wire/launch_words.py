@@ -1,0 +1,62 @@
+"""Words of a command line that are rules for names: `-r x:=y` behind `--ros-args`, and `x:=y` alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.frozen import dataclass
+from archgen.model.node import Node
+
+JOINT = ":="
+_RULE_OPTIONS = frozenset({"-r", "--remap"})
+_OTHER_OPTIONS = frozenset(
+    {"-p", "--param", "--params-file", "--log-level", "--log-config-file", "--log-file-name", "-e", "--enclave"}
+)
+
+
+@dataclass(frozen=True, slots=True)
+class RuleWord:
+    """A word that is a rule, and where it stands. `is_optional`: where it is no rule, the program gets it for itself."""
+
+    text: str
+    at: Span
+    is_optional: bool = False
+    is_refused: bool = False
+    """Behind `--ros-args`, but not behind `-r`: ROS 2 does not start then."""
+
+
+class _PlacedWord(NamedTuple):
+    text: str
+    at: Span
+
+
+def list_rule_words(node: Node, *, ros_1: bool) -> Iterator[RuleWord]:
+    """Yield the rules among a node's arguments, in their order."""
+    places: Sequence[Span] = node.argument_places or (NO_SPAN,) * len(node.arguments)
+    words = map(_PlacedWord, node.arguments, places)
+    if ros_1:
+        # Where `--ros-args` stands before them they are rules all the same; `_rate:=5` sets a parameter.
+        yield from (
+            RuleWord(text, at)
+            for text, at in words
+            if JOINT in text and not (text.startswith("_") and not text.startswith("__"))
+        )
+        return
+    is_for_ros = False
+    for text, at in words:
+        if text == "--ros-args":
+            is_for_ros = True
+        elif text == "--" and is_for_ros:
+            is_for_ros = False
+        elif not is_for_ros:
+            if JOINT in text:
+                yield RuleWord(text, at, is_optional=True)
+        elif text in _RULE_OPTIONS:
+            rule = next(words, None)
+            yield RuleWord(rule.text, rule.at) if rule else RuleWord("", at)
+        elif text in _OTHER_OPTIONS:
+            next(words, None)
+        elif JOINT in text:
+            yield RuleWord(text, at, is_refused=True)

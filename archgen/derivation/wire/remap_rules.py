@@ -1,0 +1,292 @@
+"""Rules that give names of a program other ones (`remaps`, `-r x:=y`, `__ns:=/a`), applied as ROS 2 and ROS 1 apply them.
+
+Both sides are made absolute with the final namespace and name of the node; then whole names are compared, once: no chains.
+The first rule that fits counts in ROS 2, the last one in ROS 1. ROS 1 has one exception: of two spellings of one name rospy
+and roscpp take different ones, so that the name is not known.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from types import MappingProxyType
+from typing import Literal, NamedTuple
+
+from archgen.derivation.wire.launch_words import JOINT, list_rule_words
+from archgen.derivation.wire.name_expansion import expand_name, find_name_fault, find_node_name_fault
+from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.frozen import dataclass
+from archgen.model.node import Evidence, FlowKind, Node, PortUse
+from archgen.model.ros_distro import PAST_DISTROS, is_ros_1
+
+ACTION_PARTS = {
+    1: ("/goal", "/cancel", "/status", "/feedback", "/result"),
+    2: ("/_action/send_goal", "/_action/cancel_goal", "/_action/get_result", "/_action/feedback", "/_action/status"),
+}
+"""What an action consists of, as ends of its name, by generation of ROS: up to Jazzy, a new name for the action alone reaches none."""
+_TOPICS_OF_ACTIONS = frozenset({*ACTION_PARTS[1], "/_action/feedback", "/_action/status"})
+_DISTROS_OF_PARTS = PAST_DISTROS | {None, "humble", "jazzy"}
+"""Where a new name for an action moves none of its parts: up to Jazzy, and so where no distribution is written."""
+_WORD = r"(?:[A-Za-z]|_(?!_))(?:[A-Za-z0-9]|_(?!_))*"
+_NAME = rf"(?:~?/)?{_WORD}(?:/{_WORD})*"
+_RULE_IN_ROS_2 = re.compile(
+    rf"(?:(?P<node>{_WORD}):)?(?:ros(?P<flow>service|topic)://)?(?P<own>{_NAME}):=(?P<new>{_NAME})"
+)
+_NODE_RULE_IN_ROS_2 = re.compile(rf"(?:(?P<node>{_WORD}):)?(?P<own>__(?:node|name|ns)):=(?P<new>.*)", re.DOTALL)
+_OWN_NAMES = frozenset({"__node", "__name"})
+_REFUSED_SIGNS = {
+    "*": "ROS has no wildcards there yet",
+    "{": "a rule takes no `{...}`",
+    "__": "in a rule, no two `_` follow one another",
+}
+_LAUNCH_SUBSTITUTION = "$("
+_NO_EVIDENCE: Mapping[str, Evidence] = MappingProxyType({})
+_OBSERVED_NAME: Mapping[str, Evidence] = MappingProxyType({"name": Evidence("observed")})
+_UNKNOWN_NAME: Mapping[str, Evidence] = MappingProxyType({"name": Evidence("unknown")})
+RuleFlow = Literal["", "topic", "service"]
+
+
+@dataclass(frozen=True, slots=True)
+class RemapRule:
+    """A rule: what the program says becomes `name`, None where that is known at the launch only."""
+
+    text: str
+    own_name: str
+    name: str | None
+    at: Span
+    is_argument: bool
+    """Whether it stands in `arguments`, else in `remaps`."""
+    node_name: str = ""
+    """The node that it is for: one process may run several."""
+    flow: RuleFlow = ""
+
+    @property
+    def is_for_node(self) -> bool:
+        """Whether it gives the node itself another name or namespace."""
+        return self.own_name in {*_OWN_NAMES, "__ns"}
+
+
+class WireName(NamedTuple):
+    """What an end is called in its program, on the wire, and why it is so."""
+
+    program_name: str | None
+    name: str | None
+    evidence: Mapping[str, Evidence]
+
+
+def may_have_rules(node: Node) -> bool:
+    """Whether anything that a node is started with may be a rule for names: a program that is no node takes none."""
+    return bool(node.remaps or node.arguments) and not node.is_program
+
+
+def list_written_remaps(node: Node) -> dict[str, str]:
+    """Return a node's `remaps` for who writes them down again; what comes of them, endpoints say."""
+    return dict(node.remaps)
+
+
+def list_rules(node: Node, *, ros_1: bool) -> Iterator[RemapRule]:
+    """Yield the rules of a node that ROS takes, the one that counts first in front."""
+    arguments = [rule for _, _, rule in read_arguments(node, ros_1=ros_1) if rule]
+    remaps = [rule for _, _, rule in read_remaps(node, ros_1=ros_1) if rule]
+    yield from (*remaps, *reversed(arguments)) if ros_1 else (*arguments, *remaps)
+
+
+def read_arguments(node: Node, *, ros_1: bool) -> Iterator[tuple[str, Span, RemapRule | None]]:
+    """Yield each rule in a node's arguments as it is written: None for what ROS refuses."""
+    for word in list_rule_words(node, ros_1=ros_1):
+        rule = None if word.is_refused else read_rule(word.text, word.at, is_argument=True, ros_1=ros_1)
+        if rule or not word.is_optional:
+            yield word.text, word.at, rule
+
+
+def read_remaps(node: Node, *, ros_1: bool) -> Iterator[tuple[str, Span, RemapRule | None]]:
+    """Yield each of a node's `remaps` as the rule that a launch file makes of it: None for what ROS refuses."""
+    for own_name, name in node.remaps.items():
+        text, at = f"{own_name}{JOINT}{name}", node.remap_places.get(own_name, node.at)
+        yield text, at, read_rule(text, at, is_argument=False, ros_1=ros_1)
+
+
+def read_rule(text: str, at: Span, *, is_argument: bool, ros_1: bool) -> RemapRule | None:
+    """Read a rule, None where ROS does not start with it."""
+    own_name, joint, name = text.partition(JOINT)
+    if _LAUNCH_SUBSTITUTION in name:
+        known = read_rule(f"{own_name}{JOINT}x", at, is_argument=is_argument, ros_1=ros_1)
+        return replace(known, text=text, name=None) if known else None
+    if ros_1:
+        is_rule = joint and not _find_fault_in_ros_1(own_name, name)
+        return RemapRule(text, own_name, name, at, is_argument) if is_rule else None
+    found = _NODE_RULE_IN_ROS_2.fullmatch(text)
+    if found:
+        is_rule = not find_value_fault(found["own"], found["new"])
+        return RemapRule(text, found["own"], found["new"], at, is_argument, found["node"] or "") if is_rule else None
+    found = _RULE_IN_ROS_2.fullmatch(text)
+    if found is None:
+        return None
+    flow: RuleFlow = "" if not found["flow"] else "topic" if found["flow"] == "topic" else "service"
+    return RemapRule(text, found["own"], found["new"], at, is_argument, found["node"] or "", flow)
+
+
+def find_value_fault(own_name: str, value: str) -> str | None:
+    """Return what is wrong with the name or namespace that a rule gives a node, or None."""
+    if own_name in _OWN_NAMES:
+        return find_node_name_fault(value)
+    if not value.startswith("/"):
+        return "a namespace begins with `/`" if value else "it is empty"
+    return find_name_fault(value)
+
+
+def _find_fault_in_ros_1(own_name: str, name: str) -> str | None:
+    if own_name.startswith("__"):
+        return None
+    return find_name_fault(own_name, ros_1=True) or find_name_fault(name, ros_1=True)
+
+
+def find_rule_fault(text: str, *, ros_1: bool) -> str:
+    """Return what is wrong with a rule that ROS refuses."""
+    own_name, joint, name = text.partition(JOINT)
+    if read_rule(text, NO_SPAN, is_argument=True, ros_1=ros_1):
+        return "behind `--ros-args` a rule stands after `-r`"
+    if not joint:
+        return f"a rule has the form `from{JOINT}to`"
+    if ros_1:
+        return _find_fault_in_ros_1(own_name, name) or "it is no rule"
+    if found := _NODE_RULE_IN_ROS_2.fullmatch(text):
+        return find_value_fault(found["own"], found["new"]) or "it is no rule"
+    fault = next((words for sign, words in _REFUSED_SIGNS.items() if sign in text), None)
+    return fault or find_name_fault(own_name) or find_name_fault(name) or "it is only a `/` or a `~`"
+
+
+def apply_launch_names(node: Node, distro: str | None) -> Node:
+    """Return a node with the name and the namespace that its arguments give it: they outrank what is written beside them."""
+    ros_1 = is_ros_1(distro)
+    rules = [rule for _, _, rule in read_arguments(node, ros_1=ros_1) if rule and rule.is_for_node]
+    # A node-specific rule for the name meets the one in the code; the launch's own `__name` stands last, and so wins in ROS 1.
+    named = next((each for each in rules if each.own_name in _OWN_NAMES and each.node_name in {"", node.name}), None)
+    if named and named.name is not None and not ros_1:
+        node = replace(node, name=named.name, name_at=named.at)
+    placed = next((each for each in rules if each.own_name == "__ns" and each.node_name in {"", node.name}), None)
+    if placed and placed.name is not None:
+        node = replace(node, namespace="/" + "/".join(part for part in placed.name.split("/") if part))
+    return node
+
+
+def moves_whole_actions(distro: str | None) -> bool:
+    """Whether a rule for an action alone moves all of its parts."""
+    return distro not in _DISTROS_OF_PARTS
+
+
+class NodeNames:
+    """Knows what the names of one node's program are on the wire. Its name and namespace are those after all rules."""
+
+    __slots__ = (
+        "_any_rules",
+        "_is_observed",
+        "_moves_actions",
+        "_name",
+        "_namespace",
+        "_ros_1",
+        "_rules_by_name",
+        "_services",
+        "_topics",
+        "rules",
+    )
+
+    def __init__(self, node: Node, distro: str | None) -> None:
+        self._name, self._ros_1 = node.name, is_ros_1(distro)
+        self._namespace = "/" + "/".join(part for part in node.namespace.split("/") if part)
+        self._moves_actions = moves_whole_actions(distro)
+        self._is_observed = node.observed
+        self.rules: tuple[RemapRule, ...] = ()
+        self._topics: dict[str, RemapRule | None] = {}
+        self._services: dict[str, RemapRule | None] = {}
+        self._rules_by_name: dict[str, list[RemapRule]] = {}
+        if may_have_rules(node):
+            rules = list_rules(node, ros_1=self._ros_1)
+            self.rules = tuple(each for each in rules if not each.is_for_node and each.node_name in {"", node.name})
+            self._index_rules()
+
+    def _index_rules(self) -> None:
+        for rule in self.rules:
+            own_name = self.expand(rule.own_name)
+            if own_name is None:
+                continue
+            self._rules_by_name.setdefault(own_name, []).append(rule)
+            for flow, table in (("topic", self._topics), ("service", self._services)):
+                if rule.flow not in {"", flow}:
+                    continue
+                earlier = table.setdefault(own_name, rule)
+                if self._ros_1 and earlier and earlier.own_name != rule.own_name and self._differ(earlier, rule):
+                    table[own_name] = None
+
+    def _differ(self, rule: RemapRule, other: RemapRule) -> bool:
+        return self.expand(rule.name or "") != self.expand(other.name or "")
+
+    def expand(self, written_name: str) -> str | None:
+        """Return the absolute name of what the program writes, before all rules; None where ROS refuses it."""
+        return expand_name(written_name, self._namespace, self._name, ros_1=self._ros_1)
+
+    def resolve(self, written_name: str, flow: FlowKind) -> str | None:
+        """Return the name on the wire of what the program writes, None where it is not known."""
+        return self.name_end(self.expand(written_name), None, flow).name
+
+    def name_use(self, use: PortUse, flow: FlowKind, default_name: str | None) -> Iterator[WireName]:
+        """Yield the names of an entry's ends, one for each topic; `default_name` is that of one without a topic."""
+        for target in map(self.expand, use.topics) if use.topics else (default_name,):
+            yield self.name_end(target, use.own_name, flow, use.at)
+
+    def name_end(self, target: str | None, own_name: str | None, flow: FlowKind, own_at: Span = NO_SPAN) -> WireName:
+        """Return the names of an end that the model puts on `target`, where its program calls it `own_name`.
+
+        Without an own name the program says the target itself. Without a target the own name counts alone.
+        """
+        if self._is_observed or not (self.rules or own_name):
+            evidence = _UNKNOWN_NAME if target is None else _OBSERVED_NAME if self._is_observed else _NO_EVIDENCE
+            return WireName(None if self._is_observed else target, target, evidence)
+        program_name = self.expand(own_name) if own_name else target
+        if program_name is None:
+            return WireName(None, target, _NO_EVIDENCE if target else _UNKNOWN_NAME)
+        has_rule_of_port = own_name is not None and target is not None
+        found = self._find_rule(program_name, flow)
+        if found is not None and not (has_rule_of_port and (self._ros_1 or not found[1].is_argument)):
+            name, rule = found
+            if name == program_name:
+                return WireName(program_name, name, _NO_EVIDENCE)
+            reason = Evidence("written" if name else "unknown", rule.text, rule.at)
+            return WireName(program_name, name, {"name": reason})
+        if has_rule_of_port and target != program_name:
+            return WireName(program_name, target, {"name": Evidence("written", f"{own_name}{JOINT}{target}", own_at)})
+        return WireName(program_name, program_name, _NO_EVIDENCE)
+
+    def list_matched_rules(self, program_name: str, flow: FlowKind) -> Iterator[RemapRule]:
+        """Yield the rules that say something of an end, also those that another one keeps from it."""
+        for ending in ("", *(ACTION_PARTS[1 if self._ros_1 else 2] if flow == "action" else ())):
+            yield from self._rules_by_name.get(f"{program_name}{ending}", ())
+
+    def _find_rule(self, program_name: str, flow: FlowKind) -> tuple[str | None, RemapRule] | None:
+        """Return the new name of an end and the rule that gives it, None where no rule moves all of it."""
+        if flow != "action":
+            return self._look_up(program_name, self._services if flow == "service" else self._topics)
+        if self._moves_actions and (found := self._look_up(program_name, self._topics)):
+            return found
+        names: set[str | None] = set()
+        first_rule: RemapRule | None = None
+        for part in ACTION_PARTS[1 if self._ros_1 else 2]:
+            found = self._look_up(
+                f"{program_name}{part}", self._topics if part in _TOPICS_OF_ACTIONS else self._services
+            )
+            if found is None or (found[0] is not None and not found[0].endswith(part)):
+                return None
+            names.add(found[0] and found[0].removesuffix(part))
+            first_rule = first_rule or found[1]
+        # An action whose parts have gone different ways is none any more, and stays where it was.
+        return (names.pop(), first_rule) if first_rule and len(names) == 1 else None
+
+    def _look_up(self, program_name: str, table: Mapping[str, RemapRule | None]) -> tuple[str | None, RemapRule] | None:
+        if program_name not in table:
+            return None
+        rule = table[program_name]
+        if rule is None:
+            # Two spellings of one name in ROS 1.
+            return None, self._rules_by_name[program_name][0]
+        return (None if rule.name is None else self.expand(rule.name)), rule

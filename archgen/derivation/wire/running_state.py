@@ -1,0 +1,283 @@
+"""In which domain and by which clock a node runs, and whether it runs at all; and the ends of all nodes with what follows.
+
+What is not known stays unknown: a domain that a launch argument fills in is equal to nothing, and differs from nothing.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cached_property, partial
+from itertools import groupby, pairwise
+from operator import attrgetter
+
+from archgen.derivation.derived_parts import DerivedParts
+from archgen.derivation.wire.qos_overrides import QosOverride, list_overrides, override_qos
+from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.frozen import dataclass, replace
+from archgen.model.architecture import Architecture
+from archgen.model.deployment import Container
+from archgen.model.node import Clock, Endpoint, Evidence, Node, RunState
+from archgen.model.parameter_values import EffectiveParameter, find_effective_parameters
+from archgen.model.ros_distro import is_ros_1
+from archgen.model.start_up import NO_START, LifecycleState
+
+DOMAIN_VARIABLE = "ROS_DOMAIN_ID"
+CLOCK_PARAMETER = "use_sim_time"
+_MANAGER_PROGRAM = "lifecycle_manager"
+"""What the package, the program or the class of a lifecycle manager has in its name."""
+ANY_NODE = "*"
+"""What stands for the name of a node where it is not known."""
+_LAUNCH_HINT = "launch"
+_NUMBER = re.compile(r"\s*([+-]?)(0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)")
+_MAX_DIGITS = 40
+_NO_DOMAIN = 2**64 - 1
+"""What rcl takes for "none is set"; `-1` is read as this number."""
+_TRUE_WORDS = frozenset({"y", "yes", "true", "on"})
+_FALSE_WORDS = frozenset({"n", "no", "false", "off"})
+
+
+def find_environment(architecture: Architecture, node: Node | Container) -> Mapping[str, tuple[str, Span]]:
+    """Return the variables with which the process of a node or container is started, each with its place.
+
+    Later ones win: the project's, the host's, the node's; what a container loads has that of the container's process.
+    """
+    variables = {each.name: (str(each.value), each.at) for each in architecture.ros_environment}
+    if host := architecture.hosts.get(node.host or ""):
+        variables |= {name: (text, host.environment_places[name]) for name, text in host.environment.items()}
+    if isinstance(node, Node) and node.start is not None and node.container is None:
+        places = node.start.places
+        variables |= {
+            name: (text, places.get(f"environment.{name}", node.at)) for name, text in node.start.environment.items()
+        }
+    return variables
+
+
+def read_domain(text: str) -> int | None:
+    """Return the domain that ROS 2 reads from a text, as C reads a number. None where it reads none and ends."""
+    match = _NUMBER.match(text)
+    if match is None:
+        return None if text else 0
+    sign, digits = match.groups()
+    if len(digits) > _MAX_DIGITS:
+        return None
+    # In C a leading 0 makes a number octal.
+    number = int(digits, 16 if digits[:2].lower() == "0x" else 8 if digits[0] == "0" else 10)
+    if number > _NO_DOMAIN or (number == 0 and match.end() < len(text)):
+        return None
+    number = -number % (_NO_DOMAIN + 1) if sign == "-" else number
+    return 0 if number == _NO_DOMAIN else number
+
+
+def is_filled_in(value: object) -> bool:
+    """Whether a launch file fills a value in: then nobody knows it."""
+    return isinstance(value, str) and "$(" in value
+
+
+def domain_of(endpoint: Endpoint) -> int | None:
+    """Return the domain of an end for comparing it with others: 0 where nothing sets one, None where it is unknown."""
+    if endpoint.domain is None:
+        return None if "domain" in endpoint.evidence else 0
+    return endpoint.domain
+
+
+@dataclass(frozen=True, slots=True)
+class NodeState:
+    """What holds for all ends of a node: domain, clock, overrides, and what its program does until it is active."""
+
+    domain: int | None
+    clock: Clock | None
+    runs: RunState | None
+    lifecycle: LifecycleState | None
+    """The state in which it stays, where that is not `active`."""
+    overrides: tuple[QosOverride, ...]
+    evidence: Mapping[str, Evidence]
+    places: tuple[Span, ...]
+    """Those of the evidence, which does not compare them."""
+
+
+class RunningStates:
+    """Finds the states of nodes: what concerns several is looked up once."""
+
+    def __init__(self, architecture: Architecture) -> None:
+        """Take the architecture; what is asked for is looked up then."""
+        self._architecture = architecture
+        self._is_ros_1 = is_ros_1(architecture.distro)
+
+    def describe_node(self, node: Node) -> NodeState:
+        """Return the state of a node."""
+        evidence: dict[str, Evidence] = {}
+        domain = None if self._is_ros_1 else self._find_domain(node, evidence)
+        clock = "system" if node.is_program else self._find_clock(node, evidence)
+        runs, lifecycle = self._find_run_state(node, evidence)
+        overrides = () if self._is_ros_1 or node.is_program else list_overrides(self._architecture, node)
+        places = tuple(each.at for each in evidence.values())
+        return NodeState(domain, clock, runs, lifecycle, overrides, evidence, places)
+
+    def _find_domain(self, node: Node, evidence: dict[str, Evidence]) -> int | None:
+        text, place = find_environment(self._architecture, node).get(DOMAIN_VARIABLE, (None, NO_SPAN))
+        if text is None:
+            return None
+        domain = None if is_filled_in(text) else read_domain(text)
+        rule = f"{DOMAIN_VARIABLE}={text}"
+        evidence["domain"] = Evidence("unknown" if domain is None else "written", rule, place)
+        return domain
+
+    def _find_clock(self, node: Node, evidence: dict[str, Evidence]) -> Clock | None:
+        value, rule, place = self._shared_time if self._is_ros_1 else self._find_time(node)
+        if value is None and not rule:
+            return "system"
+        clock: Clock | None = "simulated" if value is True else "system" if value is False else None
+        evidence["clock"] = Evidence("unknown" if clock is None else "written", rule, place)
+        return clock
+
+    @cached_property
+    def _shared_time(self) -> tuple[object, str, Span]:
+        """What counts in ROS 1, where the clock is one parameter of all nodes."""
+        found = (self._find_time(node) for node in self._architecture.nodes.values() if not node.is_program)
+        return max(found, key=lambda time: time[0] is True, default=(None, "", NO_SPAN))
+
+    def _find_time(self, node: Node) -> tuple[object, str, Span]:
+        """Return the value of `use_sim_time`, with what says it and where; nothing where nobody says anything."""
+        given = find_parameters(self._architecture, node, CLOCK_PARAMETER).get(CLOCK_PARAMETER)
+        if given is not None and given.origin != "none" and given.value is not None:
+            return given.value, f"{CLOCK_PARAMETER}: {str(given.value).lower()}", given.at
+        if given is not None and given.origin == "command":
+            return None, CLOCK_PARAMETER, given.at
+        if node.unread_files:
+            return None, f"{node.unread_files[0]} is not at hand", node.at
+        if (word := find_argument_value(node, CLOCK_PARAMETER)) is not None:
+            value = True if word.lower() in _TRUE_WORDS else False if word.lower() in _FALSE_WORDS else None
+            return value, f"-p {CLOCK_PARAMETER}:={word}", node.at
+        return None, "", NO_SPAN
+
+    def _find_run_state(
+        self, node: Node, evidence: dict[str, Evidence]
+    ) -> tuple[RunState | None, LifecycleState | None]:
+        """Return whether a node runs, and the state in which a lifecycle node stays short of `active`."""
+        if node.status == "planned":
+            evidence["runs"] = Evidence("written" if node.written else "generated", "status: planned", node.at)
+            return "planned", None
+        hint = node.annotations.hints.get(_LAUNCH_HINT)
+        if isinstance(hint, Mapping) and hint.get("by_default") == "off":
+            place = node.annotations.hint_places.get((_LAUNCH_HINT, "by_default"), node.at)
+            evidence["runs"] = Evidence("written", "by_default: off", place)
+            return "off", None
+        if "lifecycle" not in node.kinds or self._is_ros_1:
+            return "active", None
+        start = node.start or NO_START
+        if start.state is not None and start.state != "active":
+            evidence["runs"] = Evidence("written", f"state: {start.state}", start.places.get("state", node.at))
+            return "inactive", start.state
+        if not start.wanted_state and self.managers.get(node.full_name) is not True:
+            evidence["runs"] = Evidence("unknown", "nobody activates it", node.kind_at)
+            return None, None
+        return "active", None
+
+    @cached_property
+    def managers(self) -> Mapping[str, bool]:
+        """The full names of nodes that a lifecycle manager lists, each with whether it activates them by itself.
+
+        A manager whose list is unknown may manage `ANY_NODE`.
+        """
+        managed: dict[str, bool] = {}
+        # What lists nothing itself is told, in launch files that archgen writes, who names it in `by`.
+        named = {node.start.by.id for node in self._architecture.nodes.values() if node.start and node.start.by}
+        for node in self._architecture.nodes.values():
+            if _MANAGER_PROGRAM not in f"{node.package} {node.executable} {node.plugin}":
+                continue
+            parameters = find_parameters(self._architecture, node, "node_names", "autostart")
+            names = parameters["node_names"].value if "node_names" in parameters else None
+            autostart = parameters["autostart"].value if "autostart" in parameters else None
+            if not isinstance(names, Sequence) or isinstance(names, str) or any(map(is_filled_in, names)):
+                if names is not None or named.isdisjoint((node.id, *node.implements)):
+                    managed[ANY_NODE] = False
+                continue
+            for name in map(str, names):
+                full_name = name if name.startswith("/") else f"{node.namespace.rstrip('/')}/{name}"
+                managed[full_name] = managed.get(full_name, False) or autostart is True
+        return managed
+
+
+def find_parameters(architecture: Architecture, node: Node, *names: str) -> Mapping[str, EffectiveParameter]:
+    """Return the parameters of a node, unless it has none of some names."""
+    wanted = frozenset(names)
+    components = (architecture.components[name].parameters for name in node.implements)
+    given = (
+        each.name.strip("~/")
+        for part in (architecture.ros_parameters, node.file_values, node.own_values)
+        for each in part
+    )
+    if wanted.isdisjoint(given) and all(wanted.isdisjoint(each) for each in components):
+        return {}  # of nearly all nodes
+    return find_effective_parameters(architecture, node)
+
+
+def find_argument_value(node: Node, name: str) -> str | None:
+    """Return what the words `-p NAME:=VALUE` among the arguments of a node say; of several the last one counts."""
+    words = node.arguments
+    if "--ros-args" not in words:
+        return None
+    found = None
+    for flag, word in pairwise(words):
+        parameter, separator, value = word.partition(":=")
+        whose, _, parameter = parameter.rpartition(":")
+        if flag not in {"-p", "--param"} or not separator or parameter != name:
+            continue
+        if "/" in whose:
+            found = word  # with it, no process starts
+        elif whose in {"", node.full_name[1:]}:
+            found = value
+    return found
+
+
+def complete_states(
+    architecture: Architecture, endpoints: Iterable[Endpoint], memory: DerivedParts | None = None
+) -> tuple[Endpoint, ...]:
+    """Return the ends of all nodes with their domain, clock and quality of service, and whether they run.
+
+    Their names are known before: overrides of quality of service name the wire.
+    """
+    states = RunningStates(architecture)
+    completed: list[Endpoint] = []
+    for node_id, node_endpoints in groupby(endpoints, attrgetter("node")):
+        own_endpoints = tuple(node_endpoints)
+        node = architecture.nodes[node_id]
+        state = states.describe_node(node)
+        if not state.evidence and not state.overrides:
+            completed += own_endpoints
+            continue
+        complete = partial(_complete_endpoint, node, state)
+        if memory is None:
+            completed += map(complete, own_endpoints)
+        else:
+            completed += memory.complete_endpoints(node, own_endpoints, state, complete)
+    return tuple(completed)
+
+
+def _complete_endpoint(node: Node, state: NodeState, endpoint: Endpoint) -> Endpoint:
+    runs = _find_end_state(node, state, endpoint)
+    evidence = {name: each for name, each in state.evidence.items() if name != "runs" or runs != "active"}
+    completed = replace(
+        endpoint,
+        domain=state.domain,
+        clock=state.clock,
+        runs=runs,
+        evidence={**endpoint.evidence, **evidence},
+    )
+    return override_qos(completed, state.overrides) if state.overrides else completed
+
+
+def _find_end_state(node: Node, state: NodeState, endpoint: Endpoint) -> RunState | None:
+    """Return whether an end of a node runs. Publishers of lifecycle nodes are managed, but for plain ones in rclpy.
+
+    What a generated one uses is made as it is configured; when programs of others do that is not known.
+    """
+    if state.lifecycle is None:
+        return state.runs
+    if node.is_generated:
+        is_made = state.lifecycle == "inactive"
+        return "active" if is_made and endpoint.use != "publishes" else "inactive"
+    if endpoint.use == "publishes":
+        return None if node.language == "python" else "inactive"
+    return "active" if state.lifecycle == "inactive" else None
