@@ -99,8 +99,8 @@ def judge_limits(
     ):
         judged[LimitKey(matched_ids.common_id("output", port), key)].append(JudgedLimit(limit, gap, state))
     inputs = {port: matched_ids.common_id("input", port) for port in architecture.inputs}
-    asked = {port: limit for port, name in inputs.items() if (limit := limits.get((name, "freshness")))}
-    for read_age in find_read_ages(analysis, {port: limit.value for port, limit in asked.items()}):
+    asked = {port: needed for port, name in inputs.items() if (needed := limits.get((name, "freshness")))}
+    for read_age in find_read_ages(analysis, {port: needed.value for port, needed in asked.items()}):
         port = read_age.arc.input
         judged[LimitKey(inputs[port], "freshness")].append(JudgedLimit(asked[port], read_age.age, read_age.state))
     return {key: _find_worst(each) for key, each in judged.items()}

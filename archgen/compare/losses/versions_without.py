@@ -107,8 +107,10 @@ def take_back_figure(context: ChangeContext, architecture: Architecture, change:
         value = context.matched_ids.common_id(name, value)
     if name == "through" and any(context.matched_ids.common_id(each.kind, each.id) != each.id for each in value):
         return None
-    changed = {**elements, change.element_id: replace(elements[change.element_id], **{name: value})}
-    return replace(architecture, **{_SECTIONS[kind]: changed})
+    changed: dict[str, Any] = {
+        _SECTIONS[kind]: {**elements, change.element_id: replace(elements[change.element_id], **{name: value})}
+    }
+    return replace(architecture, **changed)
 
 
 def _take_back_timing(context: ChangeContext, architecture: Architecture, change: Change) -> Architecture | None:
@@ -122,7 +124,7 @@ def _take_back_timing(context: ChangeContext, architecture: Architecture, change
             if old_node and is_meant and (change.key or "").startswith(lead):
                 old_part = context.old_id("component", part)
                 name = (change.key or "").removeprefix(lead).partition(".")[0]
-                values = {
+                values: dict[str, Any] = {
                     each: getattr(old_node.timing.get(old_part, Timing()), each, ...)
                     for each in _TIMING_FIELDS.get(name.removesuffix("s"), (name,))
                 }

@@ -244,7 +244,7 @@ def test_an_entry_may_accept_what_is_not_kept(compared_folders: ComparedFolders)
     after = {"archgen.yaml": load("20 ms", "20 ms")}
     refused = compared_folders(files, after)
     (entries,) = write_missing_entries(refused)
-    assert entries == ("# review/b.yaml\nreview:\n  accepted:\n    sense.eye.rows: {key: max_gap, reason: THE REASON}")
+    assert entries == ("# review/b.yaml\nreview:\n  accepted:\n    sense.eye.rows: {key: max_gap, was: fec16e, reason: THE REASON}")
     accepted = compared_folders(files, {**after, "review/b.yaml": entries})
     assert not accepted.is_refused
     assert all(each.agreement == "THE REASON" for change in accepted.changes for each in change.breaks)
@@ -252,6 +252,8 @@ def test_an_entry_may_accept_what_is_not_kept(compared_folders: ComparedFolders)
     other = compared_folders(files, {**after, "review/b.yaml": entries.replace("max_gap", "max_age")})
     assert other.is_refused
     assert [entry.key for entry in other.idle_acceptances] == ["max_age"]
+    # It is no other cause that was agreed on.
+    assert compared_folders(files, {"archgen.yaml": load("21 ms", "20 ms"), "review/b.yaml": entries}).is_refused
 
 
 def test_a_limit_is_told_by_its_figures(compared: Compared) -> None:
