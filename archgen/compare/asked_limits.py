@@ -84,12 +84,14 @@ def judge_limits(
 ) -> dict[LimitKey, JudgedLimit]:
     """Return how a version keeps limits, by common ids; without those whose ends it does not have."""
     judged: dict[LimitKey, list[JudgedLimit]] = defaultdict(list)
+    asked_ports = {port for port, _ in limits}
     names = {
         each.id: _name_output(architecture, matched_ids, each.id) for _, each in list_described_outputs(architecture)
     }
     promises = {
         own_id: Promise(**{key: limits[name, key] for key in FIGURE_KEYS if (name, key) in limits})  # type: ignore[arg-type]
         for own_id, name in names.items()
+        if name in asked_ports
     }
     for each in judge_promises(architecture, analysis, promises):
         reader = matched_ids.common_id("input", each.read_over.input) if each.read_over else ""

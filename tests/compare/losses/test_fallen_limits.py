@@ -78,7 +78,7 @@ CAUSES = {
     "a figure that is taken away": (
         ("", "5 ms"),
         [
-            f"sense.other b: leaves {PROMISE} no longer shown (120 ms → not known without figures of `other`); {READ}",
+            f"sense.other b: leaves {PROMISE} no longer shown to be kept (120 ms → not known without figures of `other`); {READ}",
         ],
     ),
 }
@@ -244,7 +244,9 @@ def test_an_entry_may_accept_what_is_not_kept(compared_folders: ComparedFolders)
     after = {"archgen.yaml": load("20 ms", "20 ms")}
     refused = compared_folders(files, after)
     (entries,) = write_missing_entries(refused)
-    assert entries == ("# review/b.yaml\nreview:\n  accepted:\n    sense.eye.rows: {key: max_gap, was: fec16e, reason: THE REASON}")
+    assert entries == (
+        "# review/b.yaml\nreview:\n  accepted:\n    sense.eye.rows: {key: max_gap, was: fec16e, reason: THE REASON}"
+    )
     accepted = compared_folders(files, {**after, "review/b.yaml": entries})
     assert not accepted.is_refused
     assert all(each.agreement == "THE REASON" for change in accepted.changes for each in change.breaks)
