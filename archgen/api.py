@@ -156,7 +156,7 @@ class Project:
         revision: str | None = None,
         date: str | None = None,
     ) -> None:
-        """Write what flows between two partners. The file's suffix (.docx, .md, .html) determines the format.
+        """Write what flows between two partners. The file's suffix (.docx, .md, .html, .json) determines the format.
 
         `since` marks what changed since a git revision (or a folder or packed file); `date` (`2026-03-31`) and `revision`
         are printed instead of git's. Raises `PartnersError` if the two have no interfaces, ValueError for another suffix
@@ -165,7 +165,7 @@ class Project:
         target = Path(fspath(file))
         file_format = agreement_documents.FORMAT_BY_ENDING.get(target.suffix.lower())
         if file_format is None:
-            msg = f"the ending of `{target.name}` names no format: .docx, .md or .html"
+            msg = f"the ending of `{target.name}` names no format: .docx, .md, .html or .json"
             raise ValueError(msg)
         issue_date = agreement_documents.parse_issue_date(date) if date else None
         earlier_version = (

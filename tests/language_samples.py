@@ -53,7 +53,7 @@ def complete_project(data: dict[str, Any], wanted: Mapping[str, Collection[str]]
     """Add to a project the sections of the wanted kinds that it leaves out, and the wanted keys that no element has."""
     for section, kind in SECTION_KINDS.items():
         if kind in wanted:
-            data.setdefault(section, {"added": {}})
+            data.setdefault(section, {"added-other" if kind == "agreement" else "added": {}})
     written: dict[str, list[dict[str, Any]]] = {}
     for kind, element in list_elements(data):
         written.setdefault(kind, []).append(element)

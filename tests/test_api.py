@@ -94,5 +94,5 @@ def test_what_it_writes(project: Project, tmp_path: Path) -> None:
 
 
 def test_an_agreement_has_one_of_three_formats(project: Project, tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match=r"the ending of `a.pdf` names no format: .docx, .md or .html"):
+    with pytest.raises(ValueError, match=r"the ending of `a.pdf` names no format: .docx, .md, .html or .json"):
         project.write_agreement(tmp_path / "a.pdf", "p", "q")

@@ -37,9 +37,12 @@ accepted. `archgen list --of component_types --library builtin` lists them for a
 instance with its inputs to be filled. A type that does not fit is changed as any other: `my_slam: {is: ros.slam_toolbox, ...}` below
 `component_types` may add ports and parameters.
 
-An input with `?` is optional. Where distributions differ, a type stands here once for each form.
+An input with `?` is optional. Behind a port stands what the program calls it, where that is another name, and `by` the parameter that names
+it: a filter whose `odom0` is `odom/unfiltered` reads that topic, and has no input `odom1` on the robot where nobody gives that parameter.
+`package` has the executable and the plug-in of a component, `node` is what the program calls its node where a launch file gives no name.
+Where distributions differ, a type stands here once for each form.
 
-Each executable, port, operation and parameter was read at a line of a file of the package
+Each executable, plug-in, name, port, operation and parameter was read at a line of a file of the package
 ([Where it was read](ros_library_sources.md)); what was not found is not here. How many there are:
 """
 SOURCES_OPENING = """\
@@ -47,7 +50,7 @@ SOURCES_OPENING = """\
 
 Made by `tools/make_ros_library_page.py` from the data in `ros_library/sources/`.
 
-Each fact about a type of [the library](ros_library.md), which is its executable, a port, an operation or a parameter, has its source
+Each fact about a type of [the library](ros_library.md), which is its program, a port, its name, an operation or a parameter, has its source
 in `ros_library/sources/DISTRIBUTION.yaml`: the repository's address, the version, the commit with its date, what kind of text it is,
 the file and the line. `archgen explain ros.amcl --distro jazzy` shows them, and a test refuses a fact without. Kinds are `source text`
 (code, build files and configuration of the package), `documentation` (what its people wrote about it) and `recording` (of a running
@@ -69,8 +72,8 @@ def format_page() -> str:
         OPENING,
         *_list_counts(),
         "",
-        "| type | what it does | inputs | outputs | package | distributions |",
-        "|---|---|---|---|---|---|",
+        "| type | what it does | inputs | outputs | package | node | distributions |",
+        "|---|---|---|---|---|---|---|",
     ]
     for row, distros in sorted(rows.items()):
         lines.append(f"| {' | '.join((*row, ', '.join(sorted(distros, key=_ORDER.index))))} |")
@@ -110,20 +113,36 @@ _ORDER = ("noetic", "humble", "jazzy", "kilted", "lyrical", "rolling")
 def _format_row(name: str, body: MappingNode) -> tuple[str, ...]:
     node = mapping_values.get_mapping(body, "node")
     package, executable = (mapping_values.get_text(node, key) for key in ("package", "executable"))
+    plugin, own_name = (mapping_values.get_text(node, key) for key in ("plugin", "own_name"))
     return (
         f"`{name}`",
         mapping_values.get_text(body, "functionality") or "",
         "<br>".join(_list_ports(body, "inputs")),
         "<br>".join(_list_ports(body, "outputs")),
-        f"{package}, `{executable}`" if executable else package or "",
+        (f"{package}, `{executable}`" if executable else package or "") + (f"<br>`{plugin}`" if plugin else ""),
+        f"`{own_name}`" if own_name else "",
     )
 
 
 def _list_ports(body: MappingNode, side: str) -> Iterator[str]:
+    node = mapping_values.get_mapping(body, "node")
+    uses = {
+        key: use
+        for section in (("subscribes", "calls") if side == "inputs" else ("publishes", "serves"))
+        for key, _, use in mapping_values.iterate_elements(node, section)
+    }
     for name, _, port in mapping_values.iterate_elements(body, side):
         mark = "?" if mapping_values.get_flag(port, "optional") else ""
         message = (mapping_values.get_text(port, "type") or "").replace("/msg/", "/")
-        yield f"`{name}`{mark} {message}".strip()
+        use = uses.get(name, mapping_values.EMPTY_MAPPING)
+        topic = next((text for key in ("own_name", "topic", "name") for text in mapping_values.get_texts(use, key)), "")
+        parameter = mapping_values.get_text(use, "named_by")
+        words = [f"`{topic}`"] if topic not in {"", name} else []
+        yield (
+            " ".join([f"`{name}`{mark}", message, *words, *([f"by `{parameter}`"] if parameter else [])])
+            .replace("  ", " ")
+            .strip()
+        )
 
 
 PAGES: dict[Path, Callable[[], str]] = {

@@ -102,7 +102,35 @@ def duplicate_node_name(architecture: Architecture) -> Iterator[Diagnostic]:
             )
 
 
+def unknown_name(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Of programs that exist, nobody says what they call their topics, services or actions."""
+    unnamed = [
+        each
+        for each in architecture.endpoints
+        if each.name is None
+        and each.use in {"publishes", "serves"}
+        and architecture.nodes[each.node].status == "existing"
+    ]
+    if not unnamed:
+        return
+    nodes = list(dict.fromkeys(each.node for each in unnamed))
+    first = architecture.nodes[nodes[0]]
+    what = f"{len(unnamed)} outputs" if len(unnamed) > 1 else "one output"
+    whose = f"{len(nodes)} programs that exist (`{first.id}` is the first)" if len(nodes) > 1 else f"`{first.id}`"
+    yield Diagnostic(
+        "unknown-name",
+        f"the names on ROS of {what} of {whose} are not known: no rule about names judges them"
+        if len(unnamed) > 1
+        else f"the name on ROS of {what} of {whose} is not known: no rule about names judges it",
+        first.at,
+        help=f"write it at the node, `{unnamed[0].use}: {{{(unnamed[0].port or '').rpartition('.')[2]}: /its/topic}}`; "
+        "`archgen import ros2` takes names over from the running robot",
+        element=first.id,
+    )
+
+
 RULES = (
     (invalid_ros_name, Severity.ERROR),
     (duplicate_node_name, Severity.WARNING),
+    (unknown_name, Severity.NOTE),
 )

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from archgen.diagnostics.source_span import Span
     from archgen.model.architecture import Architecture
     from archgen.model.component import Component
-    from archgen.model.node import Node
+    from archgen.model.node import Node, PortUse
     from archgen.model.parameter import ParameterValue
 
 _GUESS_BUDGET = 1_000_000
@@ -175,6 +175,23 @@ def unset_parameter(architecture: Architecture) -> Iterator[Diagnostic]:
         ]
         if unset_names:
             yield _report_unset(architecture, node, unset_names)
+    connected_inputs = {edge.input for edge in architecture.edges}
+    for node in architecture.nodes.values():
+        for use in node.uses:
+            is_nameless = use.named_by is not None and not use.topics and not use.own_name
+            if is_nameless and use.port in connected_inputs and not node.unread_files:
+                yield from _find_nameless_input(architecture, node, use)
+
+
+def _find_nameless_input(architecture: Architecture, node: Node, use: PortUse) -> Iterator[Diagnostic]:
+    """Report an input that something feeds, where the parameter that names its topic is not given."""
+    name = use.named_by or ""
+    if not {"*", "{"}.intersection(name) and name not in find_effective_parameters(architecture, node):
+        message = (
+            f"something feeds `{use.port}`, but `{node.id}` reads it only where its parameter `{name}` names a topic"
+        )
+        help_line = f"write it at the node: `parameters: {{{name}: ...}}`"
+        yield Diagnostic("unset-parameter", message, node.at, help=help_line, element=node.id)
 
 
 def _needs_value(parameter: Parameter) -> bool:

@@ -10,6 +10,7 @@ from archgen.derivation.wire.remap_rules import (
     NodeNames,
     RemapRule,
     find_rule_fault,
+    has_several_rules,
     may_have_rules,
     moves_whole_actions,
     read_arguments,
@@ -22,7 +23,7 @@ from archgen.model.common_callbacks import is_common_callback
 from archgen.model.ros_distro import is_ros_1
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from archgen.model.architecture import Architecture
     from archgen.model.node import Endpoint, Node
@@ -32,10 +33,10 @@ _WRITING = frozenset({"publishes", "serves"})
 
 
 class _RuledNodes:
-    """The nodes that have rules, with their names and what they use."""
+    """Nodes that have rules, with their names and what they use; reading rules takes time, so that only those wanted are read."""
 
-    def __init__(self, architecture: Architecture) -> None:
-        nodes = filter(may_have_rules, architecture.nodes.values())
+    def __init__(self, architecture: Architecture, is_wanted: Callable[[Node], bool] = may_have_rules) -> None:
+        nodes = [each for each in architecture.nodes.values() if may_have_rules(each) and is_wanted(each)]
         self.names = {each.id: names for each in nodes if (names := NodeNames(each, architecture.distro)).rules}
         self.endpoints: dict[str, list[Endpoint]] = {each: [] for each in self.names}
         for endpoint in architecture.endpoints if self.names else ():
@@ -57,7 +58,8 @@ def invalid_remap(architecture: Architecture) -> Iterator[Diagnostic]:
 def repeated_remap(architecture: Architecture) -> Iterator[Diagnostic]:
     """A node has two rules for one name."""
     ros_1 = is_ros_1(architecture.distro)
-    ruled = _RuledNodes(architecture)
+    own_named = {each.node for each in architecture.endpoints if each.own_name is not None}
+    ruled = _RuledNodes(architecture, lambda node: has_several_rules(node) or node.id in own_named)
     for node_id, names in ruled.names.items():
         first_rules: dict[tuple[str | None, str], RemapRule] = {}
         for rule in names.rules:
@@ -124,7 +126,8 @@ def action_remap(architecture: Architecture) -> Iterator[Diagnostic]:
     if moves_whole_actions(architecture.distro):
         return
     distro, parts = architecture.distro or "jazzy", ACTION_PARTS[1 if is_ros_1(architecture.distro) else 2]
-    ruled = _RuledNodes(architecture)
+    with_actions = {each.node for each in architecture.endpoints if each.flow == "action"}
+    ruled = _RuledNodes(architecture, lambda node: node.id in with_actions)
     for node_id, names in ruled.names.items():
         for endpoint in ruled.endpoints[node_id]:
             program_name = endpoint.program_name
@@ -201,8 +204,7 @@ def _list_some(names: list[str]) -> str:
 
 def remapped_away(architecture: Architecture) -> Iterator[Diagnostic]:
     """A rule takes what a node writes away from a name that others read, or what it reads to where nobody writes."""
-    ruled = _RuledNodes(architecture)
-    moved = [each for ends in ruled.endpoints.values() for each in ends if each.is_moved and each.name]
+    moved = [each for each in architecture.endpoints if each.evidence and each.is_moved and each.name]
     if not moved:
         return
     writers: dict[tuple[str | None, str], list[Endpoint]] = {}

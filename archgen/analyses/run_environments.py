@@ -91,7 +91,7 @@ def _gather_ends(
 
 
 def _list_names(ends: list[tuple[Endpoint, Endpoint]]) -> str:
-    names = list(dict.fromkeys(f"`{reader.name}`" for _, reader in ends))
+    names = list(dict.fromkeys(f"`{reader.label}`" for _, reader in ends))
     more = [f"{len(names) - _MAX_SHOWN} more"] if len(names) > _MAX_SHOWN else []
     return join_words([*names[:_MAX_SHOWN], *more])
 

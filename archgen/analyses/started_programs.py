@@ -52,7 +52,8 @@ def silent_node(architecture: Architecture) -> Iterator[Diagnostic]:
     silent: dict[str, list[tuple[Endpoint, Endpoint]]] = defaultdict(list)
     for topic in architecture.topics.values():
         for writer in topic.writers:
-            if writer.runs == "inactive":
+            # What somebody brings into a state, he may bring further.
+            if writer.runs == "inactive" and not (architecture.nodes[writer.node].start or NO_START).by_written:
                 silent[writer.node] += (
                     (writer, each) for each in topic.readers if architecture.nodes[each.node].written
                 )

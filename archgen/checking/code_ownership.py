@@ -10,6 +10,8 @@ from archgen.emit import codeowners_file as emitter
 from archgen.emit.codeowners_file import CodeownersFile
 from archgen.git import NoRepositoryError, find_repository
 from archgen.link.element_files import find_element_files
+from archgen.model.agreed_terms import signature_file
+from archgen.model.architecture import Partner
 from archgen.model.review_settings import agreement_file
 from archgen.views.partner_ownership import Ownership
 from archgen.views.partner_ownership import assign_ownership as sorted_out
@@ -39,7 +41,8 @@ def make_codeowners(checked_project: CheckedProject, prefix: str | None = None) 
 
 
 def _add_shared_files(ownership: Ownership, checked_project: CheckedProject) -> Ownership:
-    """Return an ownership in which all partners review what is nobody's, and each the file of its agreements.
+    """Return an ownership in which all partners review what is nobody's, each the file of what it accepts, and
+    both partners of an agreement what they signed.
 
     What is nobody's decides about everybody: archgen.yaml holds the policy, and types, messages and libraries cross all
     borders.
@@ -47,7 +50,11 @@ def _add_shared_files(ownership: Ownership, checked_project: CheckedProject) -> 
     partners = tuple(checked_project.architecture.partners.values())
     shared_files = dict.fromkeys(ownership.shared_files, partners)
     owned_files = {file: owners or partners for file, owners in ownership.files.items()}
-    agreement_files = {agreement_file(partner.id): (partner,) for partner in partners}
+    agreement_files: dict[str, tuple[Partner, ...]] = {agreement_file(partner.id): (partner,) for partner in partners}
+    agreement_files |= {
+        signature_file(each.id): tuple(partner for partner in partners if partner.id in each.pair)
+        for each in checked_project.architecture.agreements.values()
+    }
     policy_file = {checked_project.loaded_project.first_file: partners}
     return replace(ownership, files={**shared_files, **owned_files, **policy_file, **agreement_files})
 

@@ -23,6 +23,7 @@ VERBS = {
     "show": "Show an element: ports, readers, nodes, place in the files.",
     "list": "List elements, connections or backends, as text, CSV or JSON.",
     "interfaces": "Write what flows between two partners, to be signed by both.",
+    "sign": "Sign what flows between two partners, so that reviews hold changes against it.",
     "owners": "Show who owns what, or write CODEOWNERS.",
     "start": "Show the plan of the start-up: steps, commands, what each waits for.",
     "simulate": "Simulate the timing: what was seen beside the bounds.",

@@ -173,7 +173,8 @@ def _print_findings(
 
 def _print_hidden(findings: Sequence[Diagnostic], shown_findings: Sequence[Diagnostic]) -> None:
     """Count on the error stream what does not make a check fail that fails for something else."""
-    hidden_findings = sorted({*findings}.difference(shown_findings), key=lambda finding: finding.sort_key)
+    known_findings = {*shown_findings}
+    hidden_findings = [finding for finding in findings if finding not in known_findings]
     if shown_findings and hidden_findings:
         click.echo(f"not shown: {command_support.summarise_counts(hidden_findings)}", err=True)
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from archgen.products.compared_versions import ProjectVersion
     from archgen.views.agreement.partner_agreement import PartnerAgreement
 
-_AGREEMENT_FORMATS = ("markdown", "html", "docx")
+_AGREEMENT_FORMATS = ("markdown", "html", "docx", "json")
 
 
 @click.command("interfaces")
@@ -30,7 +30,7 @@ _AGREEMENT_FORMATS = ("markdown", "html", "docx")
     "--output",
     type=click.Path(path_type=Path),
     callback=shared_options.take_dash,
-    help="The file to write; its ending (.docx, .md, .html) says the format.  [default: Markdown to the terminal, else "
+    help="The file to write; its ending (.docx, .md, .html, .json) says the format.  [default: Markdown to the terminal, else "
     "archgen-out/interfaces/ in the project]",
 )
 @click.option(
@@ -108,10 +108,10 @@ def command(  # noqa: PLR0913 - one for each option
         raise click.UsageError(make_visible(str(error))) from None
     output_options = OutputOptions(progress=command_support.make_progress_printer(), warn=command_support.print_warning)
     with command_support.explain_write_errors():
-        if form == "markdown" and output is None:
-            sys.stdout.write(agreement_documents.render_agreement_markdown(agreement))
+        if form in {"markdown", "json"} and output is None:
+            sys.stdout.write(agreement_documents.render_agreement_text(agreement, form))
             _exit_by_terms(checked_project, agreement, earlier_version if signed else None)
-        endings = {"markdown": "md", "html": "html", "docx": "docx"}
+        endings = {"markdown": "md", "html": "html", "docx": "docx", "json": "json"}
         target = output or checked_project.output_folder / "interfaces" / f"{pair[0]}-{pair[1]}.{endings[form]}"
         leaving_links.refuse_leaving_links(checked_project, target)
         agreement_documents.write_agreement(agreement, form, target, output_options)
@@ -137,7 +137,7 @@ def _exit_by_terms(
     """End with the status of the findings; with 1 where terms are not as signed, which is said on the error stream."""
     from archgen.diagnostics.safe_text import make_visible
     from archgen.git.project_revision import find_revision
-    from archgen.views.agreement.signed_terms import has_departures, write_verdict
+    from archgen.views.agreement.signed_terms import has_departures, list_launch_notes, write_verdict
 
     if signed_version is None or agreement.changes is None:
         command_support.exit_by_findings(checked_project)
@@ -147,6 +147,8 @@ def _exit_by_terms(
         click.echo("note: this is about the working tree, which has changes that are not committed", err=True)
     for line in write_verdict(agreement.changes):
         click.echo(make_visible(line), err=True)
+    for note in list_launch_notes(agreement.content):
+        command_support.print_warning(note)
     sys.exit(1 if has_departures(agreement.changes) else command_support.exit_status(checked_project.findings))
 
 

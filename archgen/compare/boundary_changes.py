@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 
@@ -185,6 +186,13 @@ def _known_figures(old: _InterfaceVersion | None, new: _InterfaceVersion) -> Int
 
 
 def _compare_figures(old_figures: InterfaceFigures, new_figures: InterfaceFigures) -> Iterator[FigureChange]:
+    # One node on each side is the same end, whatever it is called; of several each is compared with itself.
+    counts = (Counter(key.name for key in figures) for figures in (old_figures, new_figures))
+    several = {name for count in counts for name, number in count.items() if number > 1}
+    old_figures, new_figures = (
+        {key if key.name in several else FigureKey(key.name): figure for key, figure in figures.items()}
+        for figures in (old_figures, new_figures)
+    )
     for key in dict.fromkeys((*new_figures, *old_figures)):
         before, after = old_figures.get(key), new_figures.get(key)
         if not is_same_figure(key.name, before, after):

@@ -20,17 +20,22 @@ from archgen.compare.losses.cut_steps import find_cut_steps
 from archgen.compare.losses.deprecated_types import find_deprecated_types
 from archgen.compare.losses.fallen_limits import find_fallen_limits
 from archgen.compare.losses.foreign_edits import find_foreign_edits
-from archgen.compare.losses.lost_connections import find_lost_connections, find_renamed_sources, find_unmade_connections
+from archgen.compare.losses.lost_connections import (
+    find_lost_connections,
+    find_redirected_connections,
+    find_renamed_sources,
+    find_unmade_connections,
+)
 from archgen.compare.losses.missed_deadlines import find_chains_made_late
 from archgen.compare.losses.overloaded_resources import find_overloaded_cores, find_saturated_links
+from archgen.compare.losses.parted_ends import find_parted_ends
 from archgen.compare.losses.renamed_topics import find_renamed_topics
-from archgen.compare.losses.retyped_topics import find_retyped_topics
 from archgen.compare.losses.separated_causes import CauseSeparator
 from archgen.compare.losses.timing_causes import TimingCauses
 from archgen.compare.losses.unserved_requirements import find_unserved_requirements
+from archgen.compare.losses.weakened_demands import find_rewritten_requirements, find_weakened_policies
 from archgen.compare.losses.weakened_outputs import find_weakened_outputs
 from archgen.compare.losses.weakened_promises import find_weakened_deadlines
-from archgen.compare.losses.weakened_qos import find_weakened_publishers
 from archgen.compare.losses.weakened_sizes import find_weakened_sizes
 from archgen.compare.losses.weakened_words import find_weakened_words
 from archgen.compare.timing_pair import TimingPair
@@ -40,17 +45,19 @@ from archgen.model.review_settings import AcceptedChange, BreakPolicy, ReviewSet
 _LOSS_FINDERS = (
     find_lost_connections,
     find_unmade_connections,
+    find_redirected_connections,
     find_changed_distro,
     find_retyped_outputs,
     find_redefined_messages,
     find_renamed_topics,
-    find_retyped_topics,
-    find_weakened_publishers,
+    find_parted_ends,
     find_weakened_outputs,
     find_weakened_words,
     find_deprecated_types,
     find_weakened_sizes,
     find_unserved_requirements,
+    find_rewritten_requirements,
+    find_weakened_policies,
     find_cut_steps,
     find_changed_meanings,
     find_changed_frames,

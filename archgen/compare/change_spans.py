@@ -14,6 +14,8 @@ from archgen.model.node import Node, PortUse
 def find_change_span(change: Change, comparison: Comparison) -> Span:
     """Return where a change stands in the second version. What was removed stood in its parent; NO_SPAN without one."""
     kind = "input" if change.element_kind == "connection" else change.element_kind
+    if kind == "project" and change.key and change.key.startswith("agreements."):
+        return _find_agreement_span(change.key, comparison)
     element = _find_element(kind, change.element_id, comparison)
     if element is None:
         return _find_parent_span(kind, change.element_id, comparison)
@@ -45,6 +47,17 @@ def _find_port_use(port_id: str, architecture: Architecture) -> PortUse | Node |
     names = {port_id.rpartition(".")[2]}
     uses = (use for use in node.uses if f".{use.use}." in port_id) if node else ()
     return next((use for use in uses if names & {use.key, (use.port or "").rpartition(".")[2]}), node)
+
+
+def _find_agreement_span(key: str, comparison: Comparison) -> Span:
+    """Return where an agreement says something: at the key of its signature, else the signature, else itself."""
+    _, agreement_id, *path = key.split(".", 2)
+    agreement = comparison.after.architecture.agreements.get(agreement_id)
+    if agreement is None:
+        return comparison.after.architecture.project.at
+    signed = agreement.signed
+    places = {".".join(names): span for names, span in signed.places.items()} if signed else {}
+    return places.get("".join(path)) or (signed.at if signed else agreement.at)
 
 
 def _find_parent_span(kind: str, element_id: str, comparison: Comparison) -> Span:

@@ -17,6 +17,7 @@ from archgen.compare.figure_changes import BoundaryChange, LoadChange
 from archgen.compare.finding_changes import judge_findings
 from archgen.compare.load_changes import find_link_users, find_load_changes
 from archgen.compare.losses.change_context import ChangeContext
+from archgen.compare.losses.weakened_demands import list_policy_partners
 from archgen.compare.match_elements import match_elements
 from archgen.compare.review_facts import ReviewFacts
 from archgen.compare.timing_pair import analyse_timing_pair
@@ -35,6 +36,9 @@ def compare_versions(
     version_pair, changes = find_changes(before, after, matched_ids)
     if any(change.element_kind == "link" for change in changes):
         version_pair = replace(version_pair, link_users=find_link_users(before, after, matched_ids))
+    if any(change.element_kind == "policy" for change in changes):
+        policy_partners = list_policy_partners(before.architecture, after.architecture, matched_ids)
+        version_pair = replace(version_pair, policy_partners=policy_partners)
     judged_findings = judge_findings(before, after, matched_ids)
     timing_pair = analyse_timing_pair(before, after, changes)
     # Chains are needed twice: for the report, and as causes of losses in `mark_breaking_changes`.

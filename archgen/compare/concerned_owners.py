@@ -48,6 +48,9 @@ def _find_affected(
         # Most of those on the hosts that a link connects send nothing over it.
         yield from () if _is_textual(change) else versions.link_users.get(change.element_id, ())
         return
+    if change.element_kind == "policy":
+        yield from () if _is_textual(change) else versions.policy_partners.get(change.element_id, ())
+        return
     # Both versions: who read the output before is concerned as much as who reads it now.
     for elements, connections in (
         (versions.elements_before, versions.connections_before),
@@ -223,7 +226,13 @@ def _users_and_readers(
 
 
 def _users_of_element(element: ComparedElement, elements: Mapping[ElementKey, ComparedElement]) -> Iterator[ElementKey]:
-    """Yield the ports of a type, the components that serve a requirement, or what is given or placed in a frame."""
+    """Yield the ports of a type, the components that serve a requirement and what is on the chains that verify it, or
+    what is given or placed in a frame.
+    """
+    verified_by = element.values.get("verified_by")
+    for name in sorted(verified_by) if isinstance(verified_by, frozenset) else ():
+        if chain := elements.get(("chain", name)):
+            yield from _chain_points(chain)
     for key, candidate in elements.items():
         if element.kind == "frame" and element.id in {candidate.values.get("frame"), candidate.values.get("parent")}:
             yield from (key, *_users_of_element(candidate, elements)) if key[0] == "type" else (key,)

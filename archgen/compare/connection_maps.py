@@ -20,6 +20,8 @@ class ConnectionMap:
     readers_by_output: OppositeEnds
     made_pairs: frozenset[tuple[str, str]] = frozenset()
     """The outputs and inputs that nobody joined: `autoconnect` did."""
+    group_pairs: frozenset[tuple[str, str]] = frozenset()
+    """The outputs and inputs of which the input names the group alone: it reads whatever is in that."""
 
     def is_made(self, input_id: str, outputs: Collection[str]) -> bool:
         """Whether an input and all of these outputs are joined by themselves."""
@@ -49,7 +51,7 @@ def map_connections(architecture: Architecture, matched_ids: MatchedIds) -> Conn
     """Return the connections of a version. A reference to something without an output yet is kept under its own id."""
     sources: dict[str, set[str]] = defaultdict(set)
     readers: dict[str, set[str]] = defaultdict(set)
-    made_pairs = set[tuple[str, str]]()
+    made_pairs, group_pairs = set[tuple[str, str]](), set[tuple[str, str]]()
     for connection in architecture.connections:
         reader = matched_ids.common_id("input", connection.input)
         for output in connection.outputs:
@@ -58,9 +60,11 @@ def map_connections(architecture: Architecture, matched_ids: MatchedIds) -> Conn
             readers[output_id].add(reader)
             if connection.is_made:
                 made_pairs.add((output_id, reader))
+            elif connection.kind == "group":
+                group_pairs.add((output_id, reader))
         if not connection.outputs:
             sources[reader].add(matched_ids.common_id(connection.kind, connection.target))
-    return ConnectionMap(_freeze_ends(sources), _freeze_ends(readers), frozenset(made_pairs))
+    return ConnectionMap(_freeze_ends(sources), _freeze_ends(readers), frozenset(made_pairs), frozenset(group_pairs))
 
 
 def _freeze_ends(ends: Mapping[str, set[str]]) -> OppositeEnds:

@@ -24,6 +24,7 @@ from archgen.model.review_settings import BREAK_CATEGORIES, BreakCategory
 EditKind = Literal[ChangeKind, "split", "merged", "copied"]
 _MAX_PAIRS = 6
 """How many old and new ids one sentence names."""
+_MAX_INSTANCES = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,6 +87,7 @@ def _find_joint_edits(comparison: Comparison, left_changes: Sequence[Change]) ->
         members = tuple(change for change in left_changes if reshaping.brought_about(change))
         if members:
             yield _join_reshaping(reshaping, members)
+    yield from _renames_in_instances(comparison, left_changes)
     yield from _exchanged_ids(left_changes)
     yield from _other_numbers(left_changes)
     yield from _merged_groups(left_changes)
@@ -102,6 +104,36 @@ def _join_reshaping(reshaping: Reshaping, members: tuple[Change, ...]) -> Edit:
         sentence, _, effects = members[0].text.partition("; ")
         text = "; ".join(filter(None, (f"{sentence}, {text}", effects)))
     return Edit(reshaping.kind, "component", reshaping.component_id, text, members, confidence, reshaping.related_ids)
+
+
+def _renames_in_instances(comparison: Comparison, changes: Sequence[Change]) -> Iterator[Edit]:
+    """Yield the parts of component types that are called otherwise, with their nodes: once for all instances."""
+    architecture = comparison.after.architecture
+    renames: dict[tuple[str, str, str], dict[str, Change]] = {}
+    for change in changes:
+        holder_id, _, name = change.element_id.rpartition(".")
+        holder = architecture.find_component(holder_id) if _is_rename(change, {"component", "composed"}) else None
+        if holder and holder.type_name:
+            old_name = (change.old_id or "").rpartition(".")[2]
+            renames.setdefault((holder.type_name, old_name, name), {})[change.element_id] = change
+    for (type_name, old_name, name), members in renames.items():
+        if len(members) > 1:
+            followers = [
+                change
+                for change in changes
+                if (
+                    _is_rename(change, {"node"})
+                    and not members.keys().isdisjoint(architecture.nodes[change.element_id].implements)
+                )
+                or (change.element_kind, change.element_id, change.key) == ("component_type", type_name, "components")
+            ]
+            instances = tick_names([each.rpartition(".")[0] for each in members], _MAX_INSTANCES)
+            confidence = min(change.confidence for change in members.values())
+            text = (
+                f"component type `{type_name}`: component `{old_name}` is called `{name}` now; "
+                f"in {len(members)} instances: {instances}, whose names follow{note_confidence(confidence)}"
+            )
+            yield Edit("renamed", "component_type", type_name, text, (*members.values(), *followers), confidence)
 
 
 def _exchanged_ids(changes: Iterable[Change]) -> Iterator[Edit]:

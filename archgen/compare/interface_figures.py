@@ -60,7 +60,7 @@ class FigureReader:
         return find_topic_loads(self.analysis.system, self.analysis.outputs) if self.analysis else {}
 
     def read_figures(self, interface: PartnerInterface) -> InterfaceFigures:
-        """Return the figures of an interface; what flows physically has none."""
+        """Return the figures of an interface, each with its node where nodes have them; what flows physically has none."""
         if interface.flow == "physical":
             return {}
         return dict((*self._read_paces(interface), *self._read_qos(interface), *self._read_path(interface)))
@@ -72,9 +72,8 @@ class FigureReader:
     def _read_paces(self, interface: PartnerInterface) -> Iterator[tuple[FigureKey, ComparedFigure]]:
         if self.analysis is None:
             return
-        givers = list_givers(self.architecture, interface)
-        for endpoint in givers:
-            node = self._common_node(endpoint) if len(givers) > 1 else ""
+        for endpoint in list_givers(self.architecture, interface):
+            node = self._common_node(endpoint)
             if interface.flow == "topic":
                 yield from self._read_pace(self.analysis, endpoint, node)
             else:
@@ -129,9 +128,8 @@ class FigureReader:
             return
         sides = ("QoS offered", interface.giver_endpoints), ("QoS asked", interface.taker_endpoints)
         for name, endpoints in sides:
-            nodes = {endpoint.node for endpoint in endpoints}
             for endpoint in endpoints:
-                yield FigureKey(name, self._common_node(endpoint) if len(nodes) > 1 else ""), endpoint.qos
+                yield FigureKey(name, self._common_node(endpoint)), endpoint.qos
 
     def _read_path(self, interface: PartnerInterface) -> Iterator[tuple[FigureKey, ComparedFigure]]:
         senders, receivers = (

@@ -15,7 +15,7 @@ from archgen.compare.element_relations import ElementRelations
 from archgen.compare.kinds import ELEMENT_KINDS, MATCHING_ORDER
 from archgen.compare.kinds.kind_spec import KindSpec
 from archgen.compare.matched_ids import MatchedIds
-from archgen.compare.reassigned_ids import REASSIGNABLE_KINDS, find_reassigned_ids
+from archgen.compare.reassigned_ids import REASSIGNABLE_KINDS, find_reassigned_ids, find_refilled_variants
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, list_component_ports
 
@@ -32,6 +32,7 @@ def match_elements(before: Architecture, after: Architecture) -> MatchedIds:
     for kind in kinds:
         if kind.name in REASSIGNABLE_KINDS:
             matcher.pair_reassigned_ids(kind)
+    matcher.pair_refilled_variants(ELEMENT_KINDS["variant"])
     for kind in kinds:
         if kind.parent_kind is None:
             matcher.pair_same_ids(kind)
@@ -71,6 +72,13 @@ class _Matcher:
         elements = _declared_elements(kind, self.old_relations), _declared_elements(kind, self.new_relations)
         for old_id, new_id in find_reassigned_ids(kind.name, elements, relations):
             self.matched_ids.add_pair(kind.name, old_id, new_id, CERTAIN)
+
+    def pair_refilled_variants(self, kind: KindSpec) -> None:
+        """Pair variants by where they write, before the ids are taken at their word."""
+        variants = (_declared_elements(kind, side) for side in (self.old_relations, self.new_relations))
+        for old_id, new_id in find_refilled_variants(*variants):
+            if not self._is_settled(kind, old_id, new_id):
+                self.matched_ids.add_pair(kind.name, old_id, new_id, CERTAIN)
 
     def pair_same_ids(self, kind: KindSpec) -> None:
         """Pair elements that have the same id in both versions."""
@@ -129,8 +137,11 @@ class _Matcher:
     def pair_by_likeness(self, kind: KindSpec) -> None:
         """Pair the remaining elements by likeness; ports only within each pair of components."""
         unmatched_before: dict[str, dict[str, FeatureMap]] = {}
+        unread_keys = self.new_relations.architecture.unread_keys
         for element_id, element in _declared_elements(kind, self.old_relations).items():
-            if self.matched_ids.find_new_id(kind.name, element_id) is None:
+            # What may be in a part that could not be read may have its old id there.
+            is_unread = element_id.rpartition(".")[2] in unread_keys
+            if not is_unread and self.matched_ids.find_new_id(kind.name, element_id) is None:
                 parent = self._new_parent(kind, element_id)
                 if parent is not None:
                     features = describe_element(kind, self.old_relations, element)

@@ -13,9 +13,12 @@ from typing import Any
 from archgen.compare.element_relations import ElementRelations
 from archgen.model.component import Component, list_component_ports
 from archgen.model.path_resolver import title_from_id
+from archgen.model.variant import Variant
 
 REASSIGNABLE_KINDS = frozenset({"component", "requirement", "use_case"})
 """The kinds of elements that have texts enough to be known by."""
+_LIKE_VARIANT = 0.8
+"""The share of its places at which a variant writes still if it is the same one."""
 
 
 def find_reassigned_ids(
@@ -46,6 +49,31 @@ def find_reassigned_ids(
     for old_id, new_id in moved_pairs.items():
         if kind_name != "component" or old_id in new_texts or new_id in old_texts:
             yield old_id, new_id
+
+
+def find_refilled_variants(
+    old_variants: Mapping[str, Variant], new_variants: Mapping[str, Variant]
+) -> Iterator[tuple[str, str]]:
+    """Yield the old and new ids of variants that write what they wrote under an id that another variant has now, or none."""
+    for old_id, variant in old_variants.items():
+        if old_id not in new_variants or not _writes_as(variant, new_variants[old_id]):
+            candidates = [
+                (len(_list_places(each)), new_id)
+                for new_id, each in new_variants.items()
+                if _writes_as(variant, each) and not (new_id in old_variants and _writes_as(old_variants[new_id], each))
+            ]
+            if candidates:
+                yield old_id, min(candidates)[1]
+
+
+def _writes_as(old: Variant, new: Variant) -> bool:
+    """Whether a variant writes where another one wrote, whatever else it writes."""
+    places = _list_places(old)
+    return bool(places) and len(places & _list_places(new)) >= _LIKE_VARIANT * len(places)
+
+
+def _list_places(variant: Variant) -> set[str | None]:
+    return {*(change.path for change in variant.changes), *variant.drop, variant.without} - {None}
 
 
 def _read_texts(element: Any) -> tuple[str, ...]:  # noqa: ANN401 - components, requirements, use cases

@@ -5,11 +5,15 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+_INTERVAL_END = r"\s*[-+\u2212]?(?:\d[\w.]*|inf\w*|pi|[\u03c0\u221e])\s*"
 _TOKEN = re.compile(
-    r"(?<![\w.,])[-+\u2212\u00b1]?\d+(?:[.,]\d+)*"  # a number with its sign: 1.0 is not 10
+    # an interval with its brackets: [0, 1) does not hold 1
+    rf"[\[\](]{_INTERVAL_END}[,;]{_INTERVAL_END}[\[\])]"
+    r"|(?<![\w.,])[-+\u2212\u00b1]?\d+(?:[.,]\d+)*"  # a number with its sign: 1.0 is not 10
     r"|(?<![\w-])[-+\u2212\u00b1](?=[^\W\d])"  # the sign of an axis: -x; not the hyphen of right-handed
     r"|[^\W\d]\w*"
-    r"|\d+|[%\u00b0<>=\u2264\u2265*/^\u221a\u00b2\u00b3]"
+    r"|\d+|!(?==)|(?<!\w)!(?=\w)|~(?=[\w.+-])"  # not equal, not, about; no exclamation
+    r"|[%\u2030\u00b0<>=\u2260\u2248\u2264\u2265*/^|&+\u00b1\u00d7\u00f7\u221a\u00b2\u00b3]"
 )
 _LONGEST_UNIT = 3
 _WORD = re.compile(r"\w+")
@@ -35,7 +39,7 @@ _CONTEXT_WORDS, _MAX_WORDS = 3, 12
 
 
 def differs_in_meaning(before: str, after: str) -> bool:
-    """Whether two texts differ in more than capital letters, blanks and punctuation."""
+    """Whether two texts differ in more than capital letters, blanks and punctuation that is no sign of mathematics."""
     return _list_tokens(before) != _list_tokens(after)
 
 
@@ -59,7 +63,7 @@ def _quote_words(words: Sequence[str], start: int) -> str:
 
 
 def _list_tokens(text: str) -> list[str]:
-    return [_fold_word(token) for token in _TOKEN.findall(text)]
+    return [_fold_word("".join(token.split())) for token in _TOKEN.findall(text)]
 
 
 def _fold_word(word: str) -> str:

@@ -44,6 +44,9 @@ class VersionPair:
     link_users: Mapping[str, frozenset[str]] | None = None
     """The partners whose data crosses each link in either version; None where timing does not know."""
 
+    policy_partners: Mapping[str, frozenset[str]] = field(default_factory=dict)
+    """The partners whose components each policy is about in either version, where one changed."""
+
     partner_names: Mapping[str, str] = field(default_factory=dict)
     """What people call each partner of either version (see `title_partners`)."""
 
@@ -74,6 +77,8 @@ class VersionPair:
                 return True
             if other_element and self._may_be_from_unread(other_element, number):
                 return True
+            if self.may_be_written_in_unread(key[1], number):
+                return True
         side = 0 if before is None else 1 if after is None else None
         if side is not None and self.key_may_be_unread(key, value_key, side):
             return True
@@ -96,6 +101,10 @@ class VersionPair:
         name = value_key.rpartition(".")[2]
         # A period is compared as a rate.
         return not self.lost_keys[side].isdisjoint({name, "period"} if name == "rate" else {name})
+
+    def may_be_written_in_unread(self, element_id: str, side: int) -> bool:
+        """Whether a file of which nothing could be read in a version may say something of an element: it has its id."""
+        return bool(self.broken_files[side]) and element_id.rpartition(".")[2] in self.lost_keys[side]
 
     def is_of_untyped(self, element_id: str, side: int) -> bool:
         """Whether a component, or something in one, belongs to a component whose type is not known in a version."""
@@ -120,18 +129,15 @@ class VersionPair:
         return bool(element.component_refs) and all(self.is_of_untyped(each, side) for each in element.component_refs)
 
     def _only_unread_references(self, before: object, after: object) -> bool:
-        """Whether all that a list gained and lost are references to what could not be read."""
+        """Whether all that a list gained and lost are references to what could not be read, or to what else has its
+        name.
+        """
         old_items, new_items = (value if isinstance(value, list) else [] for value in (before, after))
-        sides = (new_items, old_items, self.lost_keys[0]), (old_items, new_items, self.lost_keys[1])
-        differing_items = [
-            (item, lost_words)
-            for own_items, other_items, lost_words in sides
-            for item in own_items
-            if item not in other_items
-        ]
-        return bool(differing_items) and all(
-            not lost_words.isdisjoint(str(item).split(".")) for item, lost_words in differing_items
-        )
+        lost_before, lost_after = self.lost_keys
+        items = {str(item): lost_after for item in old_items if item not in new_items}
+        items |= {str(item): lost_before for item in new_items if item not in old_items}
+        unread_names = {item.rpartition(".")[2] for item, lost in items.items() if not lost.isdisjoint(item.split("."))}
+        return bool(items) and all(item.rpartition(".")[2] in unread_names for item in items)
 
     def find_elements_with(self, element_kind: str, key: str, value: str) -> list[str]:
         """Return the sorted ids of the elements of the second version that have a value at a key."""

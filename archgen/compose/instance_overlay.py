@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.suggestions import did_you_mean
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
 
 _EXCLUSIVE_KEYS: tuple[tuple[frozenset[str], frozenset[str]], ...] = (
     (frozenset({"period"}), frozenset({"rate"})),
@@ -36,6 +36,8 @@ _KEYS_OF_IDS = frozenset(
     | {"publishes", "subscribes", "serves", "inputs", "outputs"}
 )
 """Keys whose mappings have ids or names as keys: one called `rate` does not replace another called `period`."""
+_USE_NAMES = {"publishes": "topic", "subscribes": "topic", "serves": "name", "calls": "name"}
+"""The key of the name on the wire, by the section of a node that has it."""
 _JOINED_LISTS = frozenset({"requirements", "tags"})
 """Lists that an instance adds to: it has its type's requirements and tags, and its own."""
 
@@ -186,7 +188,29 @@ def lay_node(base: MappingNode, over: MappingNode) -> MappingNode:
         node.entries["parameters"] = MappingEntry(
             "parameters", parameters.key_span, MappingNode(entries, parameters.value.span)
         )
+    if not {"executable", "plugin"}.isdisjoint(base.entries):
+        for section, key in _USE_NAMES.items():
+            _keep_program_names(base.get(section), node.get(section), key)
     return node
+
+
+def _keep_program_names(base_uses: YamlNode | None, uses: YamlNode | None, key: str) -> None:
+    """Keep what a type calls a port as its program's name, where what is laid over it puts the port somewhere else."""
+    if not (isinstance(uses, MappingNode) and isinstance(base_uses, MappingNode)):
+        return
+    for entry in uses:
+        base = base_uses.get(entry.key)
+        if isinstance(base, MappingNode) and isinstance(entry.value, MappingNode):
+            said, meant = _get_single(base, key), _get_single(entry.value, key)
+            if said is not None and meant is not None and said.text != meant.text:
+                entry.value.entries.setdefault("own_name", MappingEntry("own_name", entry.key_span, said))
+
+
+def _get_single(mapping: MappingNode, key: str) -> ScalarNode | None:
+    node = mapping.get(key)
+    if isinstance(node, SequenceNode) and len(node.items) == 1:
+        node = node.items[0]
+    return node if isinstance(node, ScalarNode) else None
 
 
 def _list_replaced_keys(key: str) -> Iterator[str]:

@@ -10,6 +10,7 @@ from archgen.derivation.derived_parts import DerivedParts
 from archgen.derivation.frame_endpoints import derive_frame_endpoints, index_written_frames
 from archgen.derivation.inner_memory import mark_inner_memory
 from archgen.derivation.media_channels import derive_channels
+from archgen.derivation.parameter_names import name_ports_by_parameters
 from archgen.derivation.portless_endpoints import complete_message, count_shared_keys, derive_portless_endpoints
 from archgen.derivation.reading_endpoints import derive_reading_endpoints, index_writers
 from archgen.derivation.wire.running_state import complete_states
@@ -27,7 +28,7 @@ def derive_low_level(architecture: Architecture, memory: DerivedParts | None = N
 
     What `memory` knows from another version of the project is taken over where it is the same.
     """
-    architecture = mark_inner_memory(architecture)
+    architecture = name_ports_by_parameters(mark_inner_memory(architecture))
     nodes = dict(architecture.nodes) | {node.id: node for node in make_planned_nodes(architecture, memory)}
     with_planned = replace(architecture, nodes=nodes)
     shared_topics = ros_names.shared_topic_names(architecture.shared_topics)

@@ -36,7 +36,7 @@ def count_shared_keys(architecture: Architecture) -> SharedKeyCounts:
 
 def derive_portless_endpoints(node: Node, distro: str | None, shared_keys: SharedKeyCounts) -> Iterator[Endpoint]:
     """Yield the endpoints of a node that have no port. `complete_message` adds the messages of readers later."""
-    portless_uses = [use for use in node.uses if use.internal or not node.implements]
+    portless_uses = [use for use in node.uses if use.is_open and (use.internal or not node.implements)]
     if portless_uses:
         names = NodeNames(node, distro)
         for use in portless_uses:

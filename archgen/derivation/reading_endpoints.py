@@ -65,8 +65,9 @@ def derive_reading_endpoints(writer_index: WriterIndex, node_part: NodePart) -> 
     """Yield what a node reads for a component: one endpoint for each input and each topic, service or action."""
     for port in node_part.component.inputs.values():
         uses = filter_uses(node_part.uses_by_port.get(port.id, ()), {"subscribes", "calls"})
+        is_open = all(use.is_open for use in uses)
         # A component's only node reads all of its inputs; several nodes read only what they list.
-        if uses_ros(port) and (uses or node_part.is_only_node):
+        if uses_ros(port) and is_open and (uses or node_part.is_only_node):
             yield from _InputReader(writer_index, node_part, port).derive_endpoints(uses)
 
 
@@ -147,7 +148,9 @@ class _InputReader:
                 yield self._make_endpoint(use, wire, flow_kind, topic_writers)
         elif not self.port.from_written:
             flow_kind = flow_of_use(use.message or self._expected_message(), use)
-            default_name = ros_names.default_port_name(self.port.id) if is_generated else None
+            # What a program calls its port is its name where nothing feeds it.
+            is_invented = is_generated and not use.own_name
+            default_name = ros_names.default_port_name(self.port.id) if is_invented else None
             wire = names.name_end(default_name, use.own_name, flow_kind, use.at)
             yield self._make_endpoint(use, wire, flow_kind, ())
 

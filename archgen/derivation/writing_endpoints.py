@@ -80,6 +80,8 @@ def derive_writing_endpoints(architecture: Architecture, node_part: NodePart) ->
         if not uses_ros(output) or not (uses or node_part.is_only_node):
             continue
         for use in uses or (UNWRITTEN_USE,):
+            if not use.is_open:
+                continue
             yield from _endpoints_of_output(architecture, node_part, output, use)
 
 

@@ -252,6 +252,8 @@ KEY_FACTS: Mapping[str, Mapping[str, KeyFacts]] = {
         "description": {"form": "prose", "effect": "text"},
         "owner": {"names": "partner", "effect": "system", "verb": "belongs to"},
         "name": {"effect": "system"},
+        "own_name": {"effect": "system"},
+        "inner_nodes.": {"form": "mapping", "effect": "system"},
         "namespace": {"default": "/", "effect": "system"},
         "kind": {
             "form": "set", "attribute": "kinds", "default": ("node",), "worse": "always",

@@ -11,29 +11,30 @@ from collections.abc import Mapping
 from typing import Literal
 
 KindName = Literal[
-    "slice", "project", "partner", "ros", "rules", "layout", "report", "review", "accepted", "accepted_key", "site",
-    "variant", "variant_changes", "library", "use_case", "actor", "step", "requirement", "property_declaration", "view",
-    "group", "component", "component_type", "component_node", "input", "output", "type_input", "performance",
-    "indicator", "operation", "parameter", "parameter_declaration", "type", "field", "constant", "frame", "promise",
-    "deprecation", "node", "internal", "topic_use", "call_use", "qos", "host", "container", "resource", "link", "start",
-    "start_ready", "policy", "require", "forbid", "timing", "timing_input", "timing_output", "timing_use", "trigger",
-    "execution_time", "latency", "chain",
+    "slice", "project", "partner", "agreement", "interface_terms", "agreed_terms", "signature", "ros", "rules",
+    "layout", "report", "review", "accepted", "accepted_key", "site", "variant", "variant_changes", "library",
+    "use_case", "actor", "step", "requirement", "property_declaration", "view", "group", "component", "component_type",
+    "component_node", "input", "output", "type_input", "performance", "indicator", "operation", "parameter",
+    "parameter_declaration", "type", "field", "constant", "frame", "promise", "deprecation", "node", "internal",
+    "topic_use", "call_use", "qos", "host", "container", "resource", "link", "start", "start_ready", "policy",
+    "require", "forbid", "timing", "timing_input", "timing_output", "timing_use", "trigger", "execution_time",
+    "latency", "chain",
 ]
 SectionName = Literal[
-    "archgen", "project", "sources", "partners", "ros", "rules", "layout", "report", "use_cases", "requirements",
-    "properties", "glossary", "component_types", "libraries", "groups", "nodes", "types", "hosts", "containers",
-    "resources", "links", "frames", "chains", "views", "policies", "review", "site", "variants",
+    "archgen", "project", "sources", "partners", "agreements", "ros", "rules", "layout", "report", "use_cases",
+    "requirements", "properties", "glossary", "component_types", "libraries", "groups", "nodes", "types", "hosts",
+    "containers", "resources", "links", "frames", "chains", "views", "policies", "review", "site", "variants",
 ]
 
 KEYS: Mapping[str, Mapping[str, str]] = {
     "slice": {
-        "archgen": "slice.archgen", "project": "project", "sources": "files", "partners": "partners", "ros": "ros",
-        "rules": "rules", "layout": "layout", "report": "report", "use_cases": "use_cases",
-        "requirements": "requirements", "properties": "property_declarations", "glossary": "glossary",
-        "component_types": "component_types", "libraries": "libraries", "groups": "groups", "nodes": "nodes",
-        "types": "types", "hosts": "hosts", "containers": "containers", "resources": "resources", "links": "links",
-        "frames": "frames", "chains": "chains", "views": "views", "policies": "policies", "review": "review",
-        "site": "site", "variants": "variants",
+        "archgen": "slice.archgen", "project": "project", "sources": "files", "partners": "partners",
+        "agreements": "agreements", "ros": "ros", "rules": "rules", "layout": "layout", "report": "report",
+        "use_cases": "use_cases", "requirements": "requirements", "properties": "property_declarations",
+        "glossary": "glossary", "component_types": "component_types", "libraries": "libraries", "groups": "groups",
+        "nodes": "nodes", "types": "types", "hosts": "hosts", "containers": "containers", "resources": "resources",
+        "links": "links", "frames": "frames", "chains": "chains", "views": "views", "policies": "policies",
+        "review": "review", "site": "site", "variants": "variants",
     },
     "project": {
         "id": "id", "title": "text", "version": "text", "description": "prose", "middleware": "project.middleware",
@@ -41,6 +42,20 @@ KEYS: Mapping[str, Mapping[str, str]] = {
     "partner": {
         "title": "text", "description": "prose", "contact": "text", "reviewers": "reviewers",
         "properties": "properties", "hints": "hints",
+    },
+    "agreement": {
+        "terms": "agreed_terms", "interfaces": "agreement.interfaces", "signed": "signature",
+    },
+    "interface_terms": {
+        "late": "text", "stamps": "text", "clock": "text", "start": "text", "duties": "text",
+    },
+    "agreed_terms": {
+        "late": "text", "stamps": "text", "clock": "text", "start": "text", "duties": "text", "notice": "text",
+        "validity": "text", "other": "text",
+    },
+    "signature": {
+        "rules": "count", "tag": "text", "revision": "signature.revision", "terms": "version_digits",
+        "by": "signature.by", "versions": "signature.versions",
     },
     "ros": {
         "distro": "ros.distro", "interfaces": "files", "shared_topics": "shared_topics", "parameters": "ros_parameters",
@@ -100,6 +115,7 @@ KEYS: Mapping[str, Mapping[str, str]] = {
     },
     "review.breaking": {
         "wire": "severity", "promise": "severity", "meaning": "severity", "source": "severity", "foreign": "severity",
+        "agreement": "severity",
     },
     "review": {
         "main": "text", "breaking": "review.breaking", "accepted": "review.accepted", "backends": "review.backends",
@@ -176,12 +192,12 @@ KEYS: Mapping[str, Mapping[str, str]] = {
         "image": "text", "generic": "generic_names", "abstract": "flag", "version": "text", "deprecated": "deprecation",
     },
     "component_node": {
-        "name": "text", "namespace": "text", "kind": "node_kinds", "package": "text", "executable": "text",
-        "plugin": "text", "language": "code_language", "command": "command", "arguments": "texts", "remaps": "remaps",
-        "container": "component_node.container", "host": "component_node.host", "threads": "count",
-        "scheduling": "executor_order", "reentrant": "flag", "status": "node_status", "observed": "flag",
-        "publishes": "topics", "subscribes": "topics", "serves": "calls", "calls": "calls",
-        "parameters": "component_node.parameters", "parameter_files": "texts",
+        "name": "text", "own_name": "text", "inner_nodes": "inner_nodes", "namespace": "text", "kind": "node_kinds",
+        "package": "text", "executable": "text", "plugin": "text", "language": "code_language", "command": "command",
+        "arguments": "texts", "remaps": "remaps", "container": "component_node.container",
+        "host": "component_node.host", "threads": "count", "scheduling": "executor_order", "reentrant": "flag",
+        "status": "node_status", "observed": "flag", "publishes": "topics", "subscribes": "topics", "serves": "calls",
+        "calls": "calls", "parameters": "component_node.parameters", "parameter_files": "texts",
         "parameter_commands": "parameter_commands", "start": "start", "tags": "tags", "urls": "urls",
         "properties": "properties", "hints": "hints", "whole": "flag",
     },
@@ -252,24 +268,26 @@ KEYS: Mapping[str, Mapping[str, str]] = {
     },
     "node": {
         "implements": "node.implements", "title": "text", "description": "prose", "owner": "owners", "name": "text",
-        "namespace": "text", "kind": "node_kinds", "package": "text", "executable": "text", "plugin": "text",
-        "language": "code_language", "command": "command", "arguments": "texts", "remaps": "remaps",
-        "container": "node.container", "host": "node.host", "threads": "count", "scheduling": "executor_order",
-        "callback_groups": "callback_groups", "reentrant": "flag", "status": "node_status", "observed": "flag",
-        "publishes": "topics", "subscribes": "topics", "serves": "calls", "calls": "calls", "internal": "internal",
-        "timing": "timing", "parameters": "node.parameters", "parameter_files": "texts",
-        "parameter_commands": "parameter_commands", "start": "start", "tags": "tags", "urls": "urls",
-        "properties": "properties", "hints": "hints",
+        "own_name": "text", "inner_nodes": "inner_nodes", "namespace": "text", "kind": "node_kinds", "package": "text",
+        "executable": "text", "plugin": "text", "language": "code_language", "command": "command", "arguments": "texts",
+        "remaps": "remaps", "container": "node.container", "host": "node.host", "threads": "count",
+        "scheduling": "executor_order", "callback_groups": "callback_groups", "reentrant": "flag",
+        "status": "node_status", "observed": "flag", "publishes": "topics", "subscribes": "topics", "serves": "calls",
+        "calls": "calls", "internal": "internal", "timing": "timing", "parameters": "node.parameters",
+        "parameter_files": "texts", "parameter_commands": "parameter_commands", "start": "start", "tags": "tags",
+        "urls": "urls", "properties": "properties", "hints": "hints",
     },
     "internal": {
         "publishes": "internal_topics", "subscribes": "internal_topics", "serves": "internal_calls",
         "calls": "internal_calls",
     },
     "topic_use": {
-        "topic": "topic_names", "own_name": "topic_name_or_nothing", "message": "topic_use.message", "qos": "qos",
+        "topic": "topic_names", "own_name": "topic_name_or_nothing", "named_by": "parameter_template",
+        "when": "port_conditions", "message": "topic_use.message", "qos": "qos",
     },
     "call_use": {
-        "name": "topic_name_or_nothing", "own_name": "topic_name_or_nothing", "message": "call_use.message",
+        "name": "topic_name_or_nothing", "own_name": "topic_name_or_nothing", "named_by": "parameter_template",
+        "when": "port_conditions", "message": "call_use.message",
     },
     "qos": {
         "profile": "qos_profile", "reliability": "qos_reliability", "durability": "qos_durability",
@@ -345,20 +363,22 @@ KEYS: Mapping[str, Mapping[str, str]] = {
 }
 """The part that stands at each key of each kind."""
 ENTRIES: Mapping[str, str] = {
-    "actors": "actor", "callback_groups": "group_components", "calls": "call_use", "chains": "chain",
-    "changed_component_types": "component_type", "component_parameters": "parameter",
+    "actors": "actor", "agreements": "agreement", "callback_groups": "group_components", "calls": "call_use",
+    "chains": "chain", "changed_component_types": "component_type", "component_parameters": "parameter",
     "component_types": "component_type", "components": "component", "constants": "constant", "containers": "container",
     "definitions": "definitions.*", "fields": "field", "frames": "frame", "glossary": "text", "groups": "group",
-    "host_scheduling": "host_order", "hosts": "host", "inputs": "input", "internal_calls": "call_use",
-    "internal_topics": "topic_use", "libraries": "library", "links": "link", "message_part": "field", "nodes": "node",
-    "operation_fields": "operation_fields.*", "operations": "operation", "outputs": "output",
-    "parameter_commands": "parameter_commands.*", "parameter_set": "parameter", "parameter_texts": "parameter_texts.*",
-    "partners": "partner", "policies": "policy", "policy_exceptions": "text", "properties": "text",
-    "property_declarations": "property_declaration", "remaps": "remaps.*", "requirements": "requirement",
-    "resources": "resource", "start_environment": "start_environment.*", "timing_calls": "timing_calls.*",
-    "timing_inputs": "timing_input", "timing_outputs": "timing_output", "timing_uses": "timing_use",
-    "topics": "topic_use", "type_inputs": "type_input", "types": "type", "urls": "urls.*", "use_cases": "use_case",
-    "variants": "variant", "views": "view", "rules": "rules.*", "report.abbreviations": "text",
+    "host_scheduling": "host_order", "hosts": "host", "inputs": "input", "inner_nodes": "inner_nodes.*",
+    "internal_calls": "call_use", "internal_topics": "topic_use", "libraries": "library", "links": "link",
+    "message_part": "field", "nodes": "node", "operation_fields": "operation_fields.*", "operations": "operation",
+    "outputs": "output", "parameter_commands": "parameter_commands.*", "parameter_set": "parameter",
+    "parameter_texts": "parameter_texts.*", "partners": "partner", "policies": "policy", "policy_exceptions": "text",
+    "port_conditions": "port_conditions.*", "properties": "text", "property_declarations": "property_declaration",
+    "remaps": "remaps.*", "requirements": "requirement", "resources": "resource",
+    "start_environment": "start_environment.*", "timing_calls": "timing_calls.*", "timing_inputs": "timing_input",
+    "timing_outputs": "timing_output", "timing_uses": "timing_use", "topics": "topic_use", "type_inputs": "type_input",
+    "types": "type", "urls": "urls.*", "use_cases": "use_case", "variants": "variant", "views": "view",
+    "agreement.interfaces": "interface_terms", "signature.by": "text", "signature.versions.*": "version_digits",
+    "signature.versions": "signature.versions.*", "rules": "rules.*", "report.abbreviations": "text",
     "report.texts": "report.texts.*", "report.pictures": "report.pictures.*", "review.accepted": "accepted",
     "performance": "indicator", "operation.request": "operation.request.*",
     "operation.response": "operation.response.*", "parameter": "parameter",
@@ -371,8 +391,8 @@ ITEMS: Mapping[str, str] = {
     "group_components": "reference_item", "inputs": "port_type_item", "key_paths": "key_path",
     "link_ends": "reference_item", "node_kinds": "node_kind_item", "open_sets": "open_sets[]",
     "outputs": "port_type_item", "owners": "owners[]", "parameter_commands.*": "parameter_commands.*[]",
-    "parameter_set": "parameter_value", "port_list": "port_path", "promised_range": "promised_limit",
-    "references": "reference_item", "requirement_ids": "requirement_ids[]",
+    "parameter_set": "parameter_value", "port_conditions.*": "port_conditions.*[]", "port_list": "port_path",
+    "promised_range": "promised_limit", "references": "reference_item", "requirement_ids": "requirement_ids[]",
     "requirement_parents": "requirement_parents[]", "reviewers": "reviewers[]", "shared_topics": "topic_name",
     "steps": "step", "tags": "tags[]", "texts": "texts[]", "topic_names": "topic_name", "type_inputs": "port_type_item",
     "type_parameters": "type_parameters[]", "variant_ids": "variant_id", "verifications": "verifications[]",
@@ -392,23 +412,25 @@ ITEMS: Mapping[str, str] = {
 LIST_ORDERS: Mapping[str, str] = {
     "component_requirements": "gathered", "core_list": "free", "declared_of": "free", "files": "gathered",
     "group_components": "free", "key_paths": "free", "link_ends": "free", "node_kinds": "free", "open_sets": "gathered",
-    "owners": "headed", "port_list": "free", "references": "free", "requirement_ids": "gathered",
-    "requirement_parents": "gathered", "reviewers": "gathered", "shared_topics": "gathered", "tags": "gathered",
-    "topic_names": "free", "verifications": "gathered", "review.backends": "gathered", "review.passes": "gathered",
-    "accepted": "gathered", "requirement.parent": "gathered", "requirement.verified_by": "gathered",
-    "requirement.use_cases": "gathered", "property_declaration.choices": "free", "input.from": "free", "input": "free",
-    "parameter.choices": "free", "parameter_declaration.choices": "free", "node.implements": "free", "node": "free",
-    "topic_use": "free", "link.connects": "free", "link": "free", "start.after": "free", "start": "free",
-    "trigger": "free", "chain.requirements": "gathered",
+    "owners": "headed", "port_conditions.*": "free", "port_list": "free", "references": "free",
+    "requirement_ids": "gathered", "requirement_parents": "gathered", "reviewers": "gathered",
+    "shared_topics": "gathered", "tags": "gathered", "topic_names": "free", "verifications": "gathered",
+    "review.backends": "gathered", "review.passes": "gathered", "accepted": "gathered",
+    "requirement.parent": "gathered", "requirement.verified_by": "gathered", "requirement.use_cases": "gathered",
+    "property_declaration.choices": "free", "input.from": "free", "input": "free", "parameter.choices": "free",
+    "parameter_declaration.choices": "free", "node.implements": "free", "node": "free", "topic_use": "free",
+    "link.connects": "free", "link": "free", "start.after": "free", "start": "free", "trigger": "free",
+    "chain.requirements": "gathered",
 }
 """Lists whose order says nothing. `gathered`: both sides may begin one; `headed`: the first item says more."""
 BARE_PARTS: frozenset[str] = frozenset({
     "core_list[]", "count", "flag", "index", "port_number", "promised_limit", "range_limit", "report.large_paper",
-    "slice.archgen", "timing_calls.*", "view.depth",
+    "slice.archgen", "timing_calls.*", "version_digits", "view.depth",
 })
 """Values that are no text."""
 DATA_PARTS: frozenset[str] = frozenset({
-    "component_node.parameters", "container.parameters", "hints", "node.parameters", "parameter", "ros_parameters",
+    "component_node.parameters", "container.parameters", "hints", "node.parameters", "parameter", "port_conditions",
+    "ros_parameters",
 })
 """What other programs read: it stays as it was written, whatever its keys are called."""
 OFFERS: Mapping[str, tuple[str, ...]] = {
@@ -504,10 +526,11 @@ PLACED_KEYS: Mapping[str, tuple[str, ...]] = {
 }
 """Keys whose values keep their places, each in a field `KEY_at`."""
 SECTION_KINDS: Mapping[str, str] = {
-    "partners": "partner", "use_cases": "use_case", "requirements": "requirement", "properties": "property_declaration",
-    "component_types": "component_type", "libraries": "library", "groups": "group", "nodes": "node", "types": "type",
-    "hosts": "host", "containers": "container", "resources": "resource", "links": "link", "frames": "frame",
-    "chains": "chain", "views": "view", "policies": "policy", "variants": "variant",
+    "partners": "partner", "agreements": "agreement", "use_cases": "use_case", "requirements": "requirement",
+    "properties": "property_declaration", "component_types": "component_type", "libraries": "library",
+    "groups": "group", "nodes": "node", "types": "type", "hosts": "host", "containers": "container",
+    "resources": "resource", "links": "link", "frames": "frame", "chains": "chain", "views": "view",
+    "policies": "policy", "variants": "variant",
 }
 """Sections whose keys are ids of elements: the kind of these."""
 LISTED_PARTS: frozenset[str] = frozenset({

@@ -81,8 +81,8 @@ RECORD_KEYS: Mapping[str, Mapping[str, str]] = {
         "full_name": "", "kind": "", "command": "", "arguments": "", "remaps": "", "start": "start", "co_owners": "",
         "implements": "", "callback_groups": "", "reentrant": "flag", "derived": "flag", "endpoints": "endpoint[]",
         "timing": "timing{}", "parameters": "", "parameter_files": "", "parameter_commands": "",
-        "effective_parameters": "effective_parameter{}", "observed": "flag", "tags": "", "urls": "",
-        "properties": "annotations", "hints": "annotations",
+        "effective_parameters": "effective_parameter{}", "own_name": "", "inner_nodes": "", "observed": "flag",
+        "tags": "", "urls": "", "properties": "annotations", "hints": "annotations",
     },
     "topic": {
         "name": "", "flow": "", "messages": "", "types": "", "writers": "", "readers": "", "size": "B",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import field, replace
 
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
@@ -89,12 +89,22 @@ class _ParameterReader:
                 unread_files.append(scalar.text)
                 continue
             file_values, remark = find_node_values(parameter_text, scalar, node, self._node_names, ros_1=self._ros_1)
-            if remark is not None:
+            inner_values = tuple(self._read_inner_nodes(parameter_text, scalar, node))
+            if remark is not None and not inner_values:
                 unread_files.append(scalar.text)
                 remarks.append(remark)
-            self._values += len(file_values)
-            values += file_values
+            self._values += len(file_values) + len(inner_values)
+            values += (*file_values, *inner_values)
         return replace(node, file_values=tuple(values), unread_files=tuple(unread_files), file_remarks=tuple(remarks))
+
+    def _read_inner_nodes(
+        self, parameter_text: ParameterText, scalar: ScalarNode, node: Node
+    ) -> Iterator[ParameterValue]:
+        for prefix, inner_name in node.inner_nodes.items():
+            namespace, _, name = f"{node.namespace.rstrip('/')}/{inner_name.strip('/')}".rpartition("/")
+            inner_node = replace(node, name=name, namespace=namespace or "/")
+            values, _ = find_node_values(parameter_text, scalar, inner_node, self._node_names, ros_1=self._ros_1)
+            yield from (replace(value, name=f"{prefix}.{value.name}") for value in values)
 
     def _is_too_much(self, parameter_text: ParameterText, scalar: ScalarNode) -> bool:
         """Whether what a file may say to one more node is more than is read."""

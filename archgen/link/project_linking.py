@@ -7,7 +7,7 @@ from archgen.derivation.wire.remap_rules import apply_launch_names
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.link import mapping_values
-from archgen.link.declare import policy_declaration, property_declaration, section_declaration
+from archgen.link.declare import agreement_declaration, policy_declaration, property_declaration, section_declaration
 from archgen.link.declare.component_nodes import declare_component_nodes
 from archgen.link.declare.component_type_declaration import declare_component_types
 from archgen.link.declare.element_declaration import declare_elements, declare_sections
@@ -114,6 +114,7 @@ def link_project(  # noqa: PLR0913 - all by name
         chains=chains,
         views=views,
         policies=policies,
+        agreements=agreement_declaration.declare_agreements(root, resolver),
         variants=declare_variants(root),
         glossary=glossary,
         review=section_declaration.declare_review(root),

@@ -9,6 +9,7 @@ from typing import Literal
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
 from archgen.model import port_media
+from archgen.model.agreed_terms import Agreement
 from archgen.model.component import Component, ComponentType, Connection, DiagramLayout, Group, Input, Output
 from archgen.model.coordinate_frames import Frame
 from archgen.model.deployment import Container, Host, Link, Resource
@@ -208,6 +209,7 @@ class Architecture:
     """The variables with which `ros.environment` says that everything is started."""
     layout: DiagramLayout = field(default_factory=DiagramLayout)
     partners: Mapping[str, Partner] = field(default_factory=dict)
+    agreements: Mapping[str, Agreement] = field(default_factory=dict)
     use_cases: Mapping[str, UseCase] = field(default_factory=dict)
     requirements: Mapping[str, Requirement] = field(default_factory=dict)
     groups: Mapping[str, Group] = field(default_factory=dict)

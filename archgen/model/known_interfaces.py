@@ -71,13 +71,14 @@ class Interface:
     """A message (one part), service (request, response) or action (goal, result, feedback) with its full name.
 
     `constants` are those of each part; `comment` is what stands by itself, one line for each of its lines. Only the
-    project's own definitions give them.
+    project's own definitions give them. `introduction` is what of `comment` stands above the field `header`.
     """
 
     name: str
     parts: tuple[tuple[InterfaceField, ...], ...]
     constants: tuple[tuple[InterfaceConstant, ...], ...] = ()
     comment: str = ""
+    introduction: str = ""
 
     @property
     def part_names(self) -> tuple[str, ...]:

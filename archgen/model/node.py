@@ -60,6 +60,12 @@ class PortUse:
     topics: tuple[str, ...] = ()
     own_name: str | None = None
     """What the program itself calls it, as written, where that is another name."""
+    named_by: str | None = None
+    """The parameter that holds the name in the program, as written: with `*` and `{LIST}` for several."""
+    when: Mapping[str, object] = field(default_factory=dict)
+    """The values of parameters with which the program has the port, by their names."""
+    is_open: bool = True
+    """Whether the program has the port with the values that its parameters have, as far as these are known."""
     message: str | None = None
     qos: Qos | None = None
     internal: bool = False
@@ -85,6 +91,10 @@ class Node:
     co_owners: tuple[str, ...] = ()
     """Further owners: as written, else all further owners of its components."""
     name: str = ""
+    own_name: str | None = None
+    """What the program calls its node where nobody names it."""
+    inner_nodes: Mapping[str, str] = field(default_factory=dict)
+    """Names of further nodes that its program makes, by the set of parameters that theirs count as."""
     namespace: str = "/"
     kinds: tuple[NodeKind, ...] = ("node",)
     package: str | None = None

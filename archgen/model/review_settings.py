@@ -11,10 +11,10 @@ from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
 
 AGREEMENT_FOLDER, AGREEMENT_SUFFIX = "review", ".yaml"
-BreakCategory = Literal["wire", "promise", "meaning", "source", "foreign"]
+BreakCategory = Literal["wire", "promise", "meaning", "source", "foreign", "agreement"]
 """What a partner loses: what programs send each other, what was promised of it, what it means, or only the ids and files
-that its own files name; `foreign` is what somebody else edits of its elements."""
-BREAK_CATEGORIES: tuple[BreakCategory, ...] = ("wire", "promise", "meaning", "source", "foreign")
+that its own files name; `foreign` is what somebody else edits of its elements, `agreement` what it signed."""
+BREAK_CATEGORIES: tuple[BreakCategory, ...] = ("wire", "promise", "meaning", "source", "foreign", "agreement")
 
 
 def agreement_file(partner_id: str) -> str:
@@ -37,6 +37,7 @@ class BreakPolicy:
     meaning: Severity = Severity.WARNING
     source: Severity = Severity.NOTE
     foreign: Severity = Severity.OFF
+    agreement: Severity = Severity.WARNING
 
     @classmethod
     def from_severity(cls, severity: Severity) -> BreakPolicy:
@@ -44,7 +45,7 @@ class BreakPolicy:
 
         Files that say `error` may be older than these categories: no job may turn red over a text because of them.
         """
-        return cls(severity, severity, min(severity, cls().meaning), min(severity, cls().source))
+        return cls(severity, severity, min(severity, cls().meaning), min(severity, cls().source), agreement=severity)
 
     @property
     def gravest(self) -> Severity:

@@ -12,6 +12,7 @@ from archgen.importers.xml_tree import XmlElement, parse_xml
 from archgen.model.code_names import make_camel_name
 from archgen.model.element_ids import MAX_ID_LENGTH, is_id, make_id, make_unique_id, spell_in_ascii
 from archgen.model.path_resolver import title_from_id
+from archgen.project.shipped_library import find_program_name
 from archgen.syntax.folder_files import open_named_file
 from archgen.syntax.plain_scalars import resolve_scalar
 from archgen.syntax.project_files import MAX_BYTES
@@ -45,6 +46,7 @@ __all__ = [
     "explain_encoding",
     "explain_syntax",
     "find_closest",
+    "find_program_name",
     "is_id",
     "make_camel_name",
     "make_id",

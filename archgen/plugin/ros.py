@@ -1,6 +1,6 @@
 """What archgen knows of ROS: distributions, messages and interface files, names, files of parameters."""
 
-from archgen.derivation.wire.name_expansion import find_name_fault, find_node_name_fault
+from archgen.derivation.wire.name_expansion import expand_name, find_name_fault, find_node_name_fault
 from archgen.link.data_types.message_names import spell_message_name
 from archgen.link.interface_sources import load_interfaces
 from archgen.link.parameter_flattening import flatten_parameters
@@ -21,6 +21,7 @@ __all__ = [
     "InterfaceField",
     "ParameterSection",
     "ParameterText",
+    "expand_name",
     "find_name_fault",
     "find_node_name_fault",
     "flatten_parameters",

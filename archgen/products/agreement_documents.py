@@ -13,6 +13,7 @@ from archgen.emit import file_tree
 from archgen.emit.picture import Picture
 from archgen.git.project_revision import find_revision, find_revision_date
 from archgen.link.timing_overrides import apply_overrides
+from archgen.model.agreed_terms import Signature, find_agreement
 from archgen.model.partner_interfaces import find_interfaces_between
 from archgen.pipeline import CheckedProject
 from archgen.products import project_views, signed_agreements
@@ -26,19 +27,21 @@ from archgen.timing.search.change_trials import ChangeTrials
 from archgen.views import inline_text
 from archgen.views.agreement.budget_section import BudgetFinder
 from archgen.views.agreement.partner_agreement import PartnerAgreement, make_agreement
+from archgen.views.agreement.signature_record import SignedTag
 from archgen.views.graph_shapes import Graph
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Paragraph, Section
 from archgen.views.tables.finding_tables import describe_severities
 from archgen.views.timing.timing_lookup import complete_with_chains
 
-AgreementFormat = Literal["docx", "markdown", "html"]
+AgreementFormat = Literal["docx", "markdown", "html", "json"]
 FORMAT_BY_ENDING: Mapping[str, AgreementFormat] = {
     ".docx": "docx",
     ".md": "markdown",
     ".markdown": "markdown",
     ".html": "html",
     ".htm": "html",
+    ".json": "json",
 }
 """The format by the ending of a file's name."""
 _MAX_LISTED = 8
@@ -59,20 +62,23 @@ def make_project_agreement(  # noqa: PLR0913 - what may be printed instead of wh
     issue_date: str | None = None,
     signed_version: ProjectVersion | None = None,
     observations: Sequence[Observation] = (),
+    signers: Mapping[str, str] | None = None,
 ) -> PartnerAgreement:
     """Make the agreement of two partners.
 
     Changes since `earlier_version` are marked; `printed_revision` and `issue_date` are printed instead of git's last commit
-    and its day. `observations` stand beside what is promised. `signed_version` is what was signed; without it, that is looked for among the repository's tags. Raise
+    and its day. `signers` are named where they sign. `observations` stand beside what is promised. `signed_version` is what was signed; without it, that is looked for among the repository's tags. Raise
     PartnersError where there can be no agreement.
     """
     _check_partners(checked_project, first, second)
     signed_tags = signed_agreements.find_signed_tags(checked_project.root, first, second)
-    if signed_version is None and signed_tags:
-        signed_version = signed_agreements.read_signed_version(checked_project, signed_tags[0])
+    signature = find_agreement(checked_project.architecture.agreements, first, second).binding_signature
+    if signed_version is None:
+        signed_version = signed_agreements.read_last_signed(checked_project, signature, signed_tags)
+    is_recorded = signature is not None and signed_version is not None and signed_version.commit == signature.revision
     is_readable = signed_version is not None and not signed_version.checked_project.structural_errors
     earlier_revision = (
-        (earlier_version.title, _make_timed_lookup(earlier_version.checked_project)) if earlier_version else None
+        (earlier_version.title, make_timed_lookup(earlier_version.checked_project)) if earlier_version else None
     )
     signed_revision = None
     if signed_version and is_readable:
@@ -80,9 +86,9 @@ def make_project_agreement(  # noqa: PLR0913 - what may be printed instead of wh
         signed_revision = (
             earlier_revision
             if is_earlier
-            else (signed_version.title, _make_timed_lookup(signed_version.checked_project))
+            else (signed_version.title, make_timed_lookup(signed_version.checked_project))
         )
-    lookup = _make_timed_lookup(checked_project)
+    lookup = make_timed_lookup(checked_project)
     partner_agreement = make_agreement(
         lookup,
         first,
@@ -96,12 +102,16 @@ def make_project_agreement(  # noqa: PLR0913 - what may be printed instead of wh
         else issue_date,
         signed_tags=signed_tags,
         signed_revision=signed_revision,
+        signed_rules=signature.rules if signature and is_recorded else 1,
         notices=(
             *_error_notices(checked_project, earlier_version),
-            *([] if is_readable or not signed_tags else [_unreadable_notice(signed_tags[0].name)]),
+            *([] if is_readable or not (signature or signed_tags) else [_unreadable_notice(signature, signed_tags)]),
         ),
         find_budget=_make_budget_finder(lookup),
         observations=observations,
+        signers=signers,
+        standing=checked_project.steps,
+        variants={name: make_timed_lookup(variant) for name, variant in checked_project.variants.items()},
     )
     # Without interfaces there may still be removed ones to agree on.
     if not partner_agreement.interface_count and not (
@@ -124,7 +134,7 @@ def parse_issue_date(text: str) -> str:
     return text
 
 
-def _make_timed_lookup(checked_project: CheckedProject) -> Lookup:
+def make_timed_lookup(checked_project: CheckedProject) -> Lookup:
     """Build the look-ups of the whole project, with timing."""
     return replace(
         project_views.make_scoped_lookup(checked_project, OutputOptions()),
@@ -196,7 +206,8 @@ def _error_notices(checked_project: CheckedProject, earlier_version: ProjectVers
             yield Paragraph(inline_text.to_inlines(message), "error")
 
 
-def _unreadable_notice(tag_name: str) -> Paragraph:
+def _unreadable_notice(signature: Signature | None, signed_tags: Sequence[SignedTag]) -> Paragraph:
+    tag_name = signature.tag if signature else signed_tags[0].name
     message = f"What was signed at {tag_name} cannot be read, so nothing is said of its versions."
     return Paragraph(inline_text.to_inlines(message), "warning")
 
@@ -217,6 +228,15 @@ def render_agreement_markdown(partner_agreement: PartnerAgreement) -> str:
     if written_files is None:
         raise file_tree.OutputError(problems[0].message, problems[0].help)
     return written_files.files["agreement.md"].decode()
+
+
+def render_agreement_text(partner_agreement: PartnerAgreement, agreement_format: AgreementFormat) -> str:
+    """Write an agreement as Markdown or JSON."""
+    if agreement_format == "markdown":
+        return render_agreement_markdown(partner_agreement)
+    from archgen.emit.data.agreement_json import write_agreement_json
+
+    return write_agreement_json(partner_agreement.content)
 
 
 def _walk_sections(sections: tuple[Section, ...]) -> Iterator[Section]:
@@ -259,8 +279,8 @@ def write_agreement(
 ) -> None:
     """Write an agreement into a file."""
     options = options or OutputOptions()
-    if agreement_format == "markdown":
-        file_tree.write_file(target, render_agreement_markdown(partner_agreement).encode())
+    if agreement_format in {"markdown", "json"}:
+        file_tree.write_file(target, render_agreement_text(partner_agreement, agreement_format).encode())
     else:
         file_tree.write_file(
             target,

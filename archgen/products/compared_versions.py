@@ -213,6 +213,12 @@ def compare_named_versions(
         comparison = add_variant_breaks(
             comparison, _compare_variants(comparison, before.checked_project, after.checked_project)
         )
+    versions = before.checked_project, after.checked_project
+    agreements = [each.architecture.agreements for each in versions]
+    if any(agreements) and (comparison.changes or agreements[0] != agreements[1]):
+        from archgen.products.agreement_gate import add_agreement_breaks
+
+        comparison = add_agreement_breaks(comparison, *versions)
     return replace(comparison, cured_findings=()) if after.checked_project.structural_errors else comparison
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Hashable, Iterator
 from dataclasses import replace
 
-from archgen.compare import Change, Comparison
+from archgen.compare import Change, Comparison, PartnerBreak
+from archgen.compare.match_elements import match_elements
 from archgen.compare.matched_ids import MatchedIds
 from archgen.merge.branch_merge import JointBreaks
 from archgen.pipeline import CheckedProject
@@ -13,7 +15,7 @@ from archgen.products.break_findings import find_breaks
 from archgen.products.compared_versions import ProjectVersion, compare_named_versions
 from archgen.views.changes.partner_names import name_each, name_partners
 
-_BreakIdentity = tuple[str, str, str, str, str | None]
+_NAME = re.compile(r"`[^`]+`")
 
 
 def find_joint_breaks(
@@ -30,10 +32,12 @@ def find_joint_breaks(
     by_theirs, by_ours = replace(after_ours, changes=()), replace(after_theirs, changes=())
     # Most merges break nobody: then nobody has to know what either side breaks alone.
     if _breaks_anybody(after_ours):
-        known = _list_breaks(base, theirs, _compare(base, ours).matched_ids, after_theirs.matched_ids)
+        known = _list_breaks(
+            base, theirs, match_elements(base.architecture, ours.architecture), after_theirs.matched_ids
+        )
         by_theirs = _leave_out(after_ours, known)
     if _breaks_anybody(after_theirs):
-        known = _list_breaks(base, ours, _compare(base, theirs).matched_ids, after_ours.matched_ids)
+        known = _list_breaks(base, ours, match_elements(base.architecture, theirs.architecture), after_ours.matched_ids)
         by_ours = _leave_out(after_theirs, known)
     partners = {
         name
@@ -54,34 +58,34 @@ def _breaks_anybody(comparison: Comparison) -> bool:
 
 def _list_breaks(
     base: CheckedProject, changed: CheckedProject, old_renames: MatchedIds, new_renames: MatchedIds
-) -> frozenset[_BreakIdentity]:
+) -> frozenset[Hashable]:
     """Return what one side breaks by itself, under the ids that the other side gave to what was there and is there still."""
     return frozenset(
         identity
         for change in _compare(base, changed).changes
-        for identity in _identify_breaks(change, old_renames if change.kind == "removed" else new_renames)
+        for each in change.breaks
+        for identity in _identify_break(change, each, old_renames if change.kind == "removed" else new_renames)
     )
 
 
-def _leave_out(comparison: Comparison, known: frozenset[_BreakIdentity]) -> Comparison:
-    no_renames = MatchedIds()
+def _leave_out(comparison: Comparison, known: frozenset[Hashable]) -> Comparison:
+    same_ids = MatchedIds()
     changes = tuple(
         replace(
-            change,
-            breaks=tuple(
-                each
-                for each, identity in zip(change.breaks, _identify_breaks(change, no_renames), strict=True)
-                if identity not in known
-            ),
+            change, breaks=tuple(b for b in change.breaks if known.isdisjoint(_identify_break(change, b, same_ids)))
         )
         for change in comparison.changes
     )
     return replace(comparison, changes=changes)
 
 
-def _identify_breaks(change: Change, renamed_ids: MatchedIds) -> Iterator[_BreakIdentity]:
-    """Yield what tells each break of a change from others; its reason names who else is hit, which is no other break."""
+def _identify_break(change: Change, partner_break: PartnerBreak, renamed_ids: MatchedIds) -> Iterator[Hashable]:
+    """Yield what tells a break from others: which change makes it, and what is lost.
+
+    A figure may be laid at another of several changes where the other side is there, too, and a reason may name others who
+    are hit: neither is another break.
+    """
+    whose = partner_break.partner, partner_break.category
     kind = "input" if change.element_kind == "connection" else change.element_kind
-    element_id = renamed_ids.common_id(kind, change.element_id)
-    for each in change.breaks:
-        yield each.partner, each.category, kind, element_id, change.key
+    yield *whose, kind, renamed_ids.common_id(kind, change.element_id), change.key
+    yield *whose, frozenset(_NAME.findall(renamed_ids.rename_in_backticks(partner_break.reason)))

@@ -5,12 +5,14 @@ A tag counts that is called `signed/A-B/...`, with the ids of both partners in e
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from archgen.diagnostics.common_wording import shorten_hash
 from archgen.git import GitError
 from archgen.git.tag_list import list_tags_below
+from archgen.model.agreed_terms import Signature
 from archgen.pipeline import CheckedProject, VersionCache
 from archgen.products import compared_versions
 from archgen.products.compared_versions import ProjectVersion
@@ -27,13 +29,21 @@ def find_signed_tags(root: Path, first: str, second: str) -> tuple[SignedTag, ..
     )
 
 
-def read_signed_version(checked_project: CheckedProject, signed_tag: SignedTag) -> ProjectVersion | None:
-    """Read a project as it was signed; None where that cannot be read."""
+def read_last_signed(
+    checked_project: CheckedProject, signature: Signature | None, signed_tags: Sequence[SignedTag]
+) -> ProjectVersion | None:
+    """Read a project as it was signed last: as `agreements` records it, else at the newest tag; None where that cannot be."""
+    if signature:
+        revision, name = signature.revision or "", signature.tag or shorten_hash(signature.revision or "")
+    elif signed_tags:
+        name = signed_tags[0].name
+        revision = f"refs/tags/{name}"
+    else:
+        return None
     try:
-        version = read_agreed_version(f"refs/tags/{signed_tag.name}", checked_project)
+        return replace(read_agreed_version(revision, checked_project), name=name)
     except (GitError, ProjectNotFoundError):
         return None
-    return replace(version, name=signed_tag.name)
 
 
 def read_agreed_version(revision: str, checked_project: CheckedProject, path: Path | None = None) -> ProjectVersion:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import SourceTexts, Span
+from archgen.model.agreed_terms import is_signature_file
 from archgen.model.review_settings import is_agreement_file
 from archgen.project.project_search import PROJECT_FILE
 from archgen.project.slice_parsing import ParsedSlices, Slice, parse_slice
@@ -47,11 +48,9 @@ def parse_file(state: ReadingState, file: str) -> Slice:
         message = f"a file's name cannot be read as text: {file!a}"
         diagnostic = Diagnostic("syntax-error", message, Span.of_file(PROJECT_FILE), help="rename the file")
         return Slice(file, "", None, (diagnostic,))
-    if is_agreement_file(file) and state.files.is_behind_link(file):
+    if (is_agreement_file(file) or is_signature_file(file)) and state.files.is_behind_link(file):
         # Whoever may write the file that the link leads to would agree for this partner.
-        message = (
-            "a partner's agreements stand behind a symbolic link: whoever may write there could agree for the partner"
-        )
+        message = "what partners agree on stands behind a symbolic link: whoever may write there could agree for them"
         diagnostic = Diagnostic("syntax-error", message, Span.of_file(file), help="write them into the file itself")
         return Slice(file, "", None, (diagnostic,))
     file_text = read_text_file(state.files, file)

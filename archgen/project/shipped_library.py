@@ -51,7 +51,7 @@ def load_shipped_component_types(distro: str | None) -> Mapping[str, MappingEntr
     for file, distros in table.files.items():
         if distro in distros:
             for entry in parse_shipped_file(file):
-                if distro in table.packages[_package_of(entry.value)]:
+                if distro in table.packages[_get_node_text(entry.value, "package")]:
                     entries[entry.key] = entry
     return MappingProxyType(dict(sorted(entries.items())))
 
@@ -119,10 +119,30 @@ def parse_shipped_file(file: str) -> MappingNode:
     return types
 
 
-def _package_of(body: YamlNode) -> str:
+def find_program_name(package: str, program: str) -> str | None:
+    """Return what a program of ROS 2 calls its node where nobody names it, by its executable or plug-in.
+
+    None where no type that ships knows it, or distributions differ.
+    """
+    names = _index_program_names().get((package, program), set())
+    return next(iter(names)) if len(names) == 1 else None
+
+
+@cache
+def _index_program_names() -> Mapping[tuple[str, str], set[str]]:
+    index: dict[tuple[str, str], set[str]] = {}
+    for file, distros in read_distribution_table().files.items():
+        for entry in () if "noetic" in distros else parse_shipped_file(file):
+            package, own_name = (_get_node_text(entry.value, key) for key in ("package", "own_name"))
+            for program in filter(None, (_get_node_text(entry.value, key) for key in ("executable", "plugin"))):
+                index.setdefault((package, program), set()).add(own_name)
+    return index
+
+
+def _get_node_text(body: YamlNode, key: str) -> str:
     node = body.get("node") if isinstance(body, MappingNode) else None
-    package = node.get("package") if isinstance(node, MappingNode) else None
-    return package.text if isinstance(package, ScalarNode) else ""
+    value = node.get(key) if isinstance(node, MappingNode) else None
+    return value.text if isinstance(value, ScalarNode) else ""
 
 
 def _move_node(node: YamlNode, span: Span) -> YamlNode:

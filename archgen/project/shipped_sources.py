@@ -10,10 +10,16 @@ from functools import cache
 from typing import Any, NamedTuple
 
 from archgen import resources
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlNode
 
 SOURCE_KINDS = ("documentation", "source text", "recording")
 """Words for what was read: what people wrote about the package, the package's own files, or a running node."""
+
+
+_PROGRAM_KEYS = ("executable", "plugin", "own_name", "inner_nodes")
+_USE_KINDS = ("publishes", "subscribes", "serves", "calls")
+_NAMING_KEYS = ("named_by", "when")
+"""What says which parameters name a port of the node, and whether it has the port. Its name itself is at the port's line."""
 
 
 class ShippedSource(NamedTuple):
@@ -63,18 +69,26 @@ def _read_source(source: dict[str, Any]) -> ShippedSource:
 
 
 def list_type_facts(body: MappingNode) -> Iterator[str]:
-    """Yield the paths of all that a type states about its package: executable, ports, operations, parameters.
+    """Yield the paths of all that a type states about its package: its program, ports, operations, parameters.
 
     What is said of the world outside, such as who presses keys, is nothing that a package could say.
     """
-    if any(entry.key == "executable" for entry in _list_entries(body, "node")):
-        yield "executable"
+    for entry in _list_entries(body, "node"):
+        if entry.key in _PROGRAM_KEYS:
+            yield entry.key
+        elif entry.key in _USE_KINDS and isinstance(entry.value, MappingNode):
+            for use in entry.value:
+                yield from (f"{key}.{use.key}" for key in _NAMING_KEYS if _has_key(use.value, key))
     for section in ("inputs", "outputs", "operations"):
         for entry in _list_entries(body, section):
             medium = entry.value.get("medium") if isinstance(entry.value, MappingNode) else None
             if not (isinstance(medium, ScalarNode) and medium.text == "physical"):
                 yield f"{section}.{entry.key}"
     yield from _list_parameters(_list_entries(body, "parameters"), "parameters")
+
+
+def _has_key(node: YamlNode, key: str) -> bool:
+    return isinstance(node, MappingNode) and key in node.entries
 
 
 def _list_entries(body: MappingNode, section: str) -> Iterator[MappingEntry]:

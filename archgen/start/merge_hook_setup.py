@@ -14,7 +14,6 @@ from archgen.start.merge_driver_setup import find_program
 
 _HOOK = "post-merge"
 _HEADER = "#!/bin/sh\n# archgen init --merge-driver wrote this: git merges files, here the whole is checked.\n"
-_MAX_BYTES = 1_000_000
 
 
 class MergeHook(NamedTuple):
@@ -35,7 +34,7 @@ def install_merge_hook(folder: Path) -> MergeHook:
     repository = git.find_repository(folder)
     lines = _write_check(repository.prefix or ".")
     path = _find_hook(repository.top)
-    content = path.read_bytes()[:_MAX_BYTES].decode("utf-8", "replace") if path.is_file() else ""
+    content = path.read_bytes().decode("utf-8", "replace") if path.is_file() else ""
     is_ours = content.startswith(_HEADER) and not path.is_symlink()
     if lines in content:
         return MergeHook(path, lines, state="kept")

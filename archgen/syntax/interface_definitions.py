@@ -39,6 +39,8 @@ _ROS2_NAMES = {
 }
 _OPTIONAL_ANNOTATION = re.compile(r"@optional(?: +|\Z)")
 """The annotation `@optional`, in front of a field or on the line above it: rosidl 5.1 and newer."""
+_HEADER_FIELD = re.compile(r"(?:std_msgs/(?:msg/)?)?Header +header\b")
+_HEADER_WORD = re.compile(r"\b(?:header|stamp\w*|time\w*|frame\w*)\b", re.IGNORECASE)
 _NAME_HELP = {
     ("field", True): "letters, digits and underscores, a letter first",
     ("constant", True): "letters, digits and underscores, no digit first",
@@ -78,6 +80,7 @@ class _DefinitionReader:
     """The comments that stand alone so far, those right above the current line last."""
     own_comments: int = 0
     """How many of these stand right above the current line, and belong to it if it is a field or a constant."""
+    introduction: str = ""
     name_spans: dict[tuple[str, str], Span] = field(default_factory=dict)
     references: list[tuple[str, Span]] = field(default_factory=list)
     diagnostics: list[Diagnostic] = field(default_factory=list)
@@ -100,10 +103,16 @@ class _DefinitionReader:
             self.comment_lines.append(comment)
         self.own_comments = self.own_comments + 1 if comment else 0
 
-    def take_comment(self, comment: str) -> str:
-        """Return the comment of a field or constant: the lines right above it, and what stands behind it."""
+    def take_comment(self, code: str, comment: str) -> str:
+        """Return the comment of a field or constant: the lines right above it, and what stands behind it.
+
+        What stands above the header of a message, and does not speak of it, is an introduction: it stays by itself.
+        """
         start = len(self.comment_lines) - self.own_comments
         lines = [*self.comment_lines[start:], comment]
+        if _HEADER_FIELD.match(code) and not any(map(_HEADER_WORD.search, lines[:-1])):
+            self.introduction, self.own_comments = " ".join(lines[:-1]), 0
+            return comment
         del self.comment_lines[start:]
         self.own_comments = 0
         return " ".join(filter(None, lines))
@@ -153,6 +162,7 @@ def parse_interface_definition(text: str, name: str, file: str, *, ros1: bool) -
         tuple(fields for fields, _ in sound_parts),
         tuple(constants for _, constants in sound_parts) if any(constants for _, constants in sound_parts) else (),
         "\n".join(reader.comment_lines),
+        reader.introduction,
     )
     return InterfaceDefinition(interface, tuple(reader.references), tuple(reader.diagnostics))
 
@@ -192,7 +202,7 @@ def _read_line(reader: _DefinitionReader, line_number: int, line: str) -> None:
         if start == len(code):
             reader.add_comment(comment)
             return
-    whole_line = _DefinitionLine(line_number, line, code, reader.take_comment(comment))
+    whole_line = _DefinitionLine(line_number, line, code, reader.take_comment(code, comment))
     end = code.find(" ", start)
     if end < 0:
         _report_incomplete_line(reader, code[start:], reader.span_of(line_number, start, len(code)))

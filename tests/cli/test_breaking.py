@@ -310,7 +310,14 @@ def test_json(run: Run, both: Path) -> None:
     assert change["said"] == [{"file": "more.yaml", "key": "type", "reason": "because"}]
     assert data["breaking"] == {
         "severity": "error",
-        "policy": {"wire": "error", "promise": "error", "meaning": "warning", "source": "note", "foreign": "off"},
+        "policy": {
+            "wire": "error",
+            "promise": "error",
+            "meaning": "warning",
+            "source": "note",
+            "foreign": "off",
+            "agreement": "error",
+        },
         "fails": True,
         "judged": True,
         "idle": [{"element": ENTRY, "key": "qos", "reason": "why not"}],

@@ -205,11 +205,35 @@ def test_explain(run: Run) -> None:
     assert "merge-conflict" in names
 
 
+def test_a_rule_is_known_by_the_name_that_it_had(run: Run, tmp_path: Path) -> None:
+    robot = """\
+archgen: 1
+project: {id: robot}
+rules: {unactivated-node: %s}
+groups: {g: {components: {a: A, b: B}}}
+nodes:
+  a: {implements: a, kind: lifecycle, start: {phase: core}}
+  b: {implements: b, kind: lifecycle}%s
+"""
+    (tmp_path / "archgen.yaml").write_text(robot % ("error", "  # archgen: ignore[unactivated-node] by hand"))
+    ran = run("check", tmp_path)
+    assert "error[silent-node]: nobody activates the lifecycle node `a`" in ran.out
+    assert [words for words in ("lifecycle node `b`", "unknown-rule", "unused-ignore") if words in ran.out] == []
+    (tmp_path / "archgen.yaml").write_text(robot % ('"off"', ""))
+    assert "silent-node" not in run("check", tmp_path).out
+    assert run("explain", "unactivated-node").out == run("explain", "silent-node").out
+    baseline = tmp_path / "known.yaml"
+    (tmp_path / "archgen.yaml").write_text(robot % ("error", ""))
+    assert run("check", tmp_path, "--baseline", baseline, "--update-baseline").status == 0
+    baseline.write_text(baseline.read_text().replace("silent-node", "unactivated-node"))
+    assert "silent-node" not in run("check", tmp_path, "--baseline", baseline).out
+
+
 def test_version_and_help(run: Run) -> None:
     assert run("--version").out.startswith("archgen ")
     ran = run("--help")
     assert ran.status == 0
-    assert "  check         Find mistakes in the architecture.\n" in ran.out
+    assert "  check           Find mistakes in the architecture.\n" in ran.out
 
 
 def test_show_says_whether_the_chains_of_a_requirement_are_in_time(run: Run, tmp_path: Path) -> None:

@@ -239,3 +239,24 @@ def test_what_is_weaker_comes_first(run: Run, robot: Path) -> None:
     ran = run("interfaces", robot, "--between", "a", "b", "--signed", "v1")
     told = [line.split("`")[1] for line in ran.err.splitlines() if line.startswith("  `") and "version" in line]
     assert told == ["sense.lidar.scan", "sense.eye.stop"]
+
+
+def test_what_the_launch_made_of_what_was_signed_is_told(run: Run, robot: Path) -> None:
+    change(robot, "eye_node: {", "eye_node: {remaps: {/stop: /halt}, ")
+    git(robot, "tag", "v1")
+    git(robot, "tag", "signed/a-b/1")
+    assert "V, as signed at signed/a-b/1 (V) (V by the rules of then)" in versions(agree(run, robot))
+    ran = run("interfaces", robot, "--between", "a", "b", "--signed", "v1")
+    assert (ran.status, ran.err.splitlines()[1:]) == (
+        0,
+        [
+            (
+                "warning: as signed by the words; since then it is known that `/stop` of `eye_node` runs on `/halt` "
+                "(archgen.yaml:17:23), in the signed version too"
+            )
+        ],
+    )
+    change(robot, "/stop: /halt", "/stop: /stay")
+    ran = run("interfaces", robot, "--between", "a", "b", "--signed", "v1")
+    assert ran.status == 1
+    assert "Topic was signed as /halt, and is /stay" in ran.err

@@ -229,3 +229,18 @@ def test_with_errors_of_linking_only_what_changed_counts(checked: Checked, waiti
         "removed g.a.y p>q concerns pq",
         "changed g.c.z r>q concerns pqr",
     ]
+
+
+def test_one_of_several_readers_that_goes_says_nothing_of_the_one_that_stays() -> None:
+    def ask(*nodes: str) -> InterfaceVersion:
+        values: dict[FigureKey, ComparedFigure] = {FigureKey("QoS asked", node): Qos(depth=3) for node in nodes}
+        return InterfaceVersion("", values, WireNames("topic", ("/x",)), has_sender=True, has_receiver=True)
+
+    def name(old: InterfaceVersion, new: InterfaceVersion) -> list[tuple[str, str, bool]]:
+        (change,) = compare_interfaces({("x", AB): old}, {("x", AB): new})
+        return [(*each.key, each.after is None) for each in change.figures]
+
+    assert name(ask("m", "n"), ask("n")) == [("QoS asked", "m", True)]
+    assert name(ask("n"), ask("m", "n")) == [("QoS asked", "m", False)]
+    # One on each side is the same end under another name.
+    assert compare(ask("m"), ask("n")) == []

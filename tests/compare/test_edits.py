@@ -288,3 +288,20 @@ def _component_ids(reshapings: Iterable[object]) -> list[list[str]]:
 
 def test_a_confidence_is_never_certain() -> None:
     assert (truncate_confidence(1.0), truncate_confidence(0.678)) == (0.99, 0.67)
+
+
+def test_a_part_of_a_type_that_is_called_otherwise_is_one_edit_with_all_that_follows(compared: Compared) -> None:
+    before = """\
+types: {T: std_msgs/msg/String}
+component_types:
+  motor: {outputs: {x: T}, timing: {rate: 10 Hz}, node: {package: p, executable: e}}
+  rig: {components: {m: {is: motor}}, outputs: {x: {from: m.x}}}
+groups: {g: {components: {a: {is: rig}, b: {is: rig}, c: {is: rig}}}, h: {components: {r: {inputs: {x: [a.x, b.x, c.x]}}}}}
+"""
+    after = before.replace("{m: {is", "{wheel: {is").replace("m.x", "wheel.x")
+    (edit,) = list_edits(compared(before, after))
+    assert edit.text == (
+        "component type `rig`: component `m` is called `wheel` now; in 3 instances: `g.a`, `g.b` and `g.c`, "
+        "whose names follow (recognised with 73 % confidence)"
+    )
+    assert len(edit.changes) > 3

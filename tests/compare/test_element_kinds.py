@@ -71,6 +71,7 @@ TABLE_ONLY_FOR_SCHEMA = {
     "project layout": "a section of its own",
     "project chapters": "below `report`",
     "project review": "a section of its own",
+    "project agreements": "a section of its own",
     "project site": "a section of its own",
     "project rules": "a section of its own",
     **dict.fromkeys(("project properties", "project glossary"), "sections of their own"),
@@ -132,6 +133,7 @@ NOT_IN_RECORD = {
     **{f"component_type {key}": "what its instances have" for key in READ_OFF_PATTERNS - _SHOWN_SETTINGS},
     "link latency": "the keys `best` and `worst`",
     **{f"project {key}": "a setting" for key in ("shared_topics", "chapters", "review", "rules", "site")},
+    "project agreements": "between partners, not a part of the system",
     **dict.fromkeys(("project properties", "project glossary"), "sections of their own"),
 }
 KINDS_NOT_IN_RECORD = {
@@ -161,7 +163,7 @@ NOT_ON_CARDS = {
     "component": "autoconnect components containers description frames from layout node open performance same_as urls",
     "output": "external from to",
     "input": "external from optional",
-    "node": "arguments calls description internal language observed parameter_commands parameter_files plugin publishes remaps "
+    "node": "arguments calls description inner_nodes internal language observed own_name parameter_commands parameter_files plugin publishes remaps "
     "serves subscribes tags urls",
     "type": "constants feedback request response status",
     "host": "environment tags",
@@ -248,6 +250,8 @@ nodes:
     description: D
     owner: [certh, sssa]
     name: m
+    own_name: m_node
+    inner_nodes: {costs: costs/costs}
     namespace: /ns
     kind: [composable, driver]
     package: p
@@ -272,7 +276,7 @@ nodes:
     urls: {a: "https://a.eu"}
     properties: {q: 1}
     hints: {x: {a: 1}}
-    publishes: {o: {topic: /o, own_name: w}}
+    publishes: {o: {topic: /o, own_name: w, named_by: w_topic, when: {publish_w: true}}}
   m: {implements: b, observed: true}
   r: [whole, copy]
   s: {timing: {rate: 1 Hz}}
@@ -429,8 +433,9 @@ def test_the_kinds_are_those_of_the_model_and_of_the_cards(lookup: Lookup) -> No
     assert carded - {"topic", "channel", "composed"} == set(SECTIONS)
     # What else an architecture maps from ids: topics follow from nodes.
     mapped = {field.name for field in fields(Architecture) if str(field.type).startswith("Mapping[str, ")}
-    # Nor are composed components a kind of their own in files; properties and terms are the project's.
-    assert mapped - {"topics", "channels", "shells", "shell_ports", "properties", "glossary"} == set(SECTIONS.values())
+    # Nor are composed components a kind of their own in files; properties, terms and agreements are the project's.
+    others = {"topics", "channels", "shells", "shell_ports", "properties", "glossary", "agreements"}
+    assert mapped - others == set(SECTIONS.values())
 
 
 def test_the_exceptions_are_needed() -> None:

@@ -157,24 +157,24 @@ def _show(figure: object) -> str:
 
 def test_figures_of_a_topic_a_service_and_what_has_no_host(checked: Checked) -> None:
     assert list_figures(checked, ROBOT) == [
-        "g.a.x: rate=10, largest gap=104000000, size=1000, traffic=10000, age on arrival=12320000, QoS offered=depth 3, QoS asked=depth 10, hosts=pc-lan-arm",
-        "g.s.ask: answers within=4000000, size of a request=20, size of an answer=20, age on arrival=none ?, hosts=pc-lan-arm",
-        "g.e.y: rate=2, largest gap=>= 500000000 ?ne, size=1000, traffic=2000, age on arrival=none ?, QoS offered=depth 10, QoS asked=depth 10",
+        "g.a.x: rate of na=10, largest gap of na=104000000, size=1000, traffic=10000, age on arrival=12320000, QoS offered of na=depth 3, QoS asked of nb=depth 10, hosts=pc-lan-arm",
+        "g.s.ask: answers within of ns=4000000, size of a request=20, size of an answer=20, age on arrival=none ?, hosts=pc-lan-arm",
+        "g.e.y: rate of ne=2, largest gap of ne=>= 500000000 ?ne, size=1000, traffic=2000, age on arrival=none ?, QoS offered of ne=depth 10, QoS asked of nb=depth 10",
         "g.m.force: ",
     ]
 
 
 def test_several_nodes_have_figures_of_their_own(checked: Checked) -> None:
     assert list_figures(checked, SECOND)[:1] == [
-        "g.a.x: rate of na=10, largest gap of na=109000000, rate of na2=5, largest gap of na2=209000000, size=1000, traffic=15000, age on arrival=25640000, QoS offered of na=depth 3, QoS offered of na2=depth 4, QoS asked=depth 10, hosts=pc-lan-arm",
+        "g.a.x: rate of na=10, largest gap of na=109000000, rate of na2=5, largest gap of na2=209000000, size=1000, traffic=15000, age on arrival=25640000, QoS offered of na=depth 3, QoS offered of na2=depth 4, QoS asked of nb=depth 10, hosts=pc-lan-arm",
     ]
 
 
 def test_without_an_analysis_there_are_hosts_and_qos(checked: Checked) -> None:
     assert list_figures(checked, ROBOT, is_analysed=False) == [
-        "g.a.x: QoS offered=depth 3, QoS asked=depth 10, hosts=pc--arm",
+        "g.a.x: QoS offered of na=depth 3, QoS asked of nb=depth 10, hosts=pc--arm",
         "g.s.ask: hosts=pc--arm",
-        "g.e.y: QoS offered=depth 10, QoS asked=depth 10",
+        "g.e.y: QoS offered of ne=depth 10, QoS asked of nb=depth 10",
         "g.m.force: ",
     ]
 

@@ -168,7 +168,7 @@ CASES = (
         "a policy",
         (("chains:", "policies: {quiet: {title: No way, forbid: {from: shop, to: arm}}}\nchains:"),),
         ("policy `quiet` (No way) is added; nothing may lead from `shop` to `arm`",),
-        (),
+        ("bor", "cnr"),
     ),
     Case(
         "a syntax error",

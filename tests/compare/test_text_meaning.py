@@ -16,6 +16,8 @@ from archgen.compare.text_meaning import differs_in_meaning, differs_in_measures
         ("A right-handed frame", "a right handed frame"),
         ("in m;\nat most 3", "In m: at most 3"),
         ("", ". - !"),
+        ("Stops! (See 1, and 2.)", "stops, see 1 and 2"),
+        ("[0,  1) m", "[0,1) m"),
     ],
 )
 def test_how_a_text_is_written_changes_nothing(before: str, after: str) -> None:
@@ -36,6 +38,15 @@ def test_how_a_text_is_written_changes_nothing(before: str, after: str) -> None:
         ("m/s", "m*s"),
         ("in m", ""),
         ("frame base_link", "frame base link"),
+        ("valid if != 0", "valid if = 0"),
+        ("valid if != 0", "valid if == 0"),
+        ("sent if !busy", "sent if busy"),
+        ("in [0, 1)", "in (0, 1]"),
+        ("in [0, inf)", "in [0, inf]"),
+        ("in ]-1; \u03c0]", "in [-1; \u03c0]"),
+        ("~5 cm", "5 cm"),
+        ("a | b", "a & b"),
+        ("x + 1", "x - 1"),
         ("Größe in µm", "Größe in nm"),
     ],
 )

@@ -96,3 +96,35 @@ def test_of_a_library_that_cannot_be_read_nothing_is_gone(
     comparison = compared_folders(LIBRARY, after)
     assert [change.text for change in comparison.changes] == []
     assert not comparison.is_judged
+
+
+SLICES = {
+    "archgen.yaml": "archgen: 1\nsources: [a.yaml, an.yaml, b.yaml]\npartners: {a: A, b: B}\nhosts: {pc: {cores: 1}}\n",
+    "a.yaml": "groups: {sense: {owner: a, components: {eye: {outputs: {rows: Rows}}}}}\ntypes: {Rows: std_msgs/msg/String}\n",
+    "an.yaml": "nodes: {eye: {implements: eye, host: pc, timing: {rate: 10 Hz}}}\nhosts: {pc: {title: Brain}}\n",
+    "b.yaml": """\
+groups: {drive: {owner: b, components: {base: {inputs: {rows: eye.rows}}}}}
+nodes: {base: {implements: base, host: pc, timing: {wcet: 1 ms}}}
+chains: {c: {through: [eye, base], deadline: 300 ms}}
+""",
+}
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "told"),
+    [
+        ("b.yaml", "", "", []),  # neither where the chain leads, nor what the host is called
+        ("a.yaml", "{rows: Rows}", "{rows: {type: Rows, description: In m}}", ["sense.eye.rows"]),
+        ("b.yaml", "wcet: 1 ms", "wcet: 2 ms", ["drive.base"]),
+        ("b.yaml", "nodes: {", "nodes: {eye2: {implements: eye, host: pc, timing: {rate: 10 Hz}}, ", ["eye2"]),
+    ],
+)
+def test_a_file_that_cannot_be_read_makes_nothing_certain(
+    compared_folders: ComparedFolders, file: str, old: str, new: str, told: list[str]
+) -> None:
+    after = {**SLICES, file: SLICES[file].replace(old, new)}
+    after["an.yaml"] += "x\n"
+    comparison = compared_folders(SLICES, after)
+    assert [change.element_id for change in comparison.changes] == told
+    assert [each for change in comparison.changes for each in change.breaks] == []
+    assert not comparison.is_judged

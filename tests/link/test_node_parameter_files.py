@@ -183,3 +183,19 @@ def test_no_file_ends_in_an_exception(tmp_path: Path, text: str, distro: str) ->
     project = PROJECT.replace("groups:", f"ros: {{distro: {distro}}}\ngroups:", 1)
     checked = check(tmp_path, {"archgen.yaml": project, "config/a.yaml": text})
     assert effective(checked, "n")
+
+
+def test_sections_are_those_of_the_name_that_arguments_give_a_node(tmp_path: Path) -> None:
+    project = """\
+archgen: 1
+project: {id: r}
+ros: {distro: jazzy}
+nodes:
+  n: {parameter_files: [p.yaml], arguments: [--ros-args, -r, "__node:=m", -r, "__ns:=/a"]}
+"""
+    checked = check(
+        tmp_path,
+        {"archgen.yaml": project, "p.yaml": "/a/m: {ros__parameters: {x: 1}}\n/n: {ros__parameters: {y: 2}}\n"},
+    )
+    assert effective(checked, "n").keys() == {"x"}
+    assert checked.architecture.nodes["n"].full_name == "/a/m"

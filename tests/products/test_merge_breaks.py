@@ -136,6 +136,18 @@ def test_what_a_branch_breaks_by_itself_is_told_by_its_own_review(robot: Path) -
     assert say(robot, "units", "words") == ["units: merges", "words: merges", "units + words: merges"]
 
 
+def test_a_chain_that_a_branch_makes_late_by_itself_is_not_told_again(tmp_path: Path) -> None:
+    chain = "chains: {stop: {through: [sense.sonar, safe.guard], deadline: 70 ms}}\n"
+    robot = repositories.repository(tmp_path / "robot", FILES | {"groups/chain.yaml": chain})
+    text = FILES["groups/norsk.yaml"]
+    branch(robot, "late", {"groups/norsk.yaml": (text, text.replace("wcet: 1 ms", "wcet: 7 ms"))})
+    branch(robot, "guard", {"groups/aegir.yaml": ("wcet: 1 ms", "wcet: 1.5 ms")})
+    *_, pair = merge(robot, "late", "guard")
+    # Of the other one that it makes it later still, which it did not without it.
+    assert [finding.message.partition(":")[0] for finding in pair.findings] == ["breaks Norsk (promise)"]
+    assert pair.order == (("guard",), ("late",))
+
+
 def test_a_break_under_a_name_that_the_other_branch_gave_is_no_other_break(robot: Path) -> None:
     repositories.commit(robot, {file: (robot / file).read_text().replace(*edit) for file, edit in READS.items()})
     branch(robot, "slow", SLOW)

@@ -104,3 +104,10 @@ def test_a_partner_agrees_to_what_a_variant_loses(tmp_path: Path) -> None:
 def test_without_partners_or_with_the_gate_off_variants_are_not_compared(tmp_path: Path) -> None:
     policy = "review: {breaking: {wire: off, promise: off, meaning: off, source: off}}\n"
     assert list_breaks(compare(tmp_path, WEAKENED, before=ROBOT + policy)) == []
+
+
+def test_a_stub_under_the_old_id_of_a_variant_hides_nothing(tmp_path: Path) -> None:
+    stub = ("  simulation: {", "  simulation: {changes: {project: {title: Simulated}}}\n  in_the_lab: {")
+    assert list_breaks(compare(tmp_path, stub, ("of: simulation", "of: in_the_lab"), WEAKENED)) == [
+        ("sensing.lidar.scan", "move", ("in_the_lab", "copy"))
+    ]

@@ -41,7 +41,9 @@ def write_instance(distro: str, name: str, body: MappingNode) -> str:
     )
     return (
         f"ros: {{distro: {distro}}}\nlibraries: {{ros: builtin}}\ngroups:\n  g:\n    components:\n"
-        f"      it:\n        is: ros.{name}\n" + (f"        inputs:\n{inputs}" if inputs else "") + outputs
+        f"      it:\n        is: ros.{name}{'<std_msgs/msg/String>' if 'generic' in body.entries else ''}\n"
+        + (f"        inputs:\n{inputs}" if inputs else "")
+        + outputs
     )
 
 
@@ -74,6 +76,7 @@ def test_each_message_is_held_for_each_distribution_that_has_the_type(distro: st
         if mapping_values.get_text(body, "medium") != "physical"
         for text in [mapping_values.get_text(body, "type") or ""]
         if full_message_name(text) not in names
+        and text not in mapping_values.get_texts(mapping_values.get_body(entry), "generic")
     }
     assert missing == set()
 
@@ -299,6 +302,13 @@ def test_the_pages_of_the_library_are_fresh() -> None:
     spec.loader.exec_module(module)
     for page, format_page in module.PAGES.items():
         assert page.read_text(encoding="utf-8") == format_page(), "run tools/make_ros_library_page.py"
+
+
+def test_programs_are_known_by_what_they_call_their_nodes() -> None:
+    assert shipped_library.find_program_name("ros_gz_bridge", "parameter_bridge") == "ros_gz_bridge"
+    assert shipped_library.find_program_name("image_proc", "image_proc::RectifyNode") == "RectifyNode"
+    for program in ("static_transform_publisher", "unheard_of", ""):
+        assert not shipped_library.find_program_name("tf2_ros", program)
 
 
 def test_it_may_have_any_name_and_more_than_one(tmp_path: Path) -> None:

@@ -62,7 +62,7 @@ ID = "an id is lower-case words joined by `_`, such as `object_recognition`, and
         ("nodes: {n: {timing: {calls: {a: -1}}}}", "1:33 wrong-value: `a` cannot be `-1` | it is at least 0"),
         ("nodes: {n: {kind: [lifecicle]}}", "1:20 wrong-value: an entry of `kind` cannot be `lifecicle` | did you mean `lifecycle`?"),
         ("nodes: {n: {implements: [a, ~]}}", "1:29 wrong-type: an entry of `implements` is empty, but must be text | None"),
-        ("nodes: {n: {publishes: {a: {nmae: b}}}}", "1:29 unknown-key: a use of a topic has no key `nmae` | its keys are `topic`, `own_name`, `message`, `qos`"),
+        ("nodes: {n: {publishes: {a: {nmae: b}}}}", "1:29 unknown-key: a use of a topic has no key `nmae` | its keys are `topic`, `own_name`, `named_by`, `when`, `message`, `qos`"),
         ("types: {A: {size: 12 KB}}", "1:19 wrong-value: `size` has no unit `KB` | write `12 kB`; case counts: kB is 1000 bytes, KiB is 1024"),
         ("types: {A: image}", "1:12 wrong-value: `A` cannot be `image` | a message is `package/msg/Name`, `package/srv/Name` or `package/action/Name`, such as `sensor_msgs/msg/Image`"),
         ("links: {l: {bandwidth: 10 Mbps}}", "1:24 wrong-value: `bandwidth` has no unit `Mbps` | write `10 Mbit/s`; case counts"),

@@ -44,12 +44,14 @@ def list_settings(agreement: PartnerAgreement) -> list[str]:
 
 
 def test_what_one_declares_and_the_other_sets_or_may_call(tmp_path: Path) -> None:
-    """What a partner sets at its own component is its own business, and so is a private operation."""
+    """What a partner sets at its own component is its own business, and so is a private operation.
+
+    Nobody calls `ask`: Acme takes nothing from it.
+    """
     assert list_settings(agree(tmp_path)) == [
         "level | Plain | Acme |  |  | 1 to 5 | plain: 4",
         "rate | Back | Acme |  | Hz | 1 to 50 | Back: 40",
         "reset | Front | Acme |  | Ok | ",
-        "ask | User | Lab |  | Answer | ",
         "stop | Plain | Acme | hard: bool |  | synchronous",
     ]
 
@@ -68,10 +70,7 @@ def test_what_became_of_them_is_told_beside_the_interfaces(tmp_path: Path) -> No
     )
     agreement = agree(tmp_path, changed, ROBOT)
     assert lines(agreement.outline.notices) == [
-        (
-            "Parameters and operations that are not what they were at v1: mind.back: rate, mind.user: ask(), "
-            "sensing.plain: stop()."
-        )
+        ("Parameters and operations that are not what they were at v1: mind.back: rate, sensing.plain: stop().")
     ]
     assert [row.rpartition(" | ")[2] for row in list_settings(agreement)] == ["", "~ changed", "", "~ changed"]
     assert lines(agree(tmp_path, ROBOT, ROBOT).outline.notices) == ["Nothing between the two has changed since v1."]

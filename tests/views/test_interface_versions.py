@@ -114,3 +114,63 @@ def test_an_interface_has_its_own_version(tmp_path: Path) -> None:
     after = versions(tmp_path / "after", ROBOT.replace("topic: /stop", "topic: /halt"))
     assert before["/other"] == after["/other"]
     assert before["/other"] != before["/stop"]
+
+
+EARLIER = """\
+archgen: 1
+project: {id: signed, title: Signed}
+ros:
+  distro: jazzy
+  definitions: {m_msgs/msg/Stop: "# Why it stops.\\nstd_msgs/Header header  # when\\nuint8 why  # a number\\n"}
+partners: {a: A, b: B}
+groups:
+  sense:
+    owner: a
+    components:
+      guard: {outputs: {safety: {type: Stop, description: Stops at once.}}}
+      eye: {outputs: {rows: {type: Rows, promise: {rate: 5 Hz, max_age: 1 s}}}}
+      old: {outputs: {odd: Rows}}
+      plain: {outputs: {calm: Stop}}
+  drive:
+    owner: b
+    components:
+      base: {inputs: {safety: guard.safety, rows: {from: eye.rows, freshness: 2 s}, odd: old.odd, calm: plain.calm}}
+types: {Stop: m_msgs/msg/Stop, Rows: {message: std_msgs/msg/Float64, size: 8 B}}
+hosts: {pc: {cores: 2}}
+nodes:
+  guard:
+    implements: guard
+    host: pc
+    timing: {rate: 10 Hz, outputs: {safety: {conditional: true, max_gap: 1 s}}}
+    publishes: {safety: {topic: /safety, qos: {reliability: reliable, durability: transient_local, depth: 1}}}
+    remaps: {/safety: /safety_raw}
+    parameters: {qos_overrides: {/safety_raw: {publisher: {durability: volatile}}}}
+  eye: {implements: eye, host: pc, start: {environment: {ROS_DOMAIN_ID: "42"}}, timing: {rate: 5 Hz}, publishes: {rows: {topic: rows}}}
+  old: {implements: old, status: existing, host: pc, parameters: {use_sim_time: true}}
+  plain: {implements: plain, host: pc, publishes: {calm: {topic: /calm, qos: {depth: 3}}}}
+  base: {implements: base, host: pc, subscribes: {safety: {qos: {depth: 1}}}}
+"""
+EARLIER_VERSIONS = {
+    "sense.guard.safety": "bc5d93",
+    "sense.eye.rows": "5d44ef",
+    "sense.old.odd": "d788cc",
+    "sense.plain.calm": "247c08",
+}
+"""What the release before the launch had a say wrote into agreements: these digits were signed, and never change."""
+
+
+def test_what_was_signed_reads_the_same_for_ever(tmp_path: Path) -> None:
+    lookup = view(checked(tmp_path, EARLIER))
+    interfaces = find_interfaces_between(lookup.architecture, "a", "b")
+    assert {each.key: hash_interface(lookup, each, rules=1) for each in interfaces} == EARLIER_VERSIONS
+
+
+def test_only_what_the_launch_changes_has_other_digits_now(tmp_path: Path) -> None:
+    lookup = view(checked(tmp_path, EARLIER))
+    now = {each.key: hash_interface(lookup, each) for each in find_interfaces_between(lookup.architecture, "a", "b")}
+    # `plain` alone has no remap, no override, no domain and no simulated time.
+    assert [key for key, version in EARLIER_VERSIONS.items() if now[key] != version] == [
+        "sense.guard.safety",
+        "sense.eye.rows",
+        "sense.old.odd",
+    ]

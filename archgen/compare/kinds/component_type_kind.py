@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
+from archgen.compare.kinds.element_owners import find_type_owner
 from archgen.compare.kinds.functional_kinds import COMPONENT
 from archgen.compare.kinds.key_spec import Effect, KeySpec, ReadContext, Worsening, key_values
 from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec
@@ -28,7 +29,8 @@ OWN_KEYS = frozenset({"title", "is", *_INSTANCE_KEYS})
 _WRITTEN_KEYS = frozenset({"functionality", "description"})
 """Keys that are read off the type itself."""
 _NODE_KEYS = frozenset(
-    {"kind", "package", "executable", "plugin", "language", "command", "arguments", "remaps.", "start.", "parameters."}
+    {"kind", "package", "executable", "own_name", "plugin", "language", "command", "arguments", "inner_nodes."}
+    | {"remaps.", "start.", "parameters."}
 )
 """Keys of a node that a type says; the others depend on the instance."""
 _PART_KEYS = tuple(key for key in COMPONENT.keys if key.name not in _INSTANCE_KEYS)
@@ -127,5 +129,6 @@ COMPONENT_TYPE = KindSpec(
         text_feature(3, "functionality", "description"),
     ),
     word="component type",
+    owner=find_type_owner,
     without=frozenset({"layout", "outputs", *(key.name for key in _PATTERN_KEYS)}),
 )

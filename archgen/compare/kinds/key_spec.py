@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
 from enum import Enum, IntEnum, auto
 from functools import cached_property
@@ -11,6 +12,7 @@ from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.matched_ids import MatchedIds
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
+from archgen.model.component import Component, Group
 from archgen.model.node import Node
 
 
@@ -64,6 +66,33 @@ class ReadContext:
             for component in node.implements:
                 nodes_of_component.setdefault(component, []).append(node)
         return nodes_of_component
+
+    @cached_property
+    def owners_by_place(self) -> Mapping[str, frozenset[str]]:
+        """Return for each file, and each folder of the project, who owns what stands there."""
+        architecture = self.architecture
+        nodes = [node for node in architecture.nodes.values() if node.written]
+        elements: list[Group | Component | Node] = [
+            *architecture.groups.values(),
+            *architecture.components.values(),
+            *nodes,
+        ]
+        owners_by_place: dict[str, set[str]] = defaultdict(set)
+        for element in elements:
+            place = element.at.file
+            while place and element.owners:
+                owners_by_place[place].update(element.owners)
+                place = place.rpartition("/")[0]
+        return {place: frozenset(owners) for place, owners in owners_by_place.items()}
+
+    @cached_property
+    def instance_owners(self) -> Mapping[str, frozenset[str]]:
+        """Return for each component type who owns its instances."""
+        owners_by_type: dict[str, set[str]] = defaultdict(set)
+        for component in self.architecture.list_described_components():
+            for base in self.architecture.list_bases(component.type_name):
+                owners_by_type[base.id].update(component.owners)
+        return {name: frozenset(owners) for name, owners in owners_by_type.items()}
 
     @cached_property
     def single_node_components(self) -> frozenset[str]:

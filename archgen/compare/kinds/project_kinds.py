@@ -26,6 +26,26 @@ def _read_review(_project: ProjectInfo, context: ReadContext) -> Mapping[str, ob
     }
 
 
+def _read_agreements(_project: ProjectInfo, context: ReadContext) -> Mapping[str, object]:
+    """Return the terms in words, and under which tag what was signed; what left it is told by itself."""
+    values: dict[str, object] = {}
+    for agreement in context.architecture.agreements.values():
+        terms = {"": agreement.terms, **{f"{key}.": texts for key, texts in agreement.interfaces.items()}}
+        values |= {
+            f"{agreement.id}.{key}{name}": normalize_text(text)
+            for key, texts in terms.items()
+            for name, text in texts.items()
+        }
+        if agreement.signed:
+            values[f"{agreement.id}.signed"] = ", ".join(
+                [
+                    agreement.signed.tag or "without a tag",
+                    *(f"{each} by {who}" for each, who in agreement.signed.by.items()),
+                ]
+            )
+    return values
+
+
 def _read_parameters(_project: ProjectInfo, context: ReadContext) -> Mapping[str, object]:
     return {value.name: freeze_value(value.value) for value in context.architecture.ros_parameters}
 
@@ -87,6 +107,7 @@ _SETTING_KEYS = (
     KeySpec("layout", lambda _, context: context.architecture.layout.direction, Effect.TEXT),
     KeySpec("chapters", lambda _, context: context.version.chapter_order),
     KeySpec("review.", _read_review),
+    KeySpec("agreements.", _read_agreements, noun="agreement"),
     KeySpec("site.", _read_site, Effect.TEXT),
     KeySpec("properties.", _read_declared_properties),
     KeySpec("glossary.", _read_glossary, Effect.TEXT),

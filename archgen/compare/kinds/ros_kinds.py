@@ -23,6 +23,7 @@ from archgen.derivation.wire.remap_rules import NodeNames
 from archgen.derivation.writing_endpoints import flow_of_use
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.model.node import Node, PortUse, Qos
+from archgen.model.parameter import format_parameter
 
 _DEFAULT_QOS = Qos()
 _QOS_NAMES = tuple(each.name for each in fields(Qos) if each.name not in {"profile", "written", "at"})
@@ -92,6 +93,10 @@ def _resolve_topics(port: NodePort, context: ReadContext) -> frozenset[str]:
     return unordered_values(wire.name or topic for wire, topic in wires)
 
 
+def _read_conditions(port: NodePort, _context: ReadContext) -> Mapping[str, object]:
+    return {name: format_parameter(wanted) or "no value" for name, wanted in port.use.when.items()}
+
+
 PORT = KindSpec(
     "port",
     "Nodes",
@@ -99,6 +104,8 @@ PORT = KindSpec(
         KeySpec("carried", lambda port, _: port.is_stated or None),
         KeySpec("topic", _resolve_topics),
         KeySpec("own_name", lambda port, _: port.use.own_name, Effect.SYSTEM, noun="name in the program"),
+        KeySpec("named_by", lambda port, _: port.use.named_by, Effect.SYSTEM, noun="parameter with its name"),
+        KeySpec("when.", _read_conditions, Effect.SYSTEM, noun="condition"),
         KeySpec("message", lambda port, _: port.use.message, worsening=Worsening.ALWAYS, verb="is"),
         KeySpec("qos.", _read_qos, worsening=Worsening.ALWAYS, noun="QoS"),
     ),

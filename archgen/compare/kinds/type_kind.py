@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.element_likeness import letter_pairs
 from archgen.compare.element_relations import ElementRelations
+from archgen.compare.kinds.element_owners import find_type_owner
 from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec
 from archgen.compare.kinds.shared_features import mark_values, text_feature
 from archgen.compare.kinds.type_readers import is_own_type
@@ -43,5 +44,6 @@ TYPE = KindSpec(
             lambda _, each: mark_values(*(f"{field.name} {field.type}" for _, field in each.list_fields())),
         ),
     ),
+    owner=find_type_owner,
     is_declared=is_own_type,
 )

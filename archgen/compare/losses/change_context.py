@@ -22,6 +22,8 @@ from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint
 from archgen.model.review_settings import BreakCategory
 
+WRITING_USES = frozenset({"publishes", "serves"})
+
 
 @dataclass(frozen=True, slots=True)
 class PartnerLoss:
@@ -107,6 +109,8 @@ class ChangeContext:
     def owners_of_change(self, change_index: int) -> frozenset[str]:
         """Return the partner who owns what changed, nobody if nobody owns it."""
         change = self.changes[change_index]
+        if change.element_kind == "type":
+            return frozenset()  # whom it breaks, those say who write what is of the type (`MessageUsers`)
         return self.lasting_owners(
             "input" if change.element_kind == "connection" else change.element_kind, self.common_id(change)
         )
@@ -236,7 +240,11 @@ class ChangeContext:
             for key in (node_id, port)
             if any(self.before.nodes[end.node].status != "planned" for end in ends)
         }
-        return old_endpoints, {
+        # What stands in a part that could not be read offers what it offered.
+        unread_endpoints = {
+            key: ends for key, ends in old_endpoints.items() if self.versions.may_be_unread(("node", key[0]))
+        }
+        return old_endpoints, unread_endpoints | {
             (node_id, port): ends
             for (node_id, port), ends in self._collect_offered(self.after, MatchedIds()).items()
             if self.after.nodes[node_id].status != "planned" or real_keys.isdisjoint({node_id, port} - {""})
@@ -247,10 +255,34 @@ class ChangeContext:
     ) -> Mapping[tuple[str, str], list[Endpoint]]:
         endpoints: dict[tuple[str, str], list[Endpoint]] = defaultdict(list)
         for endpoint in architecture.endpoints:
-            if endpoint.use in {"publishes", "serves"} and architecture.nodes[endpoint.node].written:
+            if endpoint.use in WRITING_USES and architecture.nodes[endpoint.node].written:
                 port = matched_ids.common_id("output", endpoint.port) if endpoint.port else ""
                 endpoints[matched_ids.common_id("node", endpoint.node), port].append(endpoint)
         return endpoints
+
+    def find_new_ends(self, end: Endpoint) -> Sequence[Endpoint]:
+        """Return what took the place of an end: at its node, else at the port's node, under its name if there is one."""
+        port = self.common_port(end)
+        found = self._new_ends.get((self.matched_ids.common_id("node", end.node), port), ())
+        if not found and end.port:
+            found = self._new_ends.get(("", self.output_heirs.get(port, port)), ())
+        return [each for each in found if each.name == end.name] or found
+
+    def common_port(self, end: Endpoint) -> str:
+        """Return the common id of the port of an end of the first version, its name where it has none."""
+        kind = "output" if end.use in WRITING_USES else "input"
+        return self.matched_ids.common_id(kind, end.port) if end.port else end.label
+
+    @cached_property
+    def _new_ends(self) -> Mapping[tuple[str, str], list[Endpoint]]:
+        """Return the ends of written nodes by node and port (a topic's name for internal ones), and by the port alone."""
+        ends: dict[tuple[str, str], list[Endpoint]] = defaultdict(list)
+        for end in self.after.endpoints:
+            if self.after.nodes[end.node].written:
+                ends[end.node, end.port or end.label].append(end)
+                if end.port:
+                    ends["", end.port].append(end)
+        return ends
 
     @property
     def guards_margins(self) -> bool:

@@ -11,7 +11,9 @@ from archgen.compare.compared_elements import ElementKey
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
 from archgen.compare.losses.composed_places import find_component_renames, needs_other_id
 from archgen.compare.losses.loss_wording import tick_sorted_names
+from archgen.model.component import Connection
 
+_UNMADE_NOTE = "; `autoconnect` joined them, and does no more"
 _MAX_RENAMES = 2
 """Maximal number of ids in one sentence; the rest is counted."""
 
@@ -35,33 +37,68 @@ def find_lost_connections(context: ChangeContext) -> Iterator[PartnerLoss]:
 
 
 def find_unmade_connections(context: ChangeContext) -> Iterator[PartnerLoss]:
-    """Find inputs that `autoconnect` had joined and that have no source now: whoever owns them wrote nothing of that.
+    """Find inputs that lost what nobody had joined to them by its name: `autoconnect` had, or they read a whole group.
 
-    It belongs to the change that unmade it: another output that fits, another type, or the word itself.
+    It belongs to the change that unmade it, since whoever owns the input wrote nothing of that: another output that
+    fits, another type, another group, or the word itself. What was removed is told as such.
     """
     connections_before, connections_after = context.versions.connections_before, context.versions.connections_after
     for input_id, sources in sorted(connections_before.sources_by_input.items()):
         partner = context.owner_before("input", input_id)
-        is_unmade = not connections_after.sources_by_input.get(input_id) and connections_before.is_made(
-            input_id, sources
-        )
+        sources_after = connections_after.sources_by_input.get(input_id, frozenset())
+        lost_sources = {each for each in sources if context.output_heirs.get(each, each) not in sources_after}
+        is_made = not sources_after and connections_before.is_made(input_id, sources)
+        is_of_group = bool(lost_sources) and all((each, input_id) in connections_before.group_pairs for each in sources)
         if (
-            not is_unmade
+            not (is_made or is_of_group)
             or partner is None
             or not context.needs_source(input_id)
-            or _is_own_edit(context, input_id, sources)
+            or _is_own_edit(context, input_id, lost_sources)
         ):
             continue
-        old_names = tick_sorted_names(context.old_id("output", source) for source in sources)
-        lead, note = f"takes {old_names} from", "; `autoconnect` joined them, and does no more"
-        causes = _find_unmaking_changes(context, input_id, sources)
+        old_names = tick_sorted_names(context.old_id("output", source) for source in lost_sources)
+        lead = f"takes {old_names} from"
+        note = "; it reads all of a group, in which that is no more" if is_of_group else _UNMADE_NOTE
+        causes = _find_unmaking_changes(context, input_id, lost_sources)
         if causes:
             yield from context.losses_of_readers(causes, {partner: [input_id]}, lead, note)
-        elif partner not in context.lasting_owners(*_find_holder(context, input_id)):
+        elif is_made and partner not in context.lasting_owners(*_find_holder(context, input_id)):
             reason = f"{lead} {context.name_partner(partner)} ({tick_sorted_names([input_id])}){note}"
             yield from (
                 PartnerLoss(index, partner, reason) for index in context.change_indices("connection", input_id)[:1]
             )
+
+
+def find_redirected_connections(context: ChangeContext) -> Iterator[PartnerLoss]:
+    """Find inputs that read something else through a port of a composed component of which they name what they named."""
+    for index, change in enumerate(context.changes):
+        partner = context.owner_before("input", change.element_id)
+        if (change.element_kind, change.kind) != ("connection", "changed") or partner is None:
+            continue
+        old_input = context.before.inputs.get(context.old_id("input", change.element_id))
+        new_input = context.after.inputs.get(change.element_id)
+        if old_input is None or new_input is None or not context.needs_source(change.element_id):
+            continue
+        new_ports = {each.shell_port: each for each in new_input.connections if each.shell_port}
+        for old in old_input.connections:
+            new = new_ports.get(_find_common_port(context, old.shell_port))
+            sources = {context.matched_ids.common_id("output", each) for each in old.outputs}
+            is_gone = any(context.versions.is_removed("output", each) for each in sources)
+            if new is None or is_gone or sources <= set(new.outputs) or partner in _find_shell_owners(context, new):
+                continue
+            old_names, new_names = map(tick_sorted_names, (old.outputs, new.outputs))
+            name = context.name_partner(partner)
+            reason = f"gives {new_names} instead of {old_names} as `{new.shell_port}`, which {name} reads"
+            yield PartnerLoss(index, partner, reason)
+
+
+def _find_common_port(context: ChangeContext, shell_port: str | None) -> str:
+    shell, _, name = (shell_port or "").rpartition(".")
+    return f"{context.matched_ids.common_id('composed', shell)}.{name}"
+
+
+def _find_shell_owners(context: ChangeContext, connection: Connection) -> frozenset[str]:
+    return context.lasting_owners("composed", (connection.shell_port or "").rpartition(".")[0])
 
 
 def _is_own_edit(context: ChangeContext, input_id: str, sources: Iterable[str]) -> bool:
@@ -70,7 +107,8 @@ def _is_own_edit(context: ChangeContext, input_id: str, sources: Iterable[str]) 
         elements.get(("input", input_id))
         for elements in (context.versions.elements_before, context.versions.elements_after)
     )
-    if before is None or after is None or any(context.versions.is_removed("output", source) for source in sources):
+    gone_sources = (each for each in sources if each not in context.output_heirs)
+    if before is None or after is None or any(context.versions.is_removed("output", each) for each in gone_sources):
         return True
     return any(before.values.get(key) != after.values.get(key) for key in ("type", "external"))
 
@@ -84,7 +122,9 @@ def _find_holder(context: ChangeContext, port_id: str) -> ElementKey:
 def _find_unmaking_changes(context: ChangeContext, input_id: str, sources: Iterable[str]) -> list[int]:
     """Return the changes of outputs beside an input that left open which of them it is to read, or made them unfit."""
     changed_indices = [
-        index for source in sorted(sources) for index in context.change_indices("output", source, "type")
+        index
+        for source in sorted(sources)
+        for index in (*context.change_indices("output", source, "type"), *find_output_causes(context, source))
     ]
     holder = _find_holder(context, input_id)
     source_names = {source.rpartition(".")[2] for source in sources}

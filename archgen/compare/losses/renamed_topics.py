@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
 from archgen.compare.losses.composed_places import find_component_renames
@@ -21,7 +21,8 @@ def find_renamed_topics(context: ChangeContext) -> Iterator[PartnerLoss]:
     for (node, port), ends in new_endpoints.items():
         topics = list_known_names(ends)
         topics_by_port[port] |= topics
-        if context.after.nodes[node].status != "planned" or ("node", node) in context.versions.elements_before:
+        new_node = context.after.nodes.get(node)
+        if new_node is None or new_node.status != "planned" or ("node", node) in context.versions.elements_before:
             lasting_topics_by_port[port] |= topics
     readers = list_topic_readers(context)
     for node, port in sorted(old_endpoints):
@@ -39,7 +40,8 @@ def find_renamed_topics(context: ChangeContext) -> Iterator[PartnerLoss]:
             users = [
                 endpoint
                 for endpoint in readers.get((name, flow), ())
-                if not port or not endpoint.sources or _reads_output(context, endpoint, port)
+                if (not port or not endpoint.sources or _reads_output(context, endpoint, port))
+                and not _follows_by_launch(context, endpoint, new_topics)
             ]
             new_name_note = (
                 f"it is {tick_sorted_names(replacements)} now"
@@ -69,6 +71,17 @@ def list_topic_readers(context: ChangeContext) -> Mapping[TopicKey, list[Endpoin
             for key in list_known_names([endpoint]):
                 readers[key].append(endpoint)
     return readers
+
+
+def _follows_by_launch(context: ChangeContext, endpoint: Endpoint, topics: Container[TopicKey]) -> bool:
+    """Whether a reader's program is as it was, and what starts it gives it the new name, too."""
+    return any(
+        each.program_name is not None
+        and each.program_name == endpoint.program_name
+        and each.name != each.program_name
+        and (each.name, each.flow) in topics
+        for each in context.find_new_ends(endpoint)
+    )
 
 
 def _reads_output(context: ChangeContext, endpoint: Endpoint, output_id: str) -> bool:

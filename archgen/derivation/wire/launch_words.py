@@ -1,16 +1,22 @@
-"""Words of a command line that are rules for names: `-r x:=y` behind `--ros-args`, and `x:=y` alone."""
+"""Words of a command line that are rules for names (`-r x:=y` behind `--ros-args`, and `x:=y` alone), or parameters."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
 from archgen.model.node import Node
+from archgen.model.parameter import ParameterValue
 
 JOINT = ":="
 _RULE_OPTIONS = frozenset({"-r", "--remap"})
+_WHOLE_NUMBER = re.compile("[-+]?[0-9]{1,20}")
+_PARAMETER_OPTIONS = frozenset({"-p", "--param"})
+_FLAGS = {**dict.fromkeys(("y", "yes", "true", "on"), True), **dict.fromkeys(("n", "no", "false", "off"), False)}
+"""What ROS takes for booleans, in lower case."""
 _OTHER_OPTIONS = frozenset(
     {"-p", "--param", "--params-file", "--log-level", "--log-config-file", "--log-file-name", "-e", "--enclave"}
 )
@@ -44,6 +50,8 @@ def list_rule_words(node: Node, *, ros_1: bool) -> Iterator[RuleWord]:
             if JOINT in text and not (text.startswith("_") and not text.startswith("__"))
         )
         return
+    if node.container is not None:
+        return  # what a container loads has no command line of its own
     is_for_ros = False
     for text, at in words:
         if text == "--ros-args":
@@ -60,3 +68,19 @@ def list_rule_words(node: Node, *, ros_1: bool) -> Iterator[RuleWord]:
             next(words, None)
         elif JOINT in text:
             yield RuleWord(text, at, is_refused=True)
+
+
+def list_parameter_words(node: Node) -> Iterator[ParameterValue]:
+    """Yield the parameters that the words `-p NAME:=VALUE` give a node of ROS 2, in their order: later ones win.
+
+    The name of a node may stand before them. With one that has slashes no process starts: there is no value then.
+    """
+    words, places = node.arguments, node.argument_places or (NO_SPAN,) * len(node.arguments)
+    is_for_ros = False
+    for flag, (word, at) in zip(words, list(zip(words, places, strict=True))[1:], strict=False):
+        is_for_ros = flag == "--ros-args" or (is_for_ros and flag != "--")
+        parameter, joint, text = word.partition(JOINT)
+        whose, _, name = parameter.rpartition(":")
+        if is_for_ros and joint and flag in _PARAMETER_OPTIONS and (whose in {"", node.full_name[1:]} or "/" in whose):
+            number = int(text) if _WHOLE_NUMBER.fullmatch(text) else text
+            yield ParameterValue(name, None if "/" in whose else _FLAGS.get(text.lower(), number), at, at)

@@ -6,17 +6,22 @@ A program takes them only where its code says so, and says nothing where it does
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from fractions import Fraction
 from itertools import chain
 from typing import Any
 
+from archgen.derivation.wire.launch_words import list_parameter_words
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.source_span import Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, Evidence, Node, OverrideEffect, UseKind
-from archgen.model.parameter_values import ValueOrigin, find_declarations, find_effective_parameters
+from archgen.model.parameter_values import (
+    EffectiveParameter,
+    ValueOrigin,
+    find_declarations,
+    find_effective_parameters,
+)
 from archgen.model.quantity import Quantity
 
 PREFIX = "qos_overrides."
@@ -62,13 +67,18 @@ class QosOverride:
 def list_overrides(architecture: Architecture, node: Node) -> tuple[QosOverride, ...]:
     """Return the overrides that a node is given, in the order in which they are written."""
     declarations = find_declarations(architecture, node)
+    words = {each.name: each for each in list_parameter_words(node)} if node.arguments else {}
     given = (each.name for part in (architecture.ros_parameters, node.file_values, node.own_values) for each in part)
-    if not any(name.startswith(PREFIX) for name in chain(declarations, given)):
+    if not any(name.startswith(PREFIX) for name in chain(declarations, given, words)):
         return ()  # of nearly all nodes
     overrides = []
-    for name, parameter in find_effective_parameters(architecture, node).items():
+    parameters = {name: EffectiveParameter(name, each.value, "node", each.at) for name, each in words.items()}
+    # What a launch gives stands behind the node's own words, and wins.
+    given_later = find_effective_parameters(architecture, node)
+    parameters |= {name: each for name, each in given_later.items() if each.origin != "none"}
+    for name, parameter in parameters.items():
         parts = name.removeprefix(PREFIX).rsplit(".", 2)
-        if not name.startswith(PREFIX) or parameter.origin == "none" or len(parts) < 3:  # noqa: PLR2004 - topic, end, policy
+        if not name.startswith(PREFIX) or len(parts) < 3:  # noqa: PLR2004 - topic, end, policy
             continue
         topic, end, policy = parts
         end_word, _, end_id = end.partition("_")

@@ -80,6 +80,11 @@ def may_have_rules(node: Node) -> bool:
     return bool(node.remaps or node.arguments) and not node.is_program
 
 
+def has_several_rules(node: Node) -> bool:
+    """Whether a node may have more than one rule."""
+    return len(node.remaps) + len(node.arguments) > 1
+
+
 def list_written_remaps(node: Node) -> dict[str, str]:
     """Return a node's `remaps` for who writes them down again; what comes of them, endpoints say."""
     return dict(node.remaps)

@@ -8,16 +8,18 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property, partial
-from itertools import groupby, pairwise
+from itertools import groupby
 from operator import attrgetter
 
 from archgen.derivation.derived_parts import DerivedParts
+from archgen.derivation.wire.launch_words import list_parameter_words
 from archgen.derivation.wire.qos_overrides import QosOverride, list_overrides, override_qos
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Container
 from archgen.model.node import Clock, Endpoint, Evidence, Node, RunState
+from archgen.model.parameter import format_parameter
 from archgen.model.parameter_values import EffectiveParameter, find_effective_parameters
 from archgen.model.ros_distro import is_ros_1
 from archgen.model.start_up import NO_START, LifecycleState
@@ -33,24 +35,38 @@ _NUMBER = re.compile(r"\s*([+-]?)(0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)")
 _MAX_DIGITS = 40
 _NO_DOMAIN = 2**64 - 1
 """What rcl takes for "none is set"; `-1` is read as this number."""
-_TRUE_WORDS = frozenset({"y", "yes", "true", "on"})
-_FALSE_WORDS = frozenset({"n", "no", "false", "off"})
 
 
 def find_environment(architecture: Architecture, node: Node | Container) -> Mapping[str, tuple[str, Span]]:
     """Return the variables with which the process of a node or container is started, each with its place.
 
-    Later ones win: the project's, the host's, the node's; what a container loads has that of the container's process.
+    Later ones win: the project's, the host's, its own. What a container loads has that of the container's process, of
+    which only imported hints tell more.
     """
     variables = {each.name: (str(each.value), each.at) for each in architecture.ros_environment}
     if host := architecture.hosts.get(node.host or ""):
         variables |= {name: (text, host.environment_places[name]) for name, text in host.environment.items()}
-    if isinstance(node, Node) and node.start is not None and node.container is None:
+    container = node if isinstance(node, Container) else architecture.containers.get(node.container or "")
+    if container is not None:
+        hinted = _read_hint(container, "environment")
+        given = hinted.items() if isinstance(hinted, Mapping) else ()
+        hint_places = container.annotations.hint_places
+        variables |= {
+            name: (str(text), hint_places.get((_LAUNCH_HINT, "environment", name), container.at))
+            for name, text in given
+        }
+    elif isinstance(node, Node) and node.start is not None:
         places = node.start.places
         variables |= {
             name: (text, places.get(f"environment.{name}", node.at)) for name, text in node.start.environment.items()
         }
     return variables
+
+
+def _read_hint(element: Node | Container, key: str) -> object:
+    """Return what an import of launch files says of a node or container beside the model."""
+    hint = element.annotations.hints.get(_LAUNCH_HINT)
+    return hint.get(key) if isinstance(hint, Mapping) else None
 
 
 def read_domain(text: str) -> int | None:
@@ -146,9 +162,10 @@ class RunningStates:
             return None, CLOCK_PARAMETER, given.at
         if node.unread_files:
             return None, f"{node.unread_files[0]} is not at hand", node.at
-        if (word := find_argument_value(node, CLOCK_PARAMETER)) is not None:
-            value = True if word.lower() in _TRUE_WORDS else False if word.lower() in _FALSE_WORDS else None
-            return value, f"-p {CLOCK_PARAMETER}:={word}", node.at
+        words = [] if self._is_ros_1 else [w for w in list_parameter_words(node) if w.name == CLOCK_PARAMETER]
+        if words:
+            rule = f"-p {CLOCK_PARAMETER}:={format_parameter(words[-1].value)}"
+            return words[-1].value, rule, words[-1].at
         return None, "", NO_SPAN
 
     def _find_run_state(
@@ -158,11 +175,12 @@ class RunningStates:
         if node.status == "planned":
             evidence["runs"] = Evidence("written" if node.written else "generated", "status: planned", node.at)
             return "planned", None
-        hint = node.annotations.hints.get(_LAUNCH_HINT)
-        if isinstance(hint, Mapping) and hint.get("by_default") == "off":
-            place = node.annotations.hint_places.get((_LAUNCH_HINT, "by_default"), node.at)
-            evidence["runs"] = Evidence("written", "by_default: off", place)
-            return "off", None
+        container = self._architecture.containers.get(node.container or "")
+        for element in (node, container) if container else (node,):
+            if _read_hint(element, "by_default") == "off":
+                place = element.annotations.hint_places.get((_LAUNCH_HINT, "by_default"), element.at)
+                evidence["runs"] = Evidence("written", "by_default: off", place)
+                return "off", None
         if "lifecycle" not in node.kinds or self._is_ros_1:
             return "active", None
         start = node.start or NO_START
@@ -184,7 +202,7 @@ class RunningStates:
         # What lists nothing itself is told, in launch files that archgen writes, who names it in `by`.
         named = {node.start.by.id for node in self._architecture.nodes.values() if node.start and node.start.by}
         for node in self._architecture.nodes.values():
-            if _MANAGER_PROGRAM not in f"{node.package} {node.executable} {node.plugin}":
+            if node.status == "planned" or _MANAGER_PROGRAM not in f"{node.package} {node.executable} {node.plugin}":
                 continue
             parameters = find_parameters(self._architecture, node, "node_names", "autostart")
             names = parameters["node_names"].value if "node_names" in parameters else None
@@ -211,24 +229,6 @@ def find_parameters(architecture: Architecture, node: Node, *names: str) -> Mapp
     if wanted.isdisjoint(given) and all(wanted.isdisjoint(each) for each in components):
         return {}  # of nearly all nodes
     return find_effective_parameters(architecture, node)
-
-
-def find_argument_value(node: Node, name: str) -> str | None:
-    """Return what the words `-p NAME:=VALUE` among the arguments of a node say; of several the last one counts."""
-    words = node.arguments
-    if "--ros-args" not in words:
-        return None
-    found = None
-    for flag, word in pairwise(words):
-        parameter, separator, value = word.partition(":=")
-        whose, _, parameter = parameter.rpartition(":")
-        if flag not in {"-p", "--param"} or not separator or parameter != name:
-            continue
-        if "/" in whose:
-            found = word  # with it, no process starts
-        elif whose in {"", node.full_name[1:]}:
-            found = value
-    return found
 
 
 def complete_states(

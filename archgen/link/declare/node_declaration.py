@@ -204,6 +204,8 @@ def _declare_use(
         port=port,
         topics=tuple(scalar.text for scalar in names),
         own_name=mapping_values.get_text(use_body, "own_name"),
+        named_by=mapping_values.get_text(use_body, "named_by"),
+        when=mapping_values.get_data(use_body, "when"),
         message=mapping_values.get_message(use_body, "message"),
         qos=_read_qos(use, use_body),
         internal=is_internal,

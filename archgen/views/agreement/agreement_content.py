@@ -33,6 +33,12 @@ class AgreementContent:
     budgets: Mapping[str, SharedBudget] = field(default_factory=dict)
     """What the elements of the chains between the two may take, by chain."""
     signatures: SignatureRecord = field(default_factory=SignatureRecord)
+    signers: Mapping[str, str] = field(default_factory=dict)
+    """Who signs this document for which partner."""
+    standing: tuple[str, ...] = ()
+    """The variants that are laid over the project as it is shown."""
+    variant_changes: Mapping[str, AgreementChanges] = field(default_factory=dict)
+    """What is otherwise in each variant, by its id."""
 
     @property
     def pair_titles(self) -> tuple[str, str]:

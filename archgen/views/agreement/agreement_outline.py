@@ -18,7 +18,8 @@ from archgen.views.agreement.frame_section import list_changed_frames, write_fra
 from archgen.views.agreement.interface_sections import SectionWriter
 from archgen.views.agreement.setting_section import list_changed_settings, write_setting_section
 from archgen.views.agreement.signature_record import write_signature_table
-from archgen.views.agreement.start_section import write_start_section
+from archgen.views.agreement.start_section import list_start_steps, write_start_section
+from archgen.views.agreement.terms_section import describe_standing, write_terms_section
 from archgen.views.agreement.use_case_section import write_use_case_section
 from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.shapes import (
@@ -50,7 +51,9 @@ def outline_agreement(content: AgreementContent) -> Outline:
     """Return the outline of an agreement."""
     first, second = content.pair_titles
     # One writer for both directions: it remembers which messages' fields are already in the document.
-    section_writer = SectionWriter(content.lookup, content.changes, content.signatures)
+    section_writer = SectionWriter(
+        content.lookup, content.changes, content.signatures, start_steps=list_start_steps(content.lookup.architecture)
+    )
     directions = (content.pair, content.pair[::-1])
     return Outline(
         title=f"{first} and {second}",
@@ -72,6 +75,7 @@ def outline_agreement(content: AgreementContent) -> Outline:
             *write_setting_section(content),
             *write_start_section(content),
             *write_budget_section(content),
+            write_terms_section(content),
             write_open_points_section(content),
             _signatures_section(content),
         ),
@@ -89,6 +93,8 @@ def _agreement_facts(content: AgreementContent) -> Iterator[tuple[str, Inlines]]
     yield "Project", inline_text.to_inlines(project.title)
     if project.version:
         yield "Project version", inline_text.to_inlines(project.version)
+    if standing := describe_standing(content):
+        yield "Variant", inline_text.to_inlines(standing)
     if content.issue_date:
         yield "Date", inline_text.to_inlines(content.issue_date)
     if content.revision:
@@ -197,7 +203,13 @@ def _signatures_section(content: AgreementContent) -> Section:
         )
     ]
     blank = inline_text.join_lines([inline_text.to_inlines("\u00a0")] * 3)
-    rows = tuple((inline_text.to_inlines(title), blank, blank, blank) for title in content.pair_titles)
+    signers = [content.signers.get(partner_id) for partner_id in content.pair]
+    rows = tuple(
+        (inline_text.to_inlines(title), *(map(inline_text.to_inlines, (name, content.issue_date))), blank)
+        if name
+        else (inline_text.to_inlines(title), blank, blank, blank)
+        for title, name in zip(content.pair_titles, signers, strict=True)
+    )
     columns = (Column("Partner", 1.2), Column("Name", 1.3), Column("Date", 0.8), Column("Signature", 1.5))
     blocks.append(Table("table:signatures", "Signatures", columns, rows, numbered=False))
     if content.signatures.tags:

@@ -78,7 +78,13 @@ def _version_runs(content: AgreementContent, record: InterfaceRecord) -> Inlines
     if not signatures.revision:
         return inline_text.to_inlines(version)
     signed_version = signatures.versions.get(record.key)
-    word = "not signed" if signed_version is None else "as signed" if signed_version == version else "changed"
+    word = (
+        "not signed"
+        if signed_version is None
+        else "as signed"
+        if signed_version == record.terms.find_version(signatures.rules)
+        else "changed"
+    )
     return inline_text.join_lines([inline_text.to_inlines(version), (Text(word, muted=word == "as signed"),)])
 
 

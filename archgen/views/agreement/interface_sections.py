@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field
 from typing import TYPE_CHECKING
 
+from archgen.bringup.plan_shapes import StartStep
 from archgen.frozen import dataclass
 from archgen.views import inline_text
 from archgen.views.agreement import message_fields
+from archgen.views.agreement.agreed_words import list_word_rows
 from archgen.views.agreement.interface_record import InterfaceRecord
 from archgen.views.agreement.interface_terms import InterfaceEnd, InterfaceTerms
 from archgen.views.agreement.promise_rows import write_promise_table
@@ -36,6 +38,8 @@ class SectionWriter:
     changes: AgreementChanges | None = None
     signatures: SignatureRecord = field(default_factory=SignatureRecord)
     anchors_by_message: dict[str, str] = field(default_factory=dict)
+    start_steps: Mapping[str, StartStep] | None = None
+    """The steps of the start-up, in an agreement: it also tells what nobody says."""
 
     def write_section(
         self, record: InterfaceRecord, anchor: str, mark: Inlines, first_facts: Iterable[tuple[str, Inlines]] = ()
@@ -49,7 +53,7 @@ class SectionWriter:
                     *first_facts,
                     ("Version", inline_text.to_inlines(self.signatures.describe_version(record))),
                     *show_facts(interface_terms.facts).rows,
-                    *_further_facts(interface_terms),
+                    *self._further_facts(interface_terms),
                 )
             ),
             *self._promise_tables(interface_terms),
@@ -75,6 +79,16 @@ class SectionWriter:
             self._ends_table(interface_terms),
         ]
         return Section(anchor, interface_terms.title, tuple(blocks))
+
+    def _further_facts(self, interface_terms: InterfaceTerms) -> Iterator[tuple[str, Inlines]]:
+        """Yield what is agreed in words, the requirements behind the interface, and its open points."""
+        for row in list_word_rows(self.lookup, interface_terms, self.start_steps):
+            yield row.title, row.inlines
+        points = map(inline_text.message_to_inlines, interface_terms.open_points)
+        if interface_terms.requirements:
+            yield "Requirements", inline_text.join_lines(interface_terms.requirements)
+        if interface_terms.open_points:
+            yield "Open points", inline_text.join_lines(points)
 
     def _change_blocks(self, record: InterfaceRecord, mark: Inlines) -> Iterator[Block]:
         """Yield what happened to the interface since the earlier revision, old beside new."""
@@ -212,15 +226,3 @@ def _shorten_value(text: str) -> str:
         if len(text) <= _MAX_VALUE_LENGTH
         else f"{text[:_MAX_VALUE_LENGTH]} … ({len(text) - _MAX_VALUE_LENGTH} more characters)"
     )
-
-
-def _further_facts(interface_terms: InterfaceTerms) -> Iterator[tuple[str, Inlines]]:
-    """Yield what holds where data is late, the requirements behind the interface, and its open points."""
-    if interface_terms.interface.flow != "physical":
-        duties = interface_terms.missing_data_duties
-        nothing = inline_text.to_inlines(Text("nothing is promised for this case", muted=True))
-        yield "When late or missing", inline_text.join_lines(map(inline_text.message_to_inlines, duties)) or nothing
-    if interface_terms.requirements:
-        yield "Requirements", inline_text.join_lines(interface_terms.requirements)
-    if interface_terms.open_points:
-        yield "Open points", inline_text.join_lines(map(inline_text.message_to_inlines, interface_terms.open_points))

@@ -5,10 +5,11 @@ No term names a line of a file: text that moves changes nothing between the part
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from archgen.frozen import replace
+from archgen.model.agreed_terms import INTERFACE_TERMS, find_agreement
 from archgen.model.component import Component
 from archgen.model.interface_ends import foreign_owners
 from archgen.model.node import Endpoint, Qos
@@ -78,6 +79,14 @@ class InterfaceTerms:
     """Sentences on chains through the interface that miss their deadline."""
     shared_notes: tuple[str, ...]
     """Sentences on what both partners, or a partner and a third one, are responsible for together."""
+    agreed: Mapping[str, str]
+    """What the partners wrote of it below `agreements`, by the names of terms."""
+    first_version: str
+    """Its version by the first rules: those of older signatures."""
+
+    def find_version(self, rules: int) -> str:
+        """Return its version by the rules of a signature."""
+        return self.version if rules > 1 else self.first_version
 
     @property
     def open_terms(self) -> tuple[str, ...]:
@@ -113,10 +122,13 @@ def gather_terms(
     chains = tuple(interface_timing.find_chains_through(lookup, activity_names, interface))
     giver, taker = (join_owner_titles(lookup, [partner]) for partner in interface.pair)
     ports = output_promises.list_counted_ports(lookup, interface)
+    version = interface_versions.hash_interface(lookup, interface)
+    is_launched = any(interface_versions.list_launch_words(interface))
+    agreement = find_agreement(lookup.architecture.agreements, *interface.pair)
     return InterfaceTerms(
         interface,
         interface_title(lookup, interface),
-        interface_versions.hash_interface(lookup, interface),
+        version,
         (*_list_facts(lookup, interface), *output_promises.list_word_facts(ports)),
         tuple(_list_promises(lookup, activity_names, interface, ports)),
         tuple(_list_ends(lookup, interface)),
@@ -125,13 +137,15 @@ def gather_terms(
         else None,
         chains,
         tuple(_requirement_runs(lookup, interface, chains)),
-        tuple(list_missing_data_duties(lookup, interface, giver, taker)),
+        tuple(list_missing_data_duties(lookup, interface, ports, giver, taker)),
         (
             *find_contradictions(lookup, activity_names, interface),
             *output_promises.find_broken_words(lookup, interface, ports),
         ),
         tuple(find_late_chains(lookup, chains)),
         tuple(_shared_sentences(lookup, interface)),
+        {name: text for name in INTERFACE_TERMS if (text := agreement.find_term(name, interface.key))},
+        interface_versions.hash_interface(lookup, interface, rules=1) if is_launched else version,
     )
 
 
@@ -165,7 +179,10 @@ def _list_facts(lookup: Lookup, interface: PartnerInterface) -> Iterator[Fact]:
         yield Fact("", "Frame", inline_text.to_inlines(Text(frame_name, code=True)))
     yield from _list_declared_properties(lookup, interface)
     if interface.flow != "physical" and not interface.medium:
-        yield Fact("message", "Message", _message_runs(lookup, interface))
+        yield from _list_message_facts(lookup, interface)
+    launch_words = dict.fromkeys(sentence for sentence, _ in interface_versions.list_launch_words(interface))
+    if launch_words:
+        yield Fact("launch", "As launched", inline_text.join_lines(map(inline_text.message_to_inlines, launch_words)))
     other_components = dict.fromkeys(other_input.component for other_input in interface.other_inputs)
     if other_components:
         readers = inline_text.join_lines(_other_reader(lookup, component) for component in other_components)
@@ -178,6 +195,13 @@ def _list_declared_properties(lookup: Lookup, interface: PartnerInterface) -> It
     for declared in lookup.architecture.properties.values():
         if declared.id in own_properties:
             yield Fact("", declared.title, inline_text.to_inlines(own_properties[declared.id]))
+
+
+def _list_message_facts(lookup: Lookup, interface: PartnerInterface) -> Iterator[Fact]:
+    yield Fact("message", "Message", _message_runs(lookup, interface))
+    definition = lookup.architecture.interfaces.definitions.get(interface.message or "")
+    if definition and definition.comment:
+        yield Fact("", "About the message", inline_text.to_inlines(" ".join(definition.comment.split())))
 
 
 def _message_runs(lookup: Lookup, interface: PartnerInterface) -> Inlines:

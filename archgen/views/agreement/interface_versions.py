@@ -5,13 +5,14 @@ Titles, ids, order, hosts, nodes and what is only expected are no part of it. Th
 
 from __future__ import annotations
 
-import hashlib
-import json
 from collections.abc import Iterable, Iterator
 
+from archgen.derivation.ros_names import default_port_name
+from archgen.diagnostics.source_span import Span
+from archgen.model.agreed_terms import RULES, hash_text
 from archgen.model.declared_timing import OutputTiming
-from archgen.model.known_interfaces import Interface, Interfaces
-from archgen.model.node import Endpoint
+from archgen.model.known_interfaces import Interface, InterfaceField, Interfaces
+from archgen.model.node import Endpoint, Evidence, Qos
 from archgen.model.partner_interfaces import PartnerInterface, list_givers
 from archgen.model.quantity import Quantity
 from archgen.model.ros_distro import is_ros_1
@@ -19,26 +20,27 @@ from archgen.timing.figures.tick_unit import written_period
 from archgen.views.agreement.interface_timing import find_giver_timing
 from archgen.views.agreement.output_promises import identify_words, list_counted_ports
 from archgen.views.agreement.promise_rows import identify_qos
+from archgen.views.inline_text import format_qos
 from archgen.views.lookup import Lookup
 
-_DIGITS = 6
+_NO_EVIDENCE = Evidence("unknown")
 
 
-def hash_interface(lookup: Lookup, interface: PartnerInterface) -> str:
-    """Return the version of an interface, six hexadecimal digits."""
+def hash_interface(lookup: Lookup, interface: PartnerInterface, rules: int = RULES) -> str:
+    """Return the version of an interface, six hexadecimal digits. By the first rules the launch has no say in it."""
     architecture = lookup.architecture
     with_qos = interface.flow == "topic" and not is_ros_1(architecture.distro)
     givers = list_givers(lookup.architecture, interface)
     message_type = architecture.types.get(interface.type or "")
-    content = {
+    content: dict[str, object] = {
         "flow": interface.flow,
-        "names": sorted(interface.topic_names),
+        "names": sorted({_find_first_name(endpoint) for endpoint in interface.giver_endpoints}),
         # The type is a name of the project's own; without a message it is all that says what flows.
         "carried": interface.message or f"type {interface.type}",
         "definitions": list(_list_definitions(architecture.interfaces, interface.message)),
         "meaning": _collapse_blanks((interface.output.description if interface.output else None) or ""),
         # To write down what counted before promises it.
-        "promises qos": any(endpoint.qos.written for endpoint in interface.giver_endpoints) and with_qos,
+        "promises qos": any(_find_first_qos(lookup, each).written for each in interface.giver_endpoints) and with_qos,
         "offered": _list_qos(lookup, interface.giver_endpoints) if with_qos else [],
         "asked": _list_qos(lookup, interface.taker_endpoints) if with_qos else [],
         "promised": sorted(_list_promises(lookup, endpoint) for endpoint in givers),
@@ -51,7 +53,62 @@ def hash_interface(lookup: Lookup, interface: PartnerInterface) -> str:
     content |= {"frame": frame_name} if frame_name else {}
     words = identify_words(list_counted_ports(lookup, interface))
     content |= {"words": words} if words else {}
-    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:_DIGITS]
+    content |= _describe_launch(interface) if rules > 1 else {}
+    return hash_text(content)
+
+
+def _describe_launch(interface: PartnerInterface) -> dict[str, object]:
+    """Return what the launch makes of both sides, where that is not what the programs say: nothing for most interfaces."""
+    parts: dict[str, set[str]] = {}
+    for side, endpoints in (("gives", interface.giver_endpoints), ("takes", interface.taker_endpoints)):
+        for endpoint in endpoints:
+            for name, value, _ in _list_launch_parts(endpoint):
+                parts.setdefault(name, set()).add(f"{side} {value}")
+    return {name: sorted(values) for name, values in parts.items()}
+
+
+def list_launch_words(interface: PartnerInterface) -> Iterator[tuple[str, Span]]:
+    """Yield sentences on what the launch makes of an interface, each with where that is written."""
+    for endpoint in (*interface.giver_endpoints, *interface.taker_endpoints):
+        for name, _, sentence in _list_launch_parts(endpoint):
+            reasons = (each for key, each in endpoint.evidence.items() if key.partition(".")[0] == name)
+            yield sentence, next(reasons, _NO_EVIDENCE).at
+
+
+def _list_launch_parts(endpoint: Endpoint) -> Iterator[tuple[str, str, str]]:
+    """Yield the fields of an end that the launch has a say in, with the value and a sentence on it."""
+    node, said = f"`{endpoint.node}`", endpoint.program_name or endpoint.label
+    if endpoint.is_moved:
+        yield "name", str(endpoint.name), f"`{said}` of {node} runs on `{endpoint.label}`"
+    elif endpoint.name is None and endpoint.evidence.get("name", _NO_EVIDENCE).rule:
+        yield "name", "unknown", f"nobody knows on what `{said}` of {node} runs"
+    if endpoint.qos_override in {"obeyed", "unknown"}:
+        doubt = ", if its program allows that" if endpoint.qos_override == "unknown" else ""
+        words = f"the QoS of {node} is overridden{doubt}: {format_qos(endpoint.qos)}"
+        yield "qos", f"{endpoint.qos_override} {identify_qos(endpoint.qos)}", words
+    if endpoint.domain is not None:
+        yield "domain", str(endpoint.domain), f"{node} runs in the domain {endpoint.domain}"
+    # One that is not known is no other one: a parameter file that is not at hand is no word of the launch.
+    if endpoint.clock == "simulated":
+        yield "clock", "simulated", f"{node} follows simulated time"
+    if endpoint.runs in {"inactive", "off"}:
+        yield "runs", str(endpoint.runs), f"{node} is {endpoint.runs}"
+
+
+def _find_first_qos(lookup: Lookup, endpoint: Endpoint) -> Qos:
+    """Return the quality of service of an end by the first rules: what is written at it, whatever parameters make of that."""
+    if endpoint.qos_override != "obeyed":
+        return endpoint.qos_if_ignored or endpoint.qos
+    uses = lookup.architecture.nodes[endpoint.node].uses
+    named = (each for each in uses if (each.use, each.port) == (endpoint.use, endpoint.port) and each.qos)
+    return next((each.qos for each in named if each.qos), Qos())
+
+
+def _find_first_name(endpoint: Endpoint) -> str:
+    """Return the name of an end by the first rules: a launch moved nothing, and one that nobody says was made of the port."""
+    if endpoint.is_moved and endpoint.program_name:
+        return endpoint.program_name
+    return endpoint.name or default_port_name(endpoint.port or endpoint.label)
 
 
 def _list_definitions(interfaces: Interfaces, message: str | None) -> Iterator[object]:
@@ -69,16 +126,24 @@ def _list_definitions(interfaces: Interfaces, message: str | None) -> Iterator[o
 
 def _write_definition(definition: Interface) -> Iterator[object]:
     for part in definition.parts:
-        yield [[field.name, field.type + field.array, field.default, _collapse_blanks(field.comment)] for field in part]
+        yield [
+            [field.name, field.type + field.array, field.default, _read_comment(definition, field)] for field in part
+        ]
     # Constants have no place on the wire: their order says nothing.
     for constants in definition.constants:
         yield sorted([item.name, item.type, item.value, _collapse_blanks(item.comment)] for item in constants)
 
 
+def _read_comment(definition: Interface, field: InterfaceField) -> str:
+    """Return what is said of a field. An introduction counted as said of the header: signed versions stay what they are."""
+    introduction = definition.introduction if field.name == "header" else ""
+    return _collapse_blanks(f"{introduction} {field.comment}")
+
+
 def _list_qos(lookup: Lookup, endpoints: Iterable[Endpoint]) -> list[str]:
     """Return the distinct qualities of service of written nodes, sorted."""
     nodes = lookup.architecture.nodes
-    return sorted({identify_qos(endpoint.qos) for endpoint in endpoints if nodes[endpoint.node].written})
+    return sorted({identify_qos(_find_first_qos(lookup, each)) for each in endpoints if nodes[each.node].written})
 
 
 def _list_promises(lookup: Lookup, endpoint: Endpoint) -> list[str]:

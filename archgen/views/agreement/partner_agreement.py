@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 from archgen.compare.match_elements import match_elements
 from archgen.compare.matched_ids import MatchedIds
 from archgen.frozen import dataclass, replace
+from archgen.model.agreed_terms import RULES
 from archgen.model.partner_interfaces import PartnerPair, find_interfaces_between
 from archgen.timing.chains.measured_comparison import Observation
 from archgen.timing.system import activity_builder
@@ -28,12 +29,13 @@ from archgen.views.shapes import Outline, Paragraph
 
 @dataclass(frozen=True, slots=True)
 class PartnerAgreement:
-    """An agreement: its outline, its picture, the number of interfaces, and the changes (None: not asked for)."""
+    """An agreement: its outline, its picture, the number of interfaces, the changes (None: not asked for), its content."""
 
     outline: Outline
     graph: Graph
     interface_count: int
     changes: AgreementChanges | None
+    content: AgreementContent
 
 
 def make_agreement(  # noqa: PLR0913 - what a document is made of
@@ -46,28 +48,35 @@ def make_agreement(  # noqa: PLR0913 - what a document is made of
     issue_date: str = "",
     signed_tags: Sequence[SignedTag] = (),
     signed_revision: tuple[str, Lookup] | None = None,
+    signed_rules: int = RULES,
     notices: Sequence[Paragraph] = (),
     find_budget: BudgetFinder | None = None,
     observations: Sequence[Observation] = (),
+    signers: Mapping[str, str] | None = None,
+    standing: tuple[str, ...] = (),
+    variants: Mapping[str, Lookup] | None = None,
 ) -> PartnerAgreement:
     """Make the agreement of two partners.
 
     `earlier_revision`, with which it is compared, and `signed_revision`, whose versions of interfaces it tells, are the
     names of revisions with their look-ups. `find_budget` is asked for each chain between the two. `observations` are
-    shown beside what is promised.
+    shown beside what is promised. `signers` are the names of those
+    who sign, by partner. `standing` are the variants that are laid over what `lookup` shows, `variants` the
+    look-ups of the project in each of its others.
     """
-    # The later revision is listed under its own ids: an empty `MatchedIds` renames nothing.
-    records = _record_interfaces(lookup, (first, second), MatchedIds())
-    changes = _compare_with(earlier_revision, lookup, (first, second), records) if earlier_revision else None
+    records = record_interfaces(lookup, (first, second))
+    rules = signed_rules if signed_revision == earlier_revision else RULES
+    changes = _compare_with(earlier_revision, lookup, (first, second), records, rules) if earlier_revision else None
     signatures = SignatureRecord(tuple(signed_tags))
     if signed_revision:
         # Asked for both, they are one comparison.
         signed_changes = (
             changes
             if changes and signed_revision == earlier_revision
-            else _compare_with(signed_revision, lookup, (first, second), records)
+            else _compare_with(signed_revision, lookup, (first, second), records, signed_rules)
         )
-        signatures = replace(signatures, revision=signed_revision[0], versions=signed_changes.earlier_versions)
+        versions = signed_changes.earlier_versions
+        signatures = replace(signatures, revision=signed_revision[0], versions=versions, rules=signed_rules)
     if observations:
         records = tuple(_add_measured(lookup, record, observations) for record in records)
     graph = draw_agreement(
@@ -86,8 +95,16 @@ def make_agreement(  # noqa: PLR0913 - what a document is made of
         issue_date,
         find_crossing_budgets(records, find_budget) if find_budget else {},
         signatures,
+        signers or {},
+        standing,
+        {name: compare_lookups(("", lookup), each, (first, second)) for name, each in (variants or {}).items()},
     )
-    return PartnerAgreement(outline_agreement(content), graph, len(records), changes)
+    return PartnerAgreement(outline_agreement(content), graph, len(records), changes, content)
+
+
+def compare_lookups(earlier_revision: tuple[str, Lookup], lookup: Lookup, pair: PartnerPair) -> AgreementChanges:
+    """Compare what is between two partners, by their later ids, with what was at an earlier revision."""
+    return _compare_with(earlier_revision, lookup, pair, record_interfaces(lookup, pair))
 
 
 def _add_measured(lookup: Lookup, record: InterfaceRecord, observations: Sequence[Observation]) -> InterfaceRecord:
@@ -98,20 +115,25 @@ def _add_measured(lookup: Lookup, record: InterfaceRecord, observations: Sequenc
 
 
 def _compare_with(
-    earlier_revision: tuple[str, Lookup], lookup: Lookup, pair: PartnerPair, records: Sequence[InterfaceRecord]
+    earlier_revision: tuple[str, Lookup],
+    lookup: Lookup,
+    pair: PartnerPair,
+    records: Sequence[InterfaceRecord],
+    rules: int = RULES,
 ) -> AgreementChanges:
     """Compare with an earlier revision, in which the partners may have had other ids."""
     name, earlier_lookup = earlier_revision
     matched_ids = match_elements(earlier_lookup.architecture, lookup.architecture)
     old_partners = matched_ids.old_ids.get("partner", {})
     old_pair = old_partners.get(pair[0], pair[0]), old_partners.get(pair[1], pair[1])
-    old_records = _record_interfaces(earlier_lookup, old_pair, matched_ids)
+    old_records = record_interfaces(earlier_lookup, old_pair, matched_ids)
     known = frozenset(activity_builder.name_activities(earlier_lookup.architecture).values())
     return compare_revisions(
         name,
         [_add_unproven(earlier_lookup, record, known, matched_ids) for record in old_records],
         [_add_unproven(lookup, record, known, MatchedIds()) for record in records],
         matched_ids,
+        rules,
     )
 
 
@@ -125,7 +147,11 @@ def _add_unproven(
     return replace(record, plain_terms={**unproven, **record.plain_terms})
 
 
-def _record_interfaces(lookup: Lookup, pair: PartnerPair, matched_ids: MatchedIds) -> tuple[InterfaceRecord, ...]:
+def record_interfaces(
+    lookup: Lookup, pair: PartnerPair, matched_ids: MatchedIds | None = None
+) -> tuple[InterfaceRecord, ...]:
+    """Return the interfaces between two partners, by the ids of a later revision where these are given."""
+    matched_ids = matched_ids or MatchedIds()
     activity_names = activity_builder.name_activities(lookup.architecture)
     all_terms = [
         gather_terms(lookup, activity_names, interface)

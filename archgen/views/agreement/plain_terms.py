@@ -12,6 +12,7 @@ from dataclasses import field
 
 from archgen.compare.matched_ids import MatchedIds
 from archgen.frozen import dataclass
+from archgen.model.agreed_terms import INTERFACE_TERMS
 from archgen.timing.analysis import ChainResult
 from archgen.views.agreement.interface_terms import InterfaceEnd, InterfaceTerms
 from archgen.views.agreement.promise_rows import MAX_GAP, RATE, PromiseRow, PromiseStrength
@@ -64,6 +65,9 @@ def list_plain_terms(
         # Without the titles of the components, which are muted.
         identity = _plain_text(tuple(run for run in requirement_runs[1:] if not run.muted))
         terms[key] = PlainTerm("requirements", f"Requirement {requirement}", text, identity)
+    for name, words in interface_terms.agreed.items():
+        text = " ".join(words.split())
+        terms[f"agreed {name}"] = _unchanged_term("agreed words", INTERFACE_TERMS[name], text)
     return terms
 
 
@@ -92,6 +96,8 @@ def _fact_terms(interface_terms: InterfaceTerms, matched_ids: MatchedIds) -> Ite
             identity = matched_ids.common_id("type", interface.type)
         elif key == "message" and interface.message:
             identity = text.replace(interface.message, matched_ids.common_id("message", interface.message), 1)
+        elif key == "launch":
+            identity = matched_ids.rename_in_text(text)
         elif key == "meaning":
             identity = " ".join(text.split())
         elif key == "other_readers":

@@ -109,12 +109,11 @@ def _mark_cell(marks: Mapping[str, Text], name: str) -> Inlines:
 
 
 def _list_operations(architecture: Architecture, pair: tuple[str, str]) -> tuple[SharedOperation, ...]:
-    """Return the operations of the components that have an interface with the other partner."""
+    """Return the operations of the components that give the other partner something: whoever only gives calls nothing."""
     ends = (
         component.id
         for interface in find_interfaces_between(architecture, *pair)
-        for components in components_at_ends(architecture, interface)
-        for component in components
+        for component in components_at_ends(architecture, interface)[0]
     )
     return find_shared_operations(architecture, dict.fromkeys(ends), pair)
 

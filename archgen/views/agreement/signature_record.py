@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import field
 
 from archgen.frozen import dataclass
+from archgen.model.agreed_terms import RULES
 from archgen.views import inline_text
 from archgen.views.agreement.interface_record import InterfaceKey, InterfaceRecord
 from archgen.views.shapes import Column, Inlines, Table, Text
@@ -32,6 +33,8 @@ class SignatureRecord:
     tags: tuple[SignedTag, ...] = ()
     revision: str = ""
     versions: Mapping[InterfaceKey, str] = field(default_factory=dict)
+    rules: int = RULES
+    """By which rules these were told."""
 
     def describe_version(self, record: InterfaceRecord) -> str:
         """Return the version of an interface with what was signed of it: `3fa9c1, as signed at v2 (1a2b3c4)`."""
@@ -41,8 +44,9 @@ class SignatureRecord:
         signed_version = self.versions.get(record.key)
         if signed_version is None:
             return f"{version}, new since what was signed at {self.revision}"
-        if signed_version == version:
-            return f"{version}, as signed at {self.revision}"
+        if signed_version == record.terms.find_version(self.rules):
+            former = f" ({signed_version} by the rules of then)" if signed_version != version else ""
+            return f"{version}, as signed at {self.revision}{former}"
         return f"{version}, changed since {self.revision}, where it was {signed_version}"
 
 

@@ -8,7 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from archgen.model.partner_interfaces import find_interfaces_between
+from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.interface_record import InterfaceKey
+from archgen.views.agreement.interface_versions import list_launch_words
 from archgen.views.agreement.plain_terms import CONTRADICTION_KIND
 from archgen.views.agreement.term_changes import AgreementChanges, TermChange
 
@@ -23,23 +26,45 @@ def write_verdict(changes: AgreementChanges) -> Iterator[str]:
         yield from (f"  {line}" for line in expected_changes)
 
 
+def list_launch_notes(content: AgreementContent) -> Iterator[str]:
+    """Yield what the launch made of what was signed by rules that did not see it."""
+    if content.signatures.rules > 1 or content.earlier_lookup is None:
+        return
+    words = (
+        f"{sentence}{f' ({place})' if place.file else ''}"
+        for interface in find_interfaces_between(content.earlier_lookup.architecture, *content.pair)
+        for sentence, place in list_launch_words(interface)
+    )
+    for each in dict.fromkeys(words):
+        yield f"as signed by the words; since then it is known that {each}, in the signed version too"
+
+
 def has_departures(changes: AgreementChanges) -> bool:
     """Whether an interface or a binding term is not as it was signed."""
     return any(list_departures(changes))
 
 
-def list_departures(changes: AgreementChanges) -> Iterator[str]:
-    """Yield lines on each interface that is not as it was signed: what is gone or promises less first."""
-    for record in changes.removed_records:
-        yield f"`{record.key[0]}` was signed, and is gone"
+def group_departures(changes: AgreementChanges) -> dict[InterfaceKey, tuple[str, ...]]:
+    """Return what is not as it was signed, by interface: what is gone or promises less first."""
+    departures: dict[InterfaceKey, tuple[str, ...]] = {
+        record.key: ("was signed, and is gone",) for record in changes.removed_records
+    }
     terms_by_key = {key: _list_binding_terms(changes, key) for key in changes.changes_by_key}
     changed_keys = sorted(key for key, terms in terms_by_key.items() if terms)
     for key in sorted(changed_keys, key=lambda key: not any(term.is_weaker for term in terms_by_key[key])):
-        yield f"`{key[0]}` ({_describe_versions(changes, key)})"
-        for term in sorted(terms_by_key[key], key=lambda term: not term.is_weaker):
-            yield f"  {'weaker: ' if term.is_weaker else ''}{_describe_term(term)}"
-    for key in sorted(changes.added_keys):
-        yield f"`{key[0]}` was not signed"
+        terms = sorted(terms_by_key[key], key=lambda term: not term.is_weaker)
+        departures[key] = tuple(f"{'weaker: ' if term.is_weaker else ''}{_describe_term(term)}" for term in terms)
+    return departures | dict.fromkeys(sorted(changes.added_keys), ("was not signed",))
+
+
+def list_departures(changes: AgreementChanges) -> Iterator[str]:
+    """Yield lines on each interface that is not as it was signed."""
+    for key, lines in group_departures(changes).items():
+        if key in changes.changes_by_key:
+            yield f"`{key[0]}` ({_describe_versions(changes, key)})"
+            yield from (f"  {line}" for line in lines)
+        else:
+            yield f"`{key[0]}` {lines[0]}"
 
 
 def list_expected_changes(changes: AgreementChanges) -> Iterator[str]:

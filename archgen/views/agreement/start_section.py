@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from archgen.bringup.plan_shapes import StartStep
 from archgen.bringup.start_plan import describes_start, make_start_plan
+from archgen.model.architecture import Architecture
 from archgen.views import inline_text, start_phrases
 from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.graphs.element_boxes import join_owner_titles
@@ -18,12 +19,14 @@ _LEAD = (
 )
 
 
+def list_start_steps(architecture: Architecture) -> dict[str, StartStep]:
+    """Return the steps by id; none where the project does not describe its start-up."""
+    return {step.id: step for step in make_start_plan(architecture).steps} if describes_start(architecture) else {}
+
+
 def write_start_section(content: AgreementContent) -> Iterator[Section]:
     """Yield the section, where the project describes its start-up and one of the two waits for the other."""
-    architecture = content.lookup.architecture
-    if not describes_start(architecture):
-        return
-    steps = {step.id: step for step in make_start_plan(architecture).steps}
+    steps = list_start_steps(content.lookup.architecture)
     rows = tuple(row for step in steps.values() for row in _list_rows(content, step, steps))
     if rows:
         columns = (

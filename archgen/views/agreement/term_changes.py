@@ -12,6 +12,7 @@ from dataclasses import field
 from archgen.compare.comparison import ChangeKind
 from archgen.compare.matched_ids import MatchedIds
 from archgen.frozen import dataclass
+from archgen.model.agreed_terms import RULES
 from archgen.views.agreement.interface_record import InterfaceKey, InterfaceRecord
 from archgen.views.agreement.plain_terms import PlainTerm
 from archgen.views.agreement.promise_rows import SOURCE_PHRASE, is_weaker
@@ -95,8 +96,9 @@ def compare_revisions(
     old_records: Sequence[InterfaceRecord],
     new_records: Sequence[InterfaceRecord],
     matched_ids: MatchedIds,
+    rules: int = RULES,
 ) -> AgreementChanges:
-    """Compare two revisions."""
+    """Compare two revisions; `rules` are those by which versions are told."""
     old_by_key = {record.key: record for record in old_records}
     new_by_key = {record.key: record for record in new_records}
     _follow_renamed_topics(old_by_key, new_by_key, matched_ids)
@@ -110,8 +112,8 @@ def compare_revisions(
         frozenset(key for key in new_by_key if key not in old_by_key),
         tuple(record for key, record in old_by_key.items() if key not in new_by_key),
         changes_by_key,
-        {key: record.terms.version for key, record in old_by_key.items()},
-        {key: record.terms.version for key, record in new_by_key.items()},
+        {key: record.terms.find_version(rules) for key, record in old_by_key.items()},
+        {key: record.terms.find_version(rules) for key, record in new_by_key.items()},
     )
 
 

@@ -89,7 +89,7 @@ def _find_refused_targets(comparison: Comparison) -> Mapping[str, Sequence[_Targ
     """
     targets: dict[str, dict[_Target, None]] = {}
     for change in comparison.changes if comparison.is_judged else ():
-        for each in change.breaks:
+        for each in change.breaks if _is_acceptable(change) else ():
             if each.agreement is None and _is_refused(each, comparison):
                 own_targets = list_agreement_targets(change, [each])
                 targets.setdefault(each.partner, {}).update(dict.fromkeys(own_targets))
@@ -100,12 +100,19 @@ def describe_remedy(change: Change, comparison: Comparison) -> str:
     """Describe what to do about a change that breaks partners who did not agree, in one line."""
     if not comparison.is_judged:
         return "mend what cannot be read first: only what is judged can be accepted"
+    if not _is_acceptable(change):
+        return "mend it, or let both sign again: a signature is excused by none that accepts"
     partners = change.unheard_partners
     partner_ids = [find_partner_id(partner, comparison.matched_ids) for partner in partners]
     files = join_words([f"`{agreement_file(partner_id)}`" for partner_id in partner_ids])
     targets = list_agreement_targets(change, [each for each in change.breaks if each.agreement is None])
     entries = [_write_entry(target, "THE REASON") for target in targets]
     return f"mend it, or {_say_why(partners, comparison)}, in {files}: {join_words(entries)}"
+
+
+def _is_acceptable(change: Change) -> bool:
+    """Whether partners may accept a change: what both signed, both sign again, unless they end it."""
+    return change.kind == "removed" or any(each.category != "agreement" for each in change.breaks)
 
 
 def _say_why(partners: Sequence[str], comparison: Comparison) -> str:

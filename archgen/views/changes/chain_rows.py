@@ -48,6 +48,8 @@ def _format_causes(chain_change: ChainChange) -> str:
     """Name the elements behind another bound, each with what changed of it; the sentences stand with the changes."""
     keys_by_element: dict[str, list[str]] = {}
     for change in chain_change.causes:
+        if (change.element_kind, change.element_id) == ("chain", chain_change.id):
+            return "where it leads now"  # nothing else is looked for then
         words = name_key(change.element_kind, change.key) if change.key else change.kind
         keys_by_element.setdefault(change.element_id, []).append(words)
     phrases = [f"`{name}` ({join_words(list(dict.fromkeys(words)))})" for name, words in keys_by_element.items()]

@@ -10,7 +10,9 @@ from archgen.compare.left_out_files import find_affected_names, find_left_out
 from archgen.diagnostics.diagnostic import Diagnostic
 
 _BACKTICKED = re.compile(r"`([^`]*)`")
-_RULES = frozenset({"incompatible-qos", "unfed-input", "late-chain", "overloaded-host", "saturated-link"})
+_PAIR_RULES = frozenset({"incompatible-qos", "two-domains", "two-clocks"})
+"""Those whose findings name two ends in front of a colon."""
+_RULES = _PAIR_RULES | {"remapped-away", "unfed-input", "late-chain", "overloaded-host", "saturated-link"}
 """The rules whose findings have a break that says the same. Others say more than that somebody loses something."""
 
 _UNREAD_RULES = frozenset({"missing-detail", "unchecked-message", "unmapped-component"})
@@ -56,8 +58,10 @@ def _tells_finding(change: Change, finding: Diagnostic) -> bool:
 def _name_subjects(finding: Diagnostic) -> Iterator[str]:
     """Yield what a finding is about: the names in front of its explanation, ports with their complete ids."""
     names = _BACKTICKED.findall(finding.message.partition(": ")[0])
-    if finding.rule == "incompatible-qos":
+    if finding.rule in _PAIR_RULES:
         yield from names
+    elif finding.rule == "remapped-away":
+        yield from names[:2]
     elif finding.rule == "unfed-input" and len(names) > 1:
         yield f"{names[1]}.{names[0]}"
     elif finding.rule == "late-chain" and finding.element:

@@ -107,7 +107,7 @@ def _to_code(text: str) -> Inlines:
 def _remap_facts(lookup: Lookup, node: Node) -> Inlines:
     """Return the names that become others when the node starts, those of its ports first."""
     ends = lookup.endpoints_of.get(node.id, ())
-    port_names = {each.own_name: each.label for each in ends if each.own_name}
+    port_names = {each.own_name: each.label for each in ends if each.own_name and each.program_name != each.name}
     port_names |= {each.evidence["name"].rule.partition(":=")[0]: each.label for each in ends if each.is_moved}
     others = {own_name: name for own_name, name in list_written_remaps(node).items() if own_name not in port_names}
     return inline_text.join_inlines(

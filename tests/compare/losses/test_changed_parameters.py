@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.compare.conftest import Compared
+from tests.compare.conftest import Compared, ComparedFolders
 
 ROBOT = """\
 project: {id: robot}
@@ -99,3 +99,37 @@ def test_whose_instance_sets_a_parameter_of_a_type_is_told(
     assert old in TYPED
     changes = compared(TYPED, TYPED.replace(old, new)).changes
     assert [f"{b.category} {b.partner}: {b.reason}" for change in changes for b in change.breaks] == breaks
+
+
+TYPES = """\
+component_types: {eye: {parameters: {p: {value: 2, type: int, unit: m}}, outputs: {x: T}}}
+"""
+OWN_EYES = "groups: {see: {owner: certh, components: {a: {is: eye, parameters: {p: 3}}, b: {is: eye}}}}\n"
+OTHER_EYE = "groups: {act: {owner: sssa, components: {c: {is: eye, parameters: {p: 4}}}}}\n"
+
+
+@pytest.mark.parametrize(
+    ("files", "partners"),
+    [
+        ({"certh/see.yaml": OWN_EYES + TYPES}, []),
+        ({"certh/see.yaml": OWN_EYES, "certh/types.yaml": TYPES}, []),
+        ({"certh/see.yaml": OWN_EYES, "common/types.yaml": TYPES}, []),  # all of its instances are theirs
+        ({"certh/see.yaml": OWN_EYES + TYPES, "act.yaml": OTHER_EYE}, ["sssa"]),
+        ({"see.yaml": OWN_EYES, "act.yaml": OTHER_EYE, "types.yaml": TYPES}, ["certh", "sssa"]),
+        (
+            {
+                "see.yaml": OWN_EYES,
+                "act.yaml": OTHER_EYE,
+                "types.yaml": TYPES.replace("{eye: {", "{eye: {owner: certh, "),
+            },
+            ["sssa"],
+        ),
+    ],
+)
+def test_nobody_is_broken_by_a_component_type_of_his_own(
+    compared_folders: ComparedFolders, files: dict[str, str], partners: list[str]
+) -> None:
+    first = "archgen: 1\nsources: ['**/*.yaml']\npartners: {certh: CERTH, sssa: SSSA}\n"
+    after = {name: text.replace("unit: m}", "unit: mm}") for name, text in files.items()}
+    comparison = compared_folders({"archgen.yaml": first, **files}, {"archgen.yaml": first, **after})
+    assert [each.partner for change in comparison.changes for each in change.breaks] == partners

@@ -93,6 +93,9 @@ groups:
       beacon: {outputs: {beat: {type: Charge}}}
       listener: {owner: sssa, inputs: {beat: {type: Charge}}}
 """
+RENAMED_BEACON = (
+    "renames what SSSA reads: `watch.beacon.beat` is `deck.beacon.beat` now; `watch.listener.beat` has to follow"
+)
 TAKEN = "takes `watch.beacon.beat` from SSSA (`watch.listener.beat`); `autoconnect` joined them, and does no more"
 
 
@@ -111,6 +114,17 @@ TAKEN = "takes `watch.beacon.beat` from SSSA (`watch.listener.beat`); `autoconne
         ([("      listener", "      beacon2: {owner: sssa, outputs: {beat: {type: Charge}}}\n      listener")], []),
         ([("    autoconnect: ports\n", "")], [f"watch.listener.beat sssa: {TAKEN}"]),
         ([("    owner: certh\n    autoconnect: ports\n", "    owner: sssa\n")], [f"watch.listener.beat sssa: {TAKEN}"]),
+        # Moved out of the group.
+        (
+            [
+                ("      beacon: {outputs: {beat: {type: Charge}}}\n", ""),
+                (
+                    "groups:\n",
+                    "groups:\n  deck: {owner: certh, components: {beacon: {outputs: {beat: {type: Charge}}}}}\n",
+                ),
+            ],
+            [f"watch.beacon sssa: {TAKEN}", f"watch.beacon sssa: {RENAMED_BEACON}"],
+        ),
         # The reader's own doing.
         ([("inputs: {beat: {type: Charge}}", "inputs: {beat: {type: Level}}")], []),
         ([("inputs: {beat: {type: Charge}}", "inputs: {}")], []),
@@ -134,3 +148,15 @@ def test_a_group_of_the_readers_own_joins_what_it_likes(compared: Compared) -> N
         "beacon: {", "beacon: {owner: certh, "
     )
     assert broken(compared, own, [("    autoconnect: ports\n", "")]) == []
+
+
+def test_who_reads_a_whole_group_loses_what_leaves_it(compared: Compared) -> None:
+    crew = PARTNERS + (
+        "groups:\n  yard: {owner: certh}\n"
+        "  deck: {owner: certh, components: {lamp: {outputs: {light: Light}}, horn: {outputs: {sound: Sound}}}}\n"
+        "  crew: {owner: sssa, components: {ear: {inputs: {signs: deck}}}}\n"
+    )
+    horn = "horn: {outputs: {sound: Sound}}"
+    edits = [(f", {horn}", ""), ("yard: {owner: certh}", f"yard: {{owner: certh, components: {{{horn}}}}}")]
+    told = "takes `deck.horn.sound` from SSSA (`crew.ear.signs`); it reads all of a group, in which that is no more"
+    assert f"deck.horn sssa: {told}" in broken(compared, crew, edits)

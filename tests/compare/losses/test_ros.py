@@ -62,6 +62,25 @@ NAMES = {
         ],
     ),
     "a namespace that the name does not rest on": (NODES, [("eye: {", "eye: {namespace: /front, ")], []),
+    "a remap of the topic": (
+        NODES,
+        [("eye: {", "eye: {remaps: {/eye/image: /eye/raw}, ")],
+        ["eye.publishes.image/topic sssa: " + RENAMED.format("/eye/raw")],
+    ),
+    "a rule in the arguments": (
+        NODES,
+        [("eye: {", 'eye: {arguments: [--ros-args, -r, "/eye/image:=/eye/raw"], ')],
+        ["eye.publishes.image/topic sssa: " + RENAMED.format("/eye/raw")],
+    ),
+    "a remap of a name that nobody wrote": (
+        DERIVED,
+        [("eye: {", "eye: {remaps: {/sensing/camera/image: /eye/raw}, ")],
+        [
+            "eye/remaps./sensing/camera/image sssa: takes the topic `/sensing/camera/image` from SSSA (`mind`); it is "
+            "`/eye/raw` now"
+        ],
+    ),
+    "a remap that fits nothing": (NODES, [("eye: {", "eye: {remaps: {/eye/imgae: /eye/raw}, ")], []),
     "a component after which the topic is called": (
         DERIVED,
         [("camera", "colour_camera")],

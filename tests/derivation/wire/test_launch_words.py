@@ -29,3 +29,9 @@ def test_ros_2_reads_rules_behind_its_word_and_single_ones_before_it(words: str,
 def test_ros_1_reads_every_word_with_a_joint_but_parameters() -> None:
     node = Node("n", "N", arguments=("x:=y", "_rate:=5", "__ns:=b", "--ros-args", "-r", "a:=b", "word"))
     assert [each.text for each in list_rule_words(node, ros_1=True)] == ["x:=y", "__ns:=b", "a:=b"]
+
+
+def test_what_a_container_of_ros_2_loads_has_no_command_line() -> None:
+    node = Node("n", "N", arguments=("x:=y",), container="box")
+    assert list(list_rule_words(node, ros_1=False)) == []
+    assert [each.text for each in list_rule_words(node, ros_1=True)] == ["x:=y"]

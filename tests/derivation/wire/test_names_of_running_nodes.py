@@ -12,6 +12,7 @@ import pytest
 
 from archgen.derivation.wire.remap_rules import NodeNames, apply_launch_names, read_arguments
 from archgen.model.node import Node
+from tests.derivation.wire.test_remap_rules import REFUSED_IN_ROS_2, ROS_2_ROWS
 from tests.outside_tools import run_judge
 from tests.ros_1_environment import SYSTEM_PYTHON, require_ros_1, ros_1_environment
 from tests.ros_2_kilted import kilted_environment, make_kilted_python
@@ -177,6 +178,28 @@ def test_real_nodes_of_ros_2_have_these_names(tmp_path: Path, distro: str) -> No
     answers = ask_ros(_ROS_2_NAMES, python, environment, cases)
     assert find_differences(cases, answers, distro) == []
     assert sum("refused" in each for each in answers) in range(DRAWS // 50, DRAWS // 2)
+
+
+@pytest.mark.ros
+def test_real_nodes_agree_with_each_row_of_the_rules(tmp_path: Path) -> None:
+    cases = [
+        {"name": "n", "namespace": "/a", "words": ["n", *_write_words(rules)], "written": list(names)}
+        for rules, names in ROS_2_ROWS
+    ]
+    refused = [rule for rule, _ in REFUSED_IN_ROS_2]
+    cases += [{"name": "n", "namespace": "/a", "words": ["n", *_write_words(rule)], "written": []} for rule in refused]
+    answers = ask_ros(_ROS_2_NAMES, make_ros_python(), ros_environment(25, tmp_path), cases)
+    expected = [{f"topic {written}": name for written, name in names.items()} for _, names in ROS_2_ROWS]
+    found = [
+        {name: made for name, made in each["names"].items() if name.startswith("topic")}
+        for each in answers[: len(ROS_2_ROWS)]
+    ]
+    assert found == expected
+    assert [rule for rule, each in zip(refused, answers[len(ROS_2_ROWS) :], strict=True) if "refused" not in each] == []
+
+
+def _write_words(rules: str) -> list[str]:
+    return ["--ros-args", *(word for rule in rules.split(" ") for word in ("-r", rule))]
 
 
 @pytest.mark.ros

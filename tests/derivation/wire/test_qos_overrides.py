@@ -116,6 +116,12 @@ def test_each_policy_says_where_it_comes_from(derived: Derived) -> None:
     assert endpoint.qos.written
 
 
+def test_arguments_override_until_a_launch_says_more(derived: Derived) -> None:
+    words = 'arguments: ["--ros-args", -p, "qos_overrides./x.publisher.depth:=3", -p, "n:qos_overrides./x.publisher.depth:=4"], '
+    assert publisher(derived(ROBOT % ("", words, "a: 1"))).qos.depth == 3
+    assert publisher(derived(ROBOT % ("", words, "qos_overrides: {/x: {publisher: {depth: 5}}}"))).qos.depth == 5
+
+
 def test_the_project_overrides_too_and_ros_1_has_no_overrides(derived: Derived) -> None:
     text = ROBOT % ("", "", "a: 1") + "ros: {%sparameters: {qos_overrides: {/x: {subscription: {depth: 4}}}}}"
     assert [each.qos.depth for each in derived(text % "").endpoints] == [10, 4]

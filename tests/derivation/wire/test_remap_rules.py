@@ -23,31 +23,32 @@ def resolve(rules: str, written: str, flow: FlowKind = "topic", distro: str = "j
     return NodeNames(make_node(rules, distro, remaps), distro).resolve(written, flow)
 
 
-@pytest.mark.parametrize(
-    ("rules", "names"),
-    [
-        ("x:=y", {"x": "/a/y", "/a/x": "/a/y"}),
-        ("/a/x:=/q", {"x": "/q"}),
-        ("/x:=/q", {"x": "/a/x", "/x": "/q"}),
-        ("~/x:=/q", {"~/x": "/q", "n/x": "/q", "/a/n/x": "/q"}),
-        ("x:=g n:x:=s", {"x": "/a/g"}),
-        ("n:x:=s x:=g", {"x": "/a/s"}),
-        ("m:x:=s", {"x": "/a/x"}),
-        ("a:=b b:=c", {"a": "/a/b", "b": "/a/c"}),
-        ("a:=b b:=a", {"a": "/a/b", "b": "/a/a"}),
-        ("x:=x x:=z", {"x": "/a/x"}),
-        ("a:=c b:=c", {"a": "/a/c", "b": "/a/c"}),
-        ("__node:=new ~/x:=/q", {"~/x": "/q", "n/x": "/a/n/x"}),
-        ("m:__ns:=/b __node:=new", {"x": "/a/x"}),
-        ("new:__ns:=/b __node:=new", {"x": "/b/x"}),
-        ("__ns:=/b __name:=new new:x:=y", {"x": "/b/y", "~/x": "/b/new/x"}),
-        ("__node:=one __name:=two", {"~": "/a/one"}),
-        ("cam:=eye", {"cam/image": "/a/cam/image"}),
-        ("/tf:=tf", {"/tf": "/a/tf"}),
-        ("/rosout:=/l", {"/rosout": "/l"}),
-        ("rosout:=/l", {"/rosout": "/rosout"}),
-    ],
-)
+ROS_2_ROWS: list[tuple[str, dict[str, str]]] = [
+    ("x:=y", {"x": "/a/y", "/a/x": "/a/y"}),
+    ("/a/x:=/q", {"x": "/q"}),
+    ("/x:=/q", {"x": "/a/x", "/x": "/q"}),
+    ("~/x:=/q", {"~/x": "/q", "n/x": "/q", "/a/n/x": "/q"}),
+    ("x:=g n:x:=s", {"x": "/a/g"}),
+    ("n:x:=s x:=g", {"x": "/a/s"}),
+    ("m:x:=s", {"x": "/a/x"}),
+    ("a:=b b:=c", {"a": "/a/b", "b": "/a/c"}),
+    ("a:=b b:=a", {"a": "/a/b", "b": "/a/a"}),
+    ("x:=x x:=z", {"x": "/a/x"}),
+    ("a:=c b:=c", {"a": "/a/c", "b": "/a/c"}),
+    ("__node:=new ~/x:=/q", {"~/x": "/q", "n/x": "/a/n/x"}),
+    ("m:__ns:=/b __node:=new", {"x": "/a/x"}),
+    ("new:__ns:=/b __node:=new", {"x": "/b/x"}),
+    ("__ns:=/b __name:=new new:x:=y", {"x": "/b/y", "~/x": "/b/new/x"}),
+    ("__node:=one __name:=two", {"~": "/a/one"}),
+    ("cam:=eye", {"cam/image": "/a/cam/image"}),
+    ("/tf:=tf", {"/tf": "/a/tf"}),
+    ("/rosout:=/l", {"/rosout": "/l"}),
+    ("rosout:=/l", {"/rosout": "/rosout"}),
+]
+"""Rules, and what names become by them; test_names_of_running_nodes.py asks real nodes."""
+
+
+@pytest.mark.parametrize(("rules", "names"), ROS_2_ROWS)
 def test_rules_of_ros_2(rules: str, names: dict[str, str]) -> None:
     assert {written: resolve(rules, written) for written in names} == names
 
@@ -121,27 +122,27 @@ def test_seen_names_are_those_after_all_rules() -> None:
     assert (wire.program_name, wire.name, wire.evidence["name"].kind) == (None, "/y", "observed")
 
 
-@pytest.mark.parametrize(
-    ("rule", "fault"),
-    [
-        ("{node}:=y", "a rule takes no `{...}`"),
-        ("x:={node}", "a rule takes no `{...}`"),
-        ("~x:=y", "`~` is followed by `/`"),
-        ("/a/n:x:=y", "it holds `:`, and only letters (a to z), digits and `_` are allowed"),
-        ("x=y", "a rule has the form `from:=to`"),
-        ("x:=1b", "`1b` begins with a digit"),
-        ("x:=a//b", "two `/` follow one another"),
-        ("x:=b/", "it ends with `/`"),
-        ("x:=a__b", "in a rule, no two `_` follow one another"),
-        ("x:=", "it is empty"),
-        ("*:=y", "ROS has no wildcards there yet"),
-        ("**/x:=y", "ROS has no wildcards there yet"),
-        ("__ns:=b", "a namespace begins with `/`"),
-        ("__ns:=", "it is empty"),
-        ("__ns:=/b/", "it ends with `/`"),
-        ("__node:=a/b", "it holds `/`: what stands before the name belongs into `namespace`"),
-    ],
-)
+REFUSED_IN_ROS_2 = [
+    ("{node}:=y", "a rule takes no `{...}`"),
+    ("x:={node}", "a rule takes no `{...}`"),
+    ("~x:=y", "`~` is followed by `/`"),
+    ("/a/n:x:=y", "it holds `:`, and only letters (a to z), digits and `_` are allowed"),
+    ("x=y", "a rule has the form `from:=to`"),
+    ("x:=1b", "`1b` begins with a digit"),
+    ("x:=a//b", "two `/` follow one another"),
+    ("x:=b/", "it ends with `/`"),
+    ("x:=a__b", "in a rule, no two `_` follow one another"),
+    ("x:=", "it is empty"),
+    ("*:=y", "ROS has no wildcards there yet"),
+    ("**/x:=y", "ROS has no wildcards there yet"),
+    ("__ns:=b", "a namespace begins with `/`"),
+    ("__ns:=", "it is empty"),
+    ("__ns:=/b/", "it ends with `/`"),
+    ("__node:=a/b", "it holds `/`: what stands before the name belongs into `namespace`"),
+]
+
+
+@pytest.mark.parametrize(("rule", "fault"), REFUSED_IN_ROS_2)
 def test_rules_that_ros_2_refuses(rule: str, fault: str) -> None:
     assert read_rule(rule, NO_SPAN, is_argument=True, ros_1=False) is None
     assert find_rule_fault(rule, ros_1=False) == fault

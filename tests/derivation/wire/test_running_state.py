@@ -93,6 +93,15 @@ def test_an_unknown_domain_is_no_usual_one(derived: Derived, start: str, told: s
     assert (tell(endpoint, "domain"), domain_of(endpoint)) == (told, compared)
 
 
+def test_a_container_that_was_imported(derived: Derived) -> None:
+    text = ROBOT % "kind: composable, container: box, start: {environment: {ROS_DOMAIN_ID: 1}}" + (
+        'containers: {box: {hints: {launch: {environment: {ROS_DOMAIN_ID: "2"}, by_default: "off"}}}}'
+    )
+    endpoint = ends_of(derived(text))["publishes"]
+    assert tell(endpoint, "domain") == "2 <- written ROS_DOMAIN_ID=2 5:51"
+    assert tell(endpoint, "runs") == "off <- written by_default: off 5:72"
+
+
 def test_ros_1_has_no_domain_and_one_clock_for_all(derived: Derived) -> None:
     architecture = derived(
         ROBOT % "start: {environment: {ROS_DOMAIN_ID: 3}}, parameters: {use_sim_time: true}" + "ros: {distro: noetic}"
@@ -118,12 +127,12 @@ def test_ros_1_has_no_domain_and_one_clock_for_all(derived: Derived) -> None:
         (
             'arguments: ["--ros-args", -p, "a:use_sim_time:=True", -p, "x:=1"]',
             "",
-            "simulated <- written -p use_sim_time:=True 3:3",
+            "simulated <- written -p use_sim_time:=true 3:52",
         ),
         (
             'arguments: ["--ros-args", "--param", "use_sim_time:=maybe"]',
             "",
-            "None <- unknown -p use_sim_time:=maybe 3:3",
+            "None <- unknown -p use_sim_time:=maybe 3:59",
         ),
         ('arguments: [-p, "use_sim_time:=true"]', "", "system"),
         ("kind: program, command: [x], parameters: {use_sim_time: true}", "", "system"),

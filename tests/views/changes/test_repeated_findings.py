@@ -94,3 +94,24 @@ def test_what_has_too_much_to_do_is_found_once(tmp_path: Path, old: str, new: st
     comparison = compare(tmp_path, BUSY.replace(old, new), BUSY)
     assert rule in [finding.rule for finding in comparison.new_findings]
     assert [finding.rule for finding in find_repeated_findings(comparison)] == [rule]
+
+
+@pytest.mark.parametrize(
+    ("words", "rule"),
+    [
+        ("start: {environment: {ROS_DOMAIN_ID: '42'}}", "two-domains"),
+        ("parameters: {use_sim_time: true}", "two-clocks"),
+        ("remaps: {/people: /faces}", "remapped-away"),
+    ],
+)
+def test_what_parts_two_ends_is_found_once(tmp_path: Path, words: str, rule: str) -> None:
+    before = ROBOT.replace("brake: {inputs: {people: finder.people}}", "brake: {}").replace(
+        "brake, subscribes: {people: {qos: {reliability: best_effort}}}", "brake"
+    )
+    before = before.replace(
+        "driver: {implements: driver}", "driver: {implements: driver, subscribes: {people: /people}}"
+    )
+    after = before.replace("finder: {implements: finder,", f"finder: {{implements: finder, {words},")
+    comparison = compare(tmp_path, after, before)
+    assert rule in [finding.rule for finding in comparison.new_findings]
+    assert [finding.rule for finding in find_repeated_findings(comparison)] == [rule]

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from archgen.plugin.importing import make_id, make_unique_id
-from archgen.plugin.ros import find_name_fault, find_node_name_fault
+from archgen.plugin.ros import expand_name, find_name_fault, find_node_name_fault
 from archgen.plugins.ros.launch.launch_run import LaunchRun
 from archgen.plugins.ros.launch.launch_values import OPEN
 from archgen.plugins.ros.launch.launched_nodes import LaunchedNode
@@ -147,12 +147,13 @@ class SliceMaker:
 
     def _write_names(self, node: LaunchedNode, element_id: str) -> dict[str, str]:
         names: dict[str, str] = {}
-        if node.name and node.name != element_id:
-            fault = find_node_name_fault(node.name)
+        name = node.name or node.program_name
+        if name and name != element_id:
+            fault = find_node_name_fault(name)
             if fault:
-                self._run.add_note(node.word, f"`{node.name}` is no name of a node: {fault}", node.span)
+                self._run.add_note(node.word, f"`{name}` is no name of a node: {fault}", node.span)
             else:
-                names["name"] = node.name
+                names["name"] = name
         if node.namespace.strip("/"):
             fault = find_name_fault(node.namespace)
             if fault:
@@ -163,6 +164,7 @@ class SliceMaker:
 
     def _write_remaps(self, node: LaunchedNode) -> dict[str, str]:
         remaps: dict[str, str] = {}
+        first_names: dict[str | None, str] = {}
         for own_name, name in [(_write_private(each), _write_private(other)) for each, other in node.remaps.items()]:
             fault = next(
                 (fault for each in (own_name, name) if (fault := find_name_fault(each) or _find_bare(each))),
@@ -175,6 +177,13 @@ class SliceMaker:
                 self._run.add_note(node.word, message, node.span, fate="noted" if is_open else "not taken")
                 if is_open:
                     node.written[f"remaps.{own_name}"] = name
+                continue
+            # ROS 2 takes the first rule for a name, however it is spelled; ROS 1 takes different ones, which `check` tells.
+            full_name = expand_name(own_name, f"/{node.namespace.strip('/')}", node.name or "node", ros_1=False)
+            first = own_name if self._run.context.is_ros_1 else first_names.setdefault(full_name, own_name)
+            if first != own_name:
+                message = f"the remap from `{own_name}` says nothing: the one from `{first}` counts"
+                self._run.add_note(node.word, message, node.span, fate="noted")
             else:
                 remaps[own_name] = name
         return remaps

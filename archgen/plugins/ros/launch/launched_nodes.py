@@ -26,6 +26,8 @@ class LaunchedNode:
     executable: str = ""
     plugin: str = ""
     name: str = ""
+    program_name: str = ""
+    """What its program calls itself where nothing else names it, as far as the library that ships knows."""
     namespace: str = ""
     is_lifecycle: bool = False
     is_nodelet: bool = False

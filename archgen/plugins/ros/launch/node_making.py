@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from archgen.plugin.importing import find_program_name
 from archgen.plugins.ros.launch.command_words import split_words
 from archgen.plugins.ros.launch.launch_actions import LaunchAction
 from archgen.plugins.ros.launch.launch_parameter_files import FILE_KIND, overlay_parameters
@@ -36,6 +37,8 @@ class NodeMaker:
         node = self._begin(action, form)
         for key in ("package", "executable", "plugin", "name"):
             setattr(node, key, self._resolve_key(node, action, key))
+        if not node.name and not self._run.context.is_ros_1:
+            node.program_name = find_program_name(node.package, node.plugin or node.executable) or ""
         if form == "node" and node.package == CONTAINER_PACKAGE and node.executable.startswith("component_container"):
             # Nav2 starts its container as a node.
             node.form = "container"
@@ -251,7 +254,8 @@ class NodeMaker:
             self._add_ros_1_file(node, text, path, root_name)
             return
         # A file below a namespace is for the nodes of that namespace.
-        full_name = node.full_name.removeprefix(join_names("", root_name)) if root_name else node.full_name
+        full_name = node.full_name or (node.program_name and join_names(node.namespace, node.program_name))
+        full_name = full_name.removeprefix(join_names("", root_name)) if root_name else full_name
         values = None if path is None else self._run.parameter_reader.read_for_node(path, full_name or node.executable)
         if path is not None:
             text = self._run.files.name_file(path)

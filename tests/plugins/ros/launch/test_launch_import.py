@@ -443,6 +443,32 @@ def test_includes_and_parameter_files_of_the_package_are_read(tmp_path: Path) ->
     assert messages_of(imported) == []
 
 
+def test_a_node_without_a_name_is_called_as_its_program_calls_itself(tmp_path: Path) -> None:
+    parameters = (
+        "depthimage_to_laserscan:\n  ros__parameters: {scan_height: 3}\n"
+        "depthimage_to_laserscan_node:\n  ros__parameters: {scan_height: 4}\n"
+    )
+    body = """
+    files = [os.path.join(os.path.dirname(__file__), "..", "config", "scan.yaml")]
+    return LaunchDescription([
+        Node(package="depthimage_to_laserscan", executable="depthimage_to_laserscan_node", parameters=files),
+        Node(package="teleop_twist_joy", executable="teleop_node", namespace="pad"),
+        Node(package="nobody_knows", executable="unknown_node"),
+        ComposableNodeContainer(package="rclcpp_components", executable="component_container", name="box",
+            composable_node_descriptions=[ComposableNode(package="image_proc", plugin="image_proc::RectifyNode")]),
+    ])
+    """
+    package = "<package format='3'><name>bot</name></package>"
+    nodes = nodes_of(read_python(tmp_path, body, package__xml=package, config___scan__yaml=parameters))
+    assert {node_id: node.get("name") for node_id, node in nodes.items()} == {
+        "depthimage_to_laserscan_node": "depthimage_to_laserscan",
+        "teleop_node": "teleop_twist_joy_node",
+        "unknown_node": None,
+        "rectify_node": "RectifyNode",
+    }
+    assert nodes["depthimage_to_laserscan_node"]["parameters"] == {"scan_height": 3}
+
+
 def test_of_two_ways_to_start_a_node_the_default_is_taken(tmp_path: Path) -> None:
     body = """
     composed = LaunchConfiguration("composed")

@@ -275,3 +275,15 @@ def test_arguments_come_before_the_rules_of_groups_and_those_before_the_nodes_ow
     (node,) = nodes_of(read_python(tmp_path, body)).values()
     assert node["remaps"] == {"a": "argued", "c": "argued", "b": "outer", "d": "own"}
     assert node.get("name", "m") == "m"
+
+
+def test_of_two_spellings_of_one_name_the_first_rule_is_taken(tmp_path: Path) -> None:
+    body = """
+    return LaunchDescription([
+        Node(package="p", executable="e", name="n", namespace="a", remappings=[("x", "y"), ("/a/x", "z"), ("/x", "w")]),
+    ])
+    """
+    imported = read_python(tmp_path, body)
+    (node,) = nodes_of(imported).values()
+    assert node["remaps"] == {"x": "y", "/x": "w"}
+    assert ["the remap from `/a/x` says nothing" in each for each in messages_of(imported)] == [True]

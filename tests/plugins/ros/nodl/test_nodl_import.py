@@ -116,6 +116,22 @@ def test_what_was_generated_comes_back(tmp_path: Path) -> None:
     assert read_documents(again) == written
 
 
+def test_names_that_nobody_knows_are_left_out(tmp_path: Path) -> None:
+    (tmp_path / "archgen.yaml").write_text(
+        """\
+archgen: 1
+project: {id: lab}
+ros: {distro: jazzy}
+groups: {g: {components: {a: {outputs: {o: std_msgs/msg/Bool, p: std_msgs/msg/Bool, s: std_srvs/srv/Trigger}}}}}
+nodes: {old: {implements: a, status: existing, package: p, executable: e, publishes: {p: /known}}}
+""",
+        encoding="utf-8",
+    )
+    (document,) = read_documents(tmp_path).values()
+    assert [each["name"] for each in document["publishers"]] == ["/known"]
+    assert "service_servers" not in document
+
+
 def read_documents(folder: Path) -> dict[str, Any]:
     project = check_project(folder)
     assert not project.has_errors, [each.message for each in project.findings]

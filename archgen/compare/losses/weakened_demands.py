@@ -1,0 +1,125 @@
+"""Requirements that ask for something else, and policies that keep less apart: partners build on both, and nobody owns them."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+from archgen.compare.comparison import Change
+from archgen.compare.key_phrases import format_value
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
+from archgen.compare.losses.loss_wording import tick_name
+from archgen.compare.matched_ids import MatchedIds
+from archgen.compare.text_meaning import differs_in_meaning, quote_difference
+from archgen.model.architecture import Architecture, Policy
+from archgen.model.selector_evaluation import SelectorEvaluator
+
+_DEMANDING_KEYS = ("title", "description", "priority")
+
+
+def find_rewritten_requirements(context: ChangeContext) -> Iterator[PartnerLoss]:
+    """Find requirements that are gone or have other words, and the partners who serve them, or have a part on a chain that
+    verifies them. What concerns one of them alone breaks nobody.
+    """
+    for index, change in enumerate(context.changes):
+        words = _describe_demand(change) if change.element_kind == "requirement" else ""
+        partners = _list_bound_partners(context, change) if words else ()
+        if len(partners) > 1:
+            yield from context.losses_of_users([index], partners, f"{words}; {{}} for it", "answers", "meaning")
+
+
+def _describe_demand(change: Change) -> str:
+    """Say what becomes of a requirement; empty where it asks for the same, or for more in a place that was empty."""
+    name = tick_name(change.element_id)
+    if change.kind == "removed":
+        return f"takes away the requirement {name}"
+    before, after = (value if isinstance(value, str) else "" for value in (change.before, change.after))
+    if change.key not in _DEMANDING_KEYS or not before or not differs_in_meaning(before, after):
+        return ""
+    old_words, new_words = quote_difference(before, after)
+    return f"asks by {name} for {tick_name(new_words) if after else 'nothing more'} instead of {tick_name(old_words)}"
+
+
+def _list_bound_partners(context: ChangeContext, change: Change) -> set[str]:
+    """Return who serves a requirement of the first version, or has a part on a chain that verifies it."""
+    old_id = context.old_id("requirement", context.common_id(change))
+    requirement = context.before.requirements.get(old_id)
+    if requirement is None:
+        return set()
+    elements = {
+        ("component", component.id)
+        for component in context.before.components.values()
+        if any(use.text == old_id for use in component.requirements)
+    }
+    for chain_id in (each.text for each in requirement.verified_by if each.kind == "chain"):
+        chain = context.before.chains.get(chain_id)
+        elements |= {(point.kind, point.id) for point in (chain.through if chain else ())}
+    owners = (context.owner_before(kind, context.matched_ids.common_id(kind, name)) for kind, name in elements)
+    return {owner for owner in owners if owner}
+
+
+class _PolicyReach(NamedTuple):
+    """What a policy is about, by common ids: a component that leaves a `kept` set, or enters `let_pass`, has less of it."""
+
+    kept: tuple[frozenset[str], ...]
+    let_pass: frozenset[str]
+
+
+def find_weakened_policies(context: ChangeContext) -> Iterator[PartnerLoss]:
+    """Find policies that are gone or keep less apart than before, and the partners whose components they were about."""
+    if not context.before.policies:
+        return
+    old_evaluator, new_evaluator = SelectorEvaluator(context.before), SelectorEvaluator(context.after)
+    # What is gone needs no policy, and what is new was under none.
+    present = {name for kind, name in context.versions.elements_after if kind == "component"}
+    new_names = {name for _, name in context.versions.elements_after.keys() - context.versions.elements_before.keys()}
+    for old_policy in context.before.policies.values():
+        policy_id = context.matched_ids.common_id("policy", old_policy.id)
+        policy = context.after.policies.get(policy_id)
+        before = _find_reach(old_evaluator, old_policy, context.matched_ids)
+        after = _find_reach(new_evaluator, policy, MatchedIds()) if policy else _PolicyReach((), frozenset())
+        is_whole = len(before.kept) == len(after.kept)
+        left = frozenset[str]().union(*(old - new for old, new in zip(before.kept, after.kept, strict=False))) & present
+        if is_whole and not left and after.let_pass <= before.let_pass | new_names:
+            continue
+        # A component may leave what a policy selects without a word about the policy; one that moves is another part.
+        causes = context.change_indices("policy", policy_id) or [
+            index for name in sorted(left) for index in context.indices_by_change_kind("component", name, "changed")
+        ]
+        parts: dict[str, list[str]] = defaultdict(list)
+        for component in sorted(frozenset[str]().union(*before.kept)):
+            if owner := context.owner_before("component", component):
+                parts[owner].append(component)
+        if len(parts) > 1:
+            verb = "takes something out of" if policy else "takes away"
+            title = format_value(old_policy.title)
+            reason_text = f"{verb} the policy {tick_name(policy_id)} ({title}); {{}} under it"
+            yield from context.shared_losses(dict.fromkeys(causes), parts, reason_text, "is")
+
+
+def _find_reach(evaluator: SelectorEvaluator, policy: Policy, matched_ids: MatchedIds) -> _PolicyReach:
+    def select(text: str) -> frozenset[str]:
+        components = evaluator.evaluate(text)[0].components if text else ()
+        return frozenset(matched_ids.common_id("component", each) for each in components)
+
+    accepted = frozenset(matched_ids.common_id("input", each) for each in policy.accepted)
+    if policy.require is None:
+        return _PolicyReach((select(policy.forbid_from), select(policy.forbid_to)), accepted)
+    guard = frozenset({f"guarded by {policy.require.guarded_by}"} if policy.require.guarded_by else ())
+    return _PolicyReach((select(policy.require.of),), select(policy.require.inputs_from) | accepted | guard)
+
+
+def list_policy_partners(
+    before: Architecture, after: Architecture, matched_ids: MatchedIds
+) -> Mapping[str, frozenset[str]]:
+    """Return for each policy, by common id, the partners whose components it is about in either version."""
+    partners: dict[str, frozenset[str]] = {}
+    for architecture, ids in ((before, matched_ids), (after, MatchedIds())):
+        evaluator = SelectorEvaluator(architecture)
+        for policy in architecture.policies.values():
+            components = frozenset[str]().union(*_find_reach(evaluator, policy, MatchedIds()).kept)
+            owners = {owner for each in components for owner in architecture.components[each].owners}
+            name = ids.common_id("policy", policy.id)
+            partners[name] = partners.get(name, frozenset()) | {ids.common_id("partner", owner) for owner in owners}
+    return partners
