@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 def stale_input(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
     """What an element reads at an input may be older than the input's `freshness` allows."""
     for read_age in find_read_ages(analysis):
-        if read_age.is_kept is False:
+        if read_age.state == "broken":
             yield _report_age(analysis, read_age)
 
 

@@ -3,51 +3,77 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.model.relied_outputs import list_described_outputs
+from archgen.model.ros_distro import is_ros_1
+from archgen.timing.chains.limit_states import LimitState, judge_lower_limit, judge_upper_limit
 from archgen.timing.chains.read_ages import find_sent_ages
+from archgen.timing.endpoint_paces import find_pace
 from archgen.timing.figures.figure_wording import format_duration, format_rate
-from archgen.timing.figures.value_arithmetic import add_values, is_boundless, is_known_bound, smallest_value
+from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
+from archgen.timing.figures.value_arithmetic import add_values, smallest_value
 from archgen.timing.system import activity_builder
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-    from fractions import Fraction
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from archgen.diagnostics.source_span import Span
     from archgen.model.architecture import Architecture
+    from archgen.model.node import Endpoint
     from archgen.model.promise import Promise
+    from archgen.model.quantity import Quantity
     from archgen.timing.analysis import Analysis, EventPace
-    from archgen.timing.figures.timing_values import TimingValue
     from archgen.timing.system.timing_system import Arc
 
 
 _NOUNS = {"rate": "", "max_gap": "gaps of at most ", "max_age": "no greater age than "}
+_HELP = {
+    "rate": "let it be sent more often, or promise a lower rate",
+    "max_gap": "let it be sent more often and at each run, or promise a longer gap",
+    "max_age": "let it be sent more often, let it fire its reader, or promise a greater age",
+}
 
 
-class _BrokenPromise(NamedTuple):
-    """A promise that figures do not keep: its key, what follows instead, and where that is read."""
+class JudgedPromise(NamedTuple):
+    """What an output promises, held against what follows for what is sent by a leaf (`leaf`, its output).
 
-    key: str
-    words: str
-    help: str
-    reader_at: Span = NO_SPAN
-
-
-class BrokenPromise(NamedTuple):
-    """A promise of an output that what is sent by a leaf (`leaf`, its output) does not keep, in words."""
+    An age is judged at each of those who read it: `read_over`.
+    """
 
     port: str
     leaf: str
     key: str
-    promised: str
-    words: str
-    help: str
+    limit: Quantity
+    bound: TimingValue
+    state: LimitState
     at: Span
-    reader_at: Span
+    read_over: Arc | None = None
+    is_sent_once: bool = False
+
+    @property
+    def promised(self) -> str:
+        """Return what is promised, in words."""
+        return f"{_NOUNS[self.key]}{self.limit}"
+
+    @property
+    def words(self) -> str:
+        """Return in words what follows instead."""
+        if self.key == "rate":
+            side = "at most " if self.bound.side == "at most" else ""
+            rate = f"{side}{format_rate(self.bound.value or Fraction(0))} follows from the timing"
+            return "it is sent once" if self.is_sent_once else rate
+        where = f"where `{self.read_over.target}` reads it" if self.read_over else "between two messages"
+        value = self.bound.value
+        return f"there is no bound {where}" if value is None else f"it may be {format_duration(value)} {where}"
+
+    @property
+    def help(self) -> str:
+        """Return what can be done about one that is broken."""
+        return "let it be sent again and again, or promise no rate" if self.is_sent_once else _HELP[self.key]
 
 
 def broken_promise(architecture: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
@@ -60,34 +86,69 @@ def broken_promise(architecture: Architecture, analysis: Analysis) -> Iterator[D
             yield _diagnose_broken(broken)
 
 
-def find_broken_promises(architecture: Architecture, analysis: Analysis) -> Iterator[BrokenPromise]:
-    """Yield what outputs promise and figures do not keep, leaves first."""
-    promises = [
-        (output, output.promise)
+def find_broken_promises(architecture: Architecture, analysis: Analysis) -> Iterator[JudgedPromise]:
+    """Yield what outputs promise and figures do not keep, leaves first; of an age that of the reader who reads the oldest."""
+    worst: dict[tuple[str, str, str], JudgedPromise] = {}
+    for judged in judge_promises(architecture, analysis):
+        key = judged.port, judged.leaf, judged.key
+        if judged.state == "broken" and (key not in worst or rank_bound(judged.bound) > rank_bound(worst[key].bound)):
+            worst[key] = judged
+    yield from worst.values()
+
+
+def judge_promises(
+    architecture: Architecture, analysis: Analysis, promises: Mapping[str, Promise] | None = None
+) -> Iterator[JudgedPromise]:
+    """Yield what outputs promise of rate, gap and age with what figures say of it, leaves first.
+
+    `promises` of outputs, by their ids, are others than those that are written.
+    """
+    promising = [
+        (output.id, promise)
         for _, output in list_described_outputs(architecture)
-        if output.promise and (output.promise.rate or output.promise.max_gap or output.promise.max_age)
+        if (promise := output.promise if promises is None else promises.get(output.id))
+        and (promise.rate or promise.max_gap or promise.max_age)
     ]
-    if not promises:
+    if not promising:
         return
     paces = _find_paces(architecture, analysis)
-    leaves = {leaf for output, _ in promises for leaf in architecture.leaf_ports_of("output", output.id)}
+    leaves = {leaf for output, _ in promising for leaf in architecture.leaf_ports_of("output", output)}
     ages: dict[str, list[tuple[Arc, TimingValue]]] = defaultdict(list)
     for arc, age in find_sent_ages(analysis, leaves):
         ages[arc.output].append((arc, age))
-    promises.sort(key=lambda promise: promise[0].id not in architecture.outputs)
-    for output, promise in promises:
-        for leaf in architecture.leaf_ports_of("output", output.id):
-            for broken in _find_broken(promise, paces.get(leaf, ()), ages.get(leaf, ())):
-                yield BrokenPromise(
-                    output.id,
-                    leaf,
-                    broken.key,
-                    f"{_NOUNS[broken.key]}{getattr(promise, broken.key)}",
-                    broken.words,
-                    broken.help,
-                    promise.places.get(broken.key, promise.at),
-                    broken.reader_at,
-                )
+    promising.sort(key=lambda each: each[0] not in architecture.outputs)
+    for output, promise in promising:
+        for leaf in architecture.leaf_ports_of("output", output):
+            yield from _judge_promise(output, leaf, promise, paces.get(leaf, ()), ages.get(leaf, ()))
+
+
+def list_sent_limits(architecture: Architecture, endpoint: Endpoint) -> Iterator[tuple[str, Quantity]]:
+    """Yield what a node promises of the gap between two messages that it sends at a port, by `timing.max_gap` and
+    `qos.deadline`.
+    """
+    if endpoint.use != "publishes" or endpoint.port is None:
+        return
+    timing = architecture.nodes[endpoint.node].timing.get(endpoint.component or "")
+    sent = timing.outputs.get(endpoint.port) if timing else None
+    if sent and sent.conditional and sent.max_gap:
+        yield "timing.max_gap", sent.max_gap
+    if endpoint.qos.deadline and not is_ros_1(architecture.distro):
+        yield "qos.deadline", endpoint.qos.deadline
+
+
+def judge_sent_limits(
+    architecture: Architecture, analysis: Analysis, find_limit: Callable[[str, str], Quantity | None]
+) -> Iterator[tuple[str, str, Quantity, TimingValue, LimitState]]:
+    """Yield limits of gaps that nodes promise, each with its port, its key, the gap that follows and whether it is kept.
+
+    `find_limit` returns the limit of a port and a key.
+    """
+    activity_names = activity_builder.name_activities(architecture)
+    for endpoint in architecture.endpoints:
+        for key in ("timing.max_gap", "qos.deadline") if endpoint.use == "publishes" and endpoint.port else ():
+            if limit := find_limit(endpoint.port or "", key):
+                gap = find_pace(analysis, activity_names, endpoint).gap
+                yield endpoint.port or "", key, limit, gap, judge_upper_limit(gap, limit.value)
 
 
 def _find_paces(architecture: Architecture, analysis: Analysis) -> Mapping[str, Sequence[EventPace]]:
@@ -103,57 +164,31 @@ def _find_paces(architecture: Architecture, analysis: Analysis) -> Mapping[str, 
     return paces
 
 
-def _find_broken(
-    promise: Promise, paces: Sequence[EventPace], ages: Sequence[tuple[Arc, TimingValue]]
-) -> Iterator[_BrokenPromise]:
-    if paces and promise.rate is not None:
-        rate = add_values(pace.rate for pace in paces)
-        is_limit = rate.side == "at most" or (rate.side == "exact" and rate.complete)
-        if all(pace.behaviour == "once" for pace in paces):
-            yield _BrokenPromise("rate", "it is sent once", "let it be sent again and again, or promise no rate")
-        elif rate.value is not None and is_limit and rate.value < promise.rate.value:
-            side = "at most " if rate.side == "at most" else ""
-            words = f"{side}{format_rate(rate.value)} follows from the timing"
-            yield _BrokenPromise("rate", words, "let it be sent more often, or promise a lower rate")
-    if paces and promise.max_gap is not None:
-        gap = smallest_value(pace.gap for pace in paces)
-        gap_words = _describe_excess(gap, promise.max_gap.value, "between two messages")
-        if gap_words:
-            yield _BrokenPromise(
-                "max_gap", gap_words, "let it be sent more often and at each run, or promise a longer gap"
-            )
-    if promise.max_age is not None:
-        worst: tuple[Arc, TimingValue] | None = None
-        for arc, age in ages:
-            if _describe_excess(age, promise.max_age.value, "") and (
-                worst is None or _rank_value(age) > _rank_value(worst[1])
-            ):
-                worst = (arc, age)
-        if worst:
-            arc, age = worst
-            words = _describe_excess(age, promise.max_age.value, f"where `{arc.target}` reads it") or ""
-            help_line = "let it be sent more often, let it fire its reader, or promise a greater age"
-            yield _BrokenPromise("max_age", words, help_line, arc.at)
+def _judge_promise(
+    port: str, leaf: str, promise: Promise, paces: Sequence[EventPace], ages: Sequence[tuple[Arc, TimingValue]]
+) -> Iterator[JudgedPromise]:
+    at = {key: promise.places.get(key, promise.at) for key in _NOUNS}
+    if promise.rate is not None:
+        rate = add_values(pace.rate for pace in paces) if paces else UNKNOWN_VALUE
+        is_sent_once = bool(paces) and all(pace.behaviour == "once" for pace in paces)
+        state = "broken" if is_sent_once else judge_lower_limit(rate, promise.rate.value)
+        yield JudgedPromise(port, leaf, "rate", promise.rate, rate, state, at["rate"], is_sent_once=is_sent_once)
+    if promise.max_gap is not None:
+        gap = smallest_value(pace.gap for pace in paces) if paces else UNKNOWN_VALUE
+        state = judge_upper_limit(gap, promise.max_gap.value)
+        yield JudgedPromise(port, leaf, "max_gap", promise.max_gap, gap, state, at["max_gap"])
+    for arc, age in ages if promise.max_age is not None else ():
+        state = judge_upper_limit(age, promise.max_age.value)
+        yield JudgedPromise(port, leaf, "max_age", promise.max_age, age, state, at["max_age"], arc)
 
 
-def _rank_value(value: TimingValue) -> tuple[bool, object]:
-    return (value.value is None, value.value or 0)
+def rank_bound(value: TimingValue) -> tuple[bool, Fraction]:
+    """Return the sort key of a bound: none at all is the longest."""
+    return value.value is None, value.value or Fraction(0)
 
 
-def _describe_excess(value: TimingValue, limit: Fraction, where: str) -> str | None:
-    """Return in words that a duration (ns) may exceed a limit; None where it does not, or figures are missing."""
-    place = f" {where}" if where else ""
-    if value.value is not None and value.value > limit:
-        return f"it may be {format_duration(value.value)}{place}"
-    if is_boundless(value) or (
-        value.value is None and not value.missing and not is_known_bound(value) and value.complete
-    ):
-        return f"there is no bound{place}"
-    return None
-
-
-def _diagnose_broken(broken: BrokenPromise) -> Diagnostic:
-    labels = (Label(broken.reader_at, "read here"),) if broken.reader_at != NO_SPAN else ()
+def _diagnose_broken(broken: JudgedPromise) -> Diagnostic:
+    labels = (Label(broken.read_over.at, "read here"),) if broken.read_over and broken.read_over.at != NO_SPAN else ()
     return Diagnostic(
         "broken-promise",
         f"`{broken.port}` promises {broken.promised}: {broken.words}",

@@ -9,6 +9,7 @@ from dataclasses import replace
 from archgen.compare.agreements import AgreementJudge, names_change
 from archgen.compare.comparison import ChainChange, Change, Comparison, PartnerBreak
 from archgen.compare.concerned_owners import find_concerned_owners
+from archgen.compare.figure_changes import LimitChange
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
 from archgen.compare.losses.changed_definitions import find_redefined_messages, find_retyped_outputs
 from archgen.compare.losses.changed_distro import find_changed_distro
@@ -17,6 +18,7 @@ from archgen.compare.losses.changed_meanings import find_changed_meanings
 from archgen.compare.losses.changed_parameters import find_changed_parameters
 from archgen.compare.losses.cut_steps import find_cut_steps
 from archgen.compare.losses.deprecated_types import find_deprecated_types
+from archgen.compare.losses.fallen_limits import find_fallen_limits
 from archgen.compare.losses.foreign_edits import find_foreign_edits
 from archgen.compare.losses.lost_connections import (
     find_lost_connections,
@@ -28,6 +30,7 @@ from archgen.compare.losses.missed_deadlines import find_chains_made_late
 from archgen.compare.losses.overloaded_resources import find_overloaded_cores, find_saturated_links
 from archgen.compare.losses.parted_ends import find_parted_ends
 from archgen.compare.losses.renamed_topics import find_renamed_topics
+from archgen.compare.losses.separated_causes import CauseSeparator
 from archgen.compare.losses.timing_causes import TimingCauses
 from archgen.compare.losses.unserved_requirements import find_unserved_requirements
 from archgen.compare.losses.weakened_demands import find_rewritten_requirements, find_weakened_policies
@@ -72,6 +75,7 @@ def stricter_policy(old_review: ReviewSettings, new_review: ReviewSettings) -> B
 def mark_breaking_changes(
     context: ChangeContext,
     chains: Sequence[ChainChange],
+    limits: Sequence[LimitChange],
     timing_pair: TimingPair | None,
     policy: BreakPolicy,
 ) -> tuple[Change, ...]:
@@ -83,13 +87,14 @@ def mark_breaking_changes(
     # An inner dict instead of a list: two finders may report the same loss of the same partner, and the order must
     # stay.
     breaks_by_index: dict[int, dict[PartnerBreak, None]] = defaultdict(dict)
-    for loss in _find_losses(context, chains, timing_pair):
+    for loss in _find_losses(context, chains, limits, timing_pair):
         if policy.severity_of(loss.category) is not Severity.OFF:
             partner_break = PartnerBreak(
                 loss.partner,
                 loss.reason,
                 category=loss.category,
-                fallen_state=loss.fallen_state,
+                fallen=loss.fallen,
+                hash=loss.hash,
                 at_most=loss.at_most,
             )
             breaks_by_index[loss.change_index][partner_break] = None
@@ -114,13 +119,18 @@ def _rank_change(change: Change, policy: BreakPolicy) -> tuple[bool, bool, int]:
 
 
 def _find_losses(
-    context: ChangeContext, chains: Sequence[ChainChange], timing_pair: TimingPair | None
+    context: ChangeContext,
+    chains: Sequence[ChainChange],
+    limits: Sequence[LimitChange],
+    timing_pair: TimingPair | None,
 ) -> Iterator[PartnerLoss]:
     for find_losses in _LOSS_FINDERS:
         yield from find_losses(context)
     if timing_pair:
         causes = TimingCauses(context, timing_pair)
-        yield from find_chains_made_late(context, chains, causes)
+        separator = CauseSeparator(causes)
+        yield from find_fallen_limits(context, limits, causes, separator)
+        yield from find_chains_made_late(context, chains, causes, separator)
         yield from find_weakened_deadlines(context, chains, causes)
         yield from find_overloaded_cores(context, causes)
         yield from find_saturated_links(context, causes)
@@ -148,6 +158,7 @@ def keep_breaking_only(comparison: Comparison) -> Comparison:
         chains=(),
         concerned_owners=concerned_owners,
         boundaries=(),
+        limits=(),
         loads=(),
         only_breaking=True,
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from archgen.compare.architecture_version import ArchitectureVersion
+from archgen.compare.asked_limits import compare_limits
 from archgen.compare.boundary_changes import find_boundary_changes
 from archgen.compare.breaking_changes import find_idle_acceptances, mark_breaking_changes, stricter_policy
 from archgen.compare.chain_causes import add_chain_causes
@@ -44,6 +45,7 @@ def compare_versions(
     chain_changes = compare_chains(before.architecture, after.architecture, matched_ids, timing_pair)
     change_context = ChangeContext(before.architecture, after.architecture, matched_ids, version_pair, changes, facts)
     chain_changes = add_chain_causes(change_context, chain_changes, timing_pair)
+    limits = compare_limits(before.architecture, after.architecture, matched_ids, timing_pair)
     policy = stricter_policy(before.architecture.review, after.architecture.review)
     idle_acceptances: tuple[AcceptedChange, ...] = ()
     if policy.gravest is not Severity.OFF:
@@ -53,6 +55,7 @@ def compare_versions(
         changes = mark_breaking_changes(
             change_context,
             chain_changes,
+            limits,
             timing_pair,
             policy,
         )
@@ -71,11 +74,12 @@ def compare_versions(
         judged_findings.new_findings,
         judged_findings.cured_findings,
         chain_changes,
-        find_concerned_owners(changes, version_pair, (*boundaries, *loads, *chain_changes)),
+        find_concerned_owners(changes, version_pair, (*boundaries, *limits, *loads, *chain_changes)),
         judged_findings.silenced_findings,
         policy=policy,
         idle_acceptances=idle_acceptances,
         boundaries=boundaries,
+        limits=limits,
         loads=loads,
         facts=facts,
     )

@@ -6,7 +6,7 @@ from dataclasses import field
 from typing import Literal
 
 from archgen.compare.architecture_version import ArchitectureVersion
-from archgen.compare.figure_changes import BoundaryChange, LoadChange
+from archgen.compare.figure_changes import BoundaryChange, LimitChange, LoadChange
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.review_facts import ReviewFacts
 from archgen.compare.version_pair import VersionPair
@@ -25,7 +25,8 @@ class PartnerBreak:
     ...".
 
     `agreement` is why the partner agrees, None if it does not. `category` says which policy judges it. `variants` are
-    those in which it is lost, where nothing is lost in the project itself.
+    those in which it is lost, where nothing is lost in the project itself. `fallen` is the port and the key (`max_gap`) of
+    a promise or freshness that is not kept any more.
     """
 
     partner: str
@@ -33,8 +34,7 @@ class PartnerBreak:
     agreement: str | None = None
     category: BreakCategory = "wire"
     variants: tuple[str, ...] = ()
-    fallen_state: str | None = None
-    """The requirement that is kept no more (see `describe_fallen_state`), of which an agreement holds the hash."""
+    fallen: tuple[str, str] | None = None
     hash: str = ""
     """The hash that an agreement of the partner carries."""
     agreed_hash: str | None = None
@@ -135,6 +135,8 @@ class Comparison:
     idle_acceptances: tuple[AcceptedChange, ...] = ()
     boundaries: tuple[BoundaryChange, ...] = ()
     """What changed at the interfaces between partners, by interface."""
+    limits: tuple[LimitChange, ...] = ()
+    """The promises and freshness that are kept otherwise than before."""
     loads: tuple[LoadChange, ...] = ()
     """The hosts and links whose load changed noticeably."""
     left_out_files: tuple[str, ...] = ()

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from archgen.compare.compared_elements import ComparedElement, ElementKey
 from archgen.compare.comparison import ChainChange, Change
 from archgen.compare.connection_maps import ConnectionMap
-from archgen.compare.figure_changes import BoundaryChange, LoadChange
+from archgen.compare.figure_changes import BoundaryChange, LimitChange, LoadChange
 from archgen.compare.kinds import Effect, find_effect
 from archgen.compare.meaning_sentences import find_outer_messages
 from archgen.compare.version_pair import VersionPair
@@ -23,7 +23,9 @@ _PLACE_KEYS = frozenset({"host", "container"})
 
 
 def find_concerned_owners(
-    changes: Sequence[Change], versions: VersionPair, figures: Iterable[BoundaryChange | LoadChange | ChainChange] = ()
+    changes: Sequence[Change],
+    versions: VersionPair,
+    figures: Iterable[BoundaryChange | LimitChange | LoadChange | ChainChange] = (),
 ) -> tuple[str, ...]:
     """Return the partners who should look at the changes, sorted: those who own what changed or have something at its
     other end, those who lose something, and those whose figures are others now.

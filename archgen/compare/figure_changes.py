@@ -1,4 +1,6 @@
-"""The data of what follows from changes in figures: at interfaces between partners, and of the load of hosts and links."""
+"""The data of what follows from changes in figures: at interfaces between partners, of what was promised of them, and of
+the load of hosts and links.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +8,8 @@ from typing import Literal, NamedTuple
 
 from archgen.frozen import dataclass
 from archgen.model.node import Qos
+from archgen.model.quantity import Quantity
+from archgen.timing.chains.limit_states import LimitState
 from archgen.timing.figures.timing_values import TimingValue
 
 BoundaryKind = Literal["added", "removed", "changed"]
@@ -87,3 +91,30 @@ class LoadChange:
         """Return whom it concerns: those who use what has less to spare now."""
         old_share = self.before.value if self.before else None
         return self.users if (self.after.value or 0) > (old_share or 0) else frozenset()
+
+
+@dataclass(frozen=True, slots=True)
+class LimitChange:
+    """A promise of an output (`rate`, `max_gap`, `max_age`), what a node promises of its gaps (`timing.max_gap`,
+    `qos.deadline`), or the `freshness` of an input, that is kept otherwise than before; by common ids, of an age with the
+    input where it is read.
+
+    `limit` is the stricter one of both versions; `is_asked_anew`: the second one asks for another. Rates are in Hz,
+    durations in ns.
+    """
+
+    port: str
+    key: str
+    reader: str
+    limit: Quantity
+    before: TimingValue
+    after: TimingValue
+    old_state: LimitState
+    new_state: LimitState
+    is_asked_anew: bool
+    concerned_partners: frozenset[str] = frozenset()
+
+    @property
+    def has_fallen(self) -> bool:
+        """Whether it was kept, and is not shown to be kept any more."""
+        return self.old_state == "kept" and self.new_state != "kept"

@@ -30,7 +30,8 @@ def analyse_timing_pair(
     if before.unread_keys or after.unread_keys:  # of what could not be read nobody knows how long it takes
         return None
     has_figures = before.chains or after.chains or before.partners or after.partners
-    if not (has_figures or after.hosts or after.links) or not any(map(can_affect_timing, changes)):
+    is_asked = any(can_affect_timing(change) or _asks_for_figures(change) for change in changes)
+    if not (has_figures or after.hosts or after.links) or not is_asked:
         return None
     new_analysis = _analysis_of(new_version)
     loads: list[HostLoad | LinkLoad] = [*new_analysis.hosts.values(), *new_analysis.links.values()]
@@ -49,6 +50,11 @@ def can_affect_timing(change: Change) -> bool:
     return (
         change.kind in {"added", "removed", "changed"} and find_effect(change.element_kind, change.key) is Effect.TIMING
     )
+
+
+def _asks_for_figures(change: Change) -> bool:
+    """Whether a change says what figures have to keep, and changes none of them."""
+    return change.key is not None and (change.key == "qos" or "promise." in change.key)
 
 
 def is_overloaded(load: HostLoad | LinkLoad) -> bool:

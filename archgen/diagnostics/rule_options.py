@@ -52,9 +52,14 @@ class RuleOption:
 
     def parse_value(self, text: str) -> Fraction | None:
         """Return the share that a text such as `20 %` means; None if it is none, or out of the range."""
-        match = _PERCENT_PATTERN.match(text)
-        percentage = Fraction(match[1]) if match else None
-        return percentage / 100 if percentage is not None and self.least <= percentage <= self.most else None
+        share = parse_percentage(text)
+        return share if share is not None and self.least <= share * 100 <= self.most else None
+
+
+def parse_percentage(text: str) -> Fraction | None:
+    """Return the share that a text such as `20 %` means; None if it is none."""
+    match = _PERCENT_PATTERN.match(text)
+    return Fraction(match[1]) / 100 if match else None
 
 
 def format_percentage(share: Fraction) -> str:

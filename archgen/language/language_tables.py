@@ -119,7 +119,7 @@ KEYS: Mapping[str, Mapping[str, str]] = {
     },
     "review": {
         "main": "text", "breaking": "review.breaking", "accepted": "review.accepted", "backends": "review.backends",
-        "passes": "review.passes",
+        "noise": "percentage", "passes": "review.passes",
     },
     "accepted": {
         "reason": "text", "key": "text", "was": "text",

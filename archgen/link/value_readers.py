@@ -8,9 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import fields
+from fractions import Fraction
 from functools import cache, partial
 from typing import Any
 
+from archgen.diagnostics.rule_options import parse_percentage
 from archgen.diagnostics.source_span import Span
 from archgen.language.language_tables import ATTRIBUTES, DATA_PARTS, KEYS, PART_TYPES, PLACED_KEYS, WORDS
 from archgen.link import mapping_values
@@ -107,6 +109,10 @@ def _read_word(mapping: MappingNode, key: str, words: frozenset[str]) -> str | N
 
 def _read_filled_text(mapping: MappingNode, key: str) -> str | None:
     return mapping_values.get_text(mapping, key) or None
+
+
+def _read_percentage(mapping: MappingNode, key: str) -> Fraction | None:
+    return parse_percentage(mapping_values.get_text(mapping, key) or "")
 
 
 def _read_type_name(mapping: MappingNode, key: str) -> str | None:
@@ -236,6 +242,7 @@ VALUE_READERS: Mapping[str, ValueReader | None] = {
     **dict.fromkeys(("urls", "remaps", "start_environment", "inner_nodes"), mapping_values.get_text_mapping),
     **dict.fromkeys(("project.middleware", "link.protocol"), mapping_values.get_medium),
     **dict.fromkeys(("node.namespace", "container.namespace"), mapping_values.get_absolute_name),
+    "percentage": _read_percentage,
     "layout": mapping_values.get_layout,
     "message": mapping_values.get_message,
     **dict.fromkeys(("properties", "hints"), _read_annotations),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import field, fields
+from fractions import Fraction
 from typing import Literal
 
 from archgen.diagnostics.diagnostic import Severity
@@ -107,3 +108,5 @@ class ReviewSettings:
     accepted: tuple[AcceptedChange, ...] = ()
     backends: tuple[str, ...] = ()
     passes: tuple[str, ...] = ()
+    noise: Fraction = Fraction(2, 100)
+    """The share by which a figure has to move to be told in a line of its own; judgements know no such share."""

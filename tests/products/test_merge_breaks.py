@@ -209,7 +209,23 @@ def test_what_cannot_be_read_is_not_judged(robot: Path) -> None:
         "broken: merges; what it breaks cannot be judged: `groups/norsk.yaml` cannot be read"
     )
     # As `archgen diff --breaking` has it: what cannot be judged is refused where breaks are.
-    assert [merge.is_refused for merge in merge(robot, "broken", "reader")] == [True, False, True]
+    assert [merge.is_refused for merge in merge(robot, "broken", "reader")] == [True, False]
+
+
+@pytest.mark.parametrize(
+    "edits",
+    [
+        {"groups/norsk.yaml": ("groups:\n", "groups: [\n")},
+        {"groups/aegir.yaml": ("Guards.", "Guards., inputs: {x: no.where}")},
+    ],
+)
+def test_a_branch_with_errors_does_not_hide_what_others_do(robot: Path, edits: Edits) -> None:
+    branch(robot, "broken", edits)
+    branch(robot, "reader", READS)
+    branch(robot, "units", UNITS)
+    assert "reader + units: first units, then reader, whose author has to look" in say(
+        robot, "broken", "reader", "units"
+    )
 
 
 VARIANT = "  deep: {title: Deep water, description: Below 50 m, changes: {nodes: {log: {timing: {rate: 10 Hz}}}}}\n"

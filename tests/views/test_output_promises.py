@@ -61,6 +61,7 @@ def test_what_is_promised_stands_beside_what_follows(tmp_path: Path) -> None:
     assert facts["Open points"].split("\n")[1:] == [
         "eye.rows promises 10 Hz: 5 Hz follows from the timing.",
         "eye.rows promises gaps of at most 150 ms: it may be 204 ms between two messages.",
+        "plan.rows needs what is no older than 100 ms: it may be 204 ms old when it is read.",
         "plan.rows needs what is no older than 100 ms, and 300 ms is promised.",
     ]
 

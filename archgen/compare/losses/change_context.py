@@ -33,7 +33,8 @@ class PartnerLoss:
     partner: str
     reason: str
     category: BreakCategory = "wire"
-    fallen_state: str | None = None
+    fallen: tuple[str, str] | None = None
+    hash: str = ""
     at_most: Severity = Severity.ERROR
 
 

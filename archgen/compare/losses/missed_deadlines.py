@@ -8,20 +8,24 @@ from itertools import pairwise
 from archgen.compare.comparison import ChainChange
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
 from archgen.compare.losses.overloaded_resources import find_link_causes
+from archgen.compare.losses.separated_causes import CauseSeparator, SeparatedCauses
 from archgen.compare.losses.timing_causes import TimingCauses
-from archgen.timing.analysis import ChainResult, ChainTerm
+from archgen.model.architecture import Architecture
+from archgen.timing.analysis import Analysis, ChainResult, ChainTerm
+from archgen.timing.chains.chain_bounds import bound_chain
 from archgen.timing.chains.chain_verdicts import judge_deadline
-from archgen.timing.figures.figure_wording import format_duration
+from archgen.timing.figures.figure_wording import format_compared, format_duration
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.system.timing_system import TimingSystem
 
 
 def find_chains_made_late(
-    context: ChangeContext, chains: Sequence[ChainChange], causes: TimingCauses
+    context: ChangeContext, chains: Sequence[ChainChange], causes: TimingCauses, separator: CauseSeparator
 ) -> Iterator[PartnerLoss]:
-    """Find chains that met their deadline and need not do so any more, or that were late and are later now.
+    """Find chains that met their deadline and need not do so any more.
 
-    The deadline of the first version counts, and that of the second one where it is stricter.
+    The deadline of the first version counts, and that of the second one where it is stricter. A chain that is open since
+    something new has no figures yet breaks nobody.
     """
     for chain_change in chains:
         old_result, new_result = chain_change.before, chain_change.after
@@ -37,19 +41,44 @@ def find_chains_made_late(
                 f"cuts the chain `{new_result.id}`: `{lost_step[0]}` no longer reaches `{lost_step[1]}` directly"
             )
         elif new_result.terms:
-            worse_activities = _grown_activities(causes, old_result.terms, new_result.terms)
-            indices = causes.find_causes(worse_activities) + _link_causes(context, worse_activities, causes)
+            found = _separate_causes(context, old_result, new_result, causes, separator)
+            if new_result.verdict == "open" and separator.lacks_new_figures_only(found, new_result.bound):
+                continue
+            indices, reason_text = list(found.indices), reason_text + found.note
             activities_of_owners = causes.activities_by_owner(term.activity for term in new_result.terms)
         else:
             indices, cut_off_activities = causes.find_cuts([term.activity for term in old_result.terms])
             activities_of_owners = causes.old_activities_by_owner(cut_off_activities)
-        if _binding_deadline(old_result, new_result) is not old_result.deadline:
-            indices += context.change_indices("chain", chain_change.id, "deadline")
+            if _binding_deadline(old_result, new_result) is not old_result.deadline:
+                indices += context.change_indices("chain", chain_change.id, "deadline")
         indices = (
             indices or context.change_indices("chain", chain_change.id, "through") or causes.all_worsening_changes()
         )
         reason_text += "; {} on it"
         yield from context.shared_losses(dict.fromkeys(indices), activities_of_owners, reason_text, "is")
+
+
+def _separate_causes(
+    context: ChangeContext,
+    old_result: ChainResult,
+    new_result: ChainResult,
+    causes: TimingCauses,
+    separator: CauseSeparator,
+) -> SeparatedCauses:
+    """Return the changes that made a chain late: of figures, of its path and of what it is held against."""
+    binding = _binding_deadline(old_result, new_result)
+    asking = () if binding is old_result.deadline else context.change_indices("chain", new_result.id, "deadline")
+    leading = context.change_indices("chain", new_result.id, "through")
+
+    def falls(architecture: Architecture, analysis: Analysis, without: frozenset[int]) -> bool:
+        asked_chain = architecture.chains[new_result.id]
+        result = bound_chain(analysis, architecture, asked_chain)
+        limit = old_result.deadline if asking and without.issuperset(asking) else binding
+        verdict = judge_deadline(result.bound, result.best, limit) if result.terms else "open"
+        return verdict != "met" and (verdict == "missed" or old_result.verdict == "met")
+
+    grown = _grown_activities(causes, old_result.terms, new_result.terms)
+    return separator.separate(grown, (*asking, *leading, *_link_causes(context, grown, causes)), falls)
 
 
 def _find_lost_step(causes: TimingCauses, old_result: ChainResult, new_result: ChainResult) -> tuple[str, str] | None:
@@ -105,21 +134,18 @@ def _lateness_reason(old_result: ChainResult, new_result: ChainResult) -> str:
     if old_result.verdict == "met" and new_verdict in {"open", "not proven"}:
         met_phrase = f"{chain_name}, which met {limit} with {_format_bound(old_result.bound)}"
         return f"leaves {met_phrase}, without a bound" if new_result.terms else f"cuts {met_phrase}"
-    old_bound, new_bound = old_result.bound.value, new_result.bound.value
-    is_longer = old_bound is not None and (new_bound is None or new_bound > old_bound)
-    if is_longer and old_result.verdict == new_verdict and new_verdict in {"missed", "not proven"}:
-        consequence = "miss" if new_verdict == "missed" else "exceed"
-        return (
-            f"makes {chain_name} {consequence} {limit} by still more "
-            f"({_format_bound(old_result.bound)} → {_format_bound(new_result.bound)})"
-        )
     return ""
 
 
 def _format_growth(old_result: ChainResult, new_result: ChainResult) -> str:
-    if old_result.bound == new_result.bound:
-        return f"it takes {_format_bound(new_result.bound)}"
-    return f"{_format_bound(old_result.bound)} → {_format_bound(new_result.bound)}"
+    bounds = old_result.bound, new_result.bound
+    limit = _binding_deadline(old_result, new_result)
+    values = [bound.value for bound in bounds if bound.value is not None]
+    texts = iter(format_compared(values, format_duration, limit=limit.value if limit else None))
+    old_text, new_text = (
+        "no bound" if bound.value is None else ("" if bound.complete else "at least ") + next(texts) for bound in bounds
+    )
+    return f"it takes {new_text}" if bounds[0] == bounds[1] else f"{old_text} → {new_text}"
 
 
 def _format_bound(value: TimingValue | None) -> str:

@@ -130,7 +130,18 @@ class TimingCauses:
             activity_ids, self._reading_changes
         )
 
-    def _follow_upstream(self, activity_ids: Iterable[str], find_indices: Callable[[str], Iterable[int]]) -> list[int]:
+    def find_reach(self, activity_ids: Iterable[str]) -> list[int]:
+        """Return the indices of all changes that can have reached activities, also beyond those that explain it."""
+
+        def find_indices(activity_id: str) -> Iterator[int]:
+            yield from self._figure_changes(activity_id)
+            yield from self._reading_changes(activity_id)
+
+        return self._follow_upstream(activity_ids, find_indices, is_last=False)
+
+    def _follow_upstream(
+        self, activity_ids: Iterable[str], find_indices: Callable[[str], Iterable[int]], *, is_last: bool = True
+    ) -> list[int]:
         indices: dict[int, None] = {}
         visited, waiting = set[str](), list(activity_ids)
         # Breadth first, and not beyond an activity whose own figures explain it: the nearest cause is the cause.
@@ -141,7 +152,7 @@ class TimingCauses:
             visited.add(activity_id)
             own_indices = list(find_indices(activity_id))
             indices.update(dict.fromkeys(own_indices))
-            if not own_indices:
+            if not (own_indices and is_last):
                 waiting += self._upstream_activities(activity_id)
         return sorted(indices)
 

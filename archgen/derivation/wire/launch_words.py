@@ -49,9 +49,12 @@ def list_rule_words(node: Node, *, ros_1: bool) -> Iterator[RuleWord]:
             for text, at in words
             if JOINT in text and not (text.startswith("_") and not text.startswith("__"))
         )
-        return
-    if node.container is not None:
-        return  # what a container loads has no command line of its own
+    # What a container of ROS 2 loads has no command line of its own.
+    elif node.container is None:
+        yield from _list_in_ros_2(words)
+
+
+def _list_in_ros_2(words: Iterator[_PlacedWord]) -> Iterator[RuleWord]:
     is_for_ros = False
     for text, at in words:
         if text == "--ros-args":

@@ -6,9 +6,10 @@ from typing import Any
 
 from archgen.compare import ChainChange, Change, Comparison
 from archgen.compare.edits import list_edits
+from archgen.compare.figure_noise import FigureNoise
 from archgen.compare.type_origins import TypeKey, trace_origins
 from archgen.diagnostics.safe_text import format_json
-from archgen.emit.data.figures_json import boundary_record, load_record
+from archgen.emit.data.figures_json import boundary_record, limit_record, load_record, noise_record
 from archgen.emit.data.findings_json import finding_to_json
 from archgen.emit.data.timing_json import duration_to_json
 from archgen.model.review_settings import BREAK_CATEGORIES
@@ -38,7 +39,9 @@ def comparison_record(comparison: Comparison, reading_errors: ReadingErrors) -> 
         },
         "chains": [_chain_record(item) for item in comparison.chains],
         "boundaries": [boundary_record(item) for item in comparison.boundaries],
+        "limits": [limit_record(item) for item in comparison.limits],
         "loads": [load_record(item) for item in comparison.loads],
+        "noise": noise_record(FigureNoise(comparison)),
         "owners": list(comparison.concerned_owners),
         "breaking": {
             "severity": str(comparison.policy.gravest),
@@ -95,6 +98,11 @@ def change_record(architecture_change: Change, origin: TypeKey | None = None) ->
                 "hash": partner_break.hash,
                 "agreed": partner_break.agreement,
                 **({"variants": list(partner_break.variants)} if partner_break.variants else {}),
+                **(
+                    dict(zip(("fallen", "fallen_key"), partner_break.fallen, strict=True))
+                    if partner_break.fallen
+                    else {}
+                ),
             }
             for partner_break in architecture_change.breaks
         ],

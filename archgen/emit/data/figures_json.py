@@ -12,10 +12,12 @@ from archgen.compare.figure_changes import (
     BoundaryChange,
     ComparedFigure,
     FigureChange,
+    LimitChange,
     LoadChange,
     TravelPath,
     WireNames,
 )
+from archgen.compare.figure_noise import FigureNoise
 from archgen.emit.data.timing_json import duration_to_json, quantity_to_json
 from archgen.model.node import Qos
 from archgen.views.inline_text import list_qos_settings
@@ -58,6 +60,34 @@ def _figure_value(name: str, figure: ComparedFigure | None) -> object:
     if isinstance(figure, WireNames):
         return list(figure.names)
     return duration_to_json(figure) if name in _DURATIONS else quantity_to_json(figure)
+
+
+def limit_record(change: LimitChange) -> dict[str, Any]:
+    """Return how a promise or a freshness is kept in both versions as plain data."""
+    write = quantity_to_json if change.key == "rate" else duration_to_json
+    return {
+        "element": change.port,
+        "key": change.key,
+        "reader": change.reader or None,
+        "limit": str(change.limit),
+        "was": change.old_state,
+        "is": change.new_state,
+        "before": write(change.before),
+        "after": write(change.after),
+    }
+
+
+def noise_record(noise: FigureNoise) -> dict[str, Any]:
+    """Return how many figures people are told in one line, since they moved too little, and the one that moved most."""
+    moves = list(noise.list_moves())
+    largest = max(moves, key=lambda move: move.share, default=None)
+    return {
+        "share": float(noise.threshold),
+        "count": len(moves),
+        "largest": {"element": largest.element, "figure": largest.figure, "share": float(largest.share)}
+        if largest
+        else None,
+    }
 
 
 def load_record(change: LoadChange) -> dict[str, Any]:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
 
 from archgen.frozen import dataclass
 from archgen.timing.analysis import Analysis
+from archgen.timing.chains.limit_states import LimitState, judge_upper_limit
 from archgen.timing.chains.step_delays import StepDelays
 from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue
-from archgen.timing.figures.value_arithmetic import is_boundless, is_known_bound, is_unfound, sum_bounds
+from archgen.timing.figures.value_arithmetic import sum_bounds
 from archgen.timing.system.timing_system import Arc, best_response
 
 
@@ -23,23 +24,27 @@ class ReadAge:
     limit: Fraction
 
     @property
-    def is_kept(self) -> bool | None:
-        """Whether nothing older than the limit is read; None where figures are missing."""
-        if self.age.value is not None and self.age.value > self.limit:
-            return False
-        if is_known_bound(self.age):
-            return True
-        return False if is_boundless(self.age) or (is_unfound(self.age) and not self.age.missing) else None
+    def state(self) -> LimitState:
+        """Whether nothing older than the limit is read."""
+        return judge_upper_limit(self.age, self.limit)
 
 
-def find_read_ages(analysis: Analysis) -> Iterator[ReadAge]:
-    """Yield the ages of what is read at all inputs that have a freshness, in the order of the elements."""
+def find_read_ages(analysis: Analysis, limits: Mapping[str, Fraction] | None = None) -> Iterator[ReadAge]:
+    """Yield the ages of what is read at all inputs that have a freshness, in the order of the elements.
+
+    `limits` (ns), by input, are others than those that are written.
+    """
     steps = StepDelays.of_analysis(analysis)
+    tick = analysis.system.tick
     for activity in analysis.system.activities.values():
-        for arc in analysis.system.arcs_into.get(activity.id, ()) if activity.freshness else ():
-            limit = activity.freshness.get(arc.input)
-            if limit is not None and arc.role == "data":
-                yield ReadAge(arc, _find_age(analysis, steps, arc), Fraction(limit * analysis.system.tick))
+        own_limits = (
+            {port: Fraction(limit * tick) for port, limit in activity.freshness.items()}
+            if limits is None
+            else {port: limits[port] for port in activity.inputs if port in limits}
+        )
+        for arc in analysis.system.arcs_into.get(activity.id, ()) if own_limits else ():
+            if arc.input in own_limits and arc.role == "data":
+                yield ReadAge(arc, _find_age(analysis, steps, arc), own_limits[arc.input])
 
 
 def find_sent_ages(analysis: Analysis, outputs: Collection[str]) -> Iterator[tuple[Arc, TimingValue]]:

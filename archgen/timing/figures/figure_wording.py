@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from functools import lru_cache
+from math import ceil, floor
 
 from archgen.timing.figures.timing_values import TimingValue
 
@@ -11,6 +13,8 @@ _DURATION_UNITS = ((10**9, "s"), (10**6, "ms"), (10**3, "us"), (1, "ns"))
 _MAX_SHOWN_MS = 10**4
 """Durations below this many ms are written in ms, above in s."""
 _DECIMALS, _MAX_DECIMALS = 3, 12
+_CARRIED_DIGITS = 3
+"""The digits of a compared figure: what it follows from is rarely known better."""
 _MAX_WRITTEN_DECIMALS = 18
 """The most decimals that are read again."""
 
@@ -69,6 +73,40 @@ def format_number(value: Fraction) -> str:
     return (
         rounding_mark + ("-" if scaled < 0 else "") + f"{integer_part}" + (f".{decimal_text}" if decimal_text else "")
     )
+
+
+def format_compared(
+    values: Sequence[Fraction], write: Callable[[Fraction], str], *, upwards: bool = True, limit: Fraction | None = None
+) -> list[str]:
+    """Write figures that are compared, rounded by `round_compared`; `~` marks rounding."""
+    rounded = round_compared(values, upwards=upwards, limit=limit)
+    marks = ("" if new == old else "~" for old, new in zip(values, rounded, strict=True))
+    return [f"{mark}{write(value).removeprefix('~')}" for mark, value in zip(marks, rounded, strict=True)]
+
+
+def round_compared(
+    values: Sequence[Fraction], *, upwards: bool = True, limit: Fraction | None = None
+) -> list[Fraction]:
+    """Round figures that are compared to the digits that inputs carry: three, or as many as tell them apart, and from a
+    limit. Bounds are rounded to the safe side: durations up, rates down.
+    """
+    others = [] if limit is None else [limit]
+    for digits in range(_CARRIED_DIGITS, _MAX_WRITTEN_DECIMALS):
+        rounded = [_round_digits(value, digits, upwards=upwards) for value in values]
+        pairs = list(zip([*values, *others], [*rounded, *others], strict=True))
+        if all((a < b, a > b) == (c < d, c > d) for a, c in pairs for b, d in pairs):
+            return rounded
+    return list(values)
+
+
+def _round_digits(value: Fraction, digits: int, *, upwards: bool) -> Fraction:
+    """Round to so many digits that count, up or down."""
+    step, size = Fraction(1), abs(value)
+    while size >= step * 10**digits:
+        step *= 10
+    while size and size < step * 10 ** (digits - 1):
+        step /= 10
+    return step * (ceil if upwards else floor)(value / step)
 
 
 def join_first_names(names: tuple[str, ...], limit: int = 6) -> str:

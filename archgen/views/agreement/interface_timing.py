@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
+from typing import NamedTuple
 
+from archgen.analyses.kept_promises import list_sent_limits
 from archgen.frozen import dataclass, replace
 from archgen.model.declared_timing import OutputTiming, Timing
 from archgen.model.node import Endpoint
 from archgen.model.partner_interfaces import PartnerInterface, list_givers
-from archgen.model.ros_distro import is_ros_1
 from archgen.timing.analysis import ChainResult, EventPace
+from archgen.timing.chains.limit_states import LimitState, judge_upper_limit
 from archgen.timing.endpoint_paces import find_pace
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.system import activity_builder
@@ -64,27 +66,35 @@ def find_giver_timing(lookup: Lookup, endpoint: Endpoint) -> Timing:
     return lookup.architecture.nodes[endpoint.node].timing.get(endpoint.component or "", _NO_TIMING)
 
 
-def find_broken_limits(
+class JudgedWords(NamedTuple):
+    """A promise with what follows from figures: a sentence in two parts, whether it is kept, and the figure."""
+
+    promise: str
+    words: str
+    state: LimitState
+    bound: TimingValue
+
+    @property
+    def sentence(self) -> str:
+        """Return the sentence."""
+        return f"{self.promise}: {self.words}."
+
+
+def judge_sent_gaps(
     lookup: Lookup, activity_names: activity_builder.ActivityNames, endpoint: Endpoint
-) -> Iterator[str]:
-    """Yield a sentence for each promised limit between two messages that the expected gap exceeds."""
-    output_timing = find_giver_timing(lookup, endpoint).outputs.get(endpoint.port or "", OutputTiming())
+) -> Iterator[JudgedWords]:
+    """Yield what a node promises of the gap between two messages, with the one that is expected."""
     if lookup.timing is None or endpoint.flow != "topic":
         return
     gap = find_pace(lookup.timing.analysis, activity_names, endpoint).gap
     figure = _spell_duration(gap)
-    if figure == value_format.UNKNOWN_FIGURE:
-        return
-    limits = {
-        "largest gap": output_timing.max_gap if output_timing.conditional else None,
-        "QoS deadline": None if is_ros_1(lookup.architecture.distro) else endpoint.qos.deadline,
-    }
-    for name, limit in limits.items():
-        # A gap without a value is one without a bound.
-        if limit and (gap.value is None or gap.value > limit.value):
-            most = figure if figure.startswith("at least") else f"up to {figure}"
-            expected = "there is no bound" if gap.value is None else f"{most} is expected"
-            yield f"The {name} of {limit} that `{endpoint.node}` promises may not be kept: {expected}."
+    most = figure if figure.startswith("at least") else f"up to {figure}"
+    # A gap without a value is one without a bound.
+    expected = "there is no bound" if gap.value is None else f"{most} is expected"
+    for key, limit in list_sent_limits(lookup.architecture, endpoint):
+        name = {"timing.max_gap": "largest gap", "qos.deadline": "QoS deadline"}[key]
+        promise = f"The {name} of {limit} that `{endpoint.node}` promises may not be kept"
+        yield JudgedWords(promise, expected, judge_upper_limit(gap, limit.value), gap)
 
 
 @dataclass(frozen=True, slots=True)

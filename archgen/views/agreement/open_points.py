@@ -14,7 +14,7 @@ from archgen.model.partner_interfaces import PartnerInterface, list_givers
 from archgen.model.ros_distro import is_ros_1
 from archgen.timing.analysis import ChainResult
 from archgen.timing.system.activity_builder import ActivityNames
-from archgen.views.agreement.interface_timing import find_broken_limits
+from archgen.views.agreement.interface_timing import judge_sent_gaps
 from archgen.views.agreement.promise_rows import QOS_OFFERED, RATE, TermName
 from archgen.views.lookup import Lookup
 from archgen.views.timing import value_format
@@ -47,7 +47,8 @@ def find_contradictions(lookup: Lookup, activity_names: ActivityNames, interface
     if interface.flow == "topic" and not is_ros_1(architecture.distro):
         yield from _find_qos_clashes(lookup, interface)
     for endpoint in list_givers(lookup.architecture, interface):
-        yield from find_broken_limits(lookup, activity_names, endpoint)
+        judged = judge_sent_gaps(lookup, activity_names, endpoint)
+        yield from (each.sentence for each in judged if each.state == "broken")
 
 
 def find_late_chains(lookup: Lookup, chains: Iterable[ChainResult]) -> Iterator[str]:

@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import TypeVar
 
-from archgen.analyses.kept_promises import find_broken_promises
+from archgen.analyses.kept_promises import judge_promises, rank_bound
 from archgen.frozen import dataclass, replace
 from archgen.model.component import Output
-from archgen.model.partner_interfaces import PartnerInterface
+from archgen.model.partner_interfaces import PartnerInterface, list_givers
 from archgen.model.promise import Promise, describe_deprecation, format_range
 from archgen.model.quantity import Quantity
 from archgen.model.relied_outputs import find_relied_output
-from archgen.timing.chains.read_ages import find_sent_ages
+from archgen.timing.chains.read_ages import find_read_ages, find_sent_ages
+from archgen.timing.figures.figure_wording import format_duration
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import is_boundless
 from archgen.timing.system import activity_builder
 from archgen.views import inline_text
+from archgen.views.agreement.interface_timing import JudgedWords, judge_sent_gaps
 from archgen.views.agreement.promise_rows import (
     MAX_AGE,
     MAX_GAP,
@@ -209,17 +211,56 @@ def _write_age(lookup: Lookup, activity_names: activity_builder.ActivityNames, i
 
 def find_broken_words(lookup: Lookup, interface: PartnerInterface, ports: Sequence[CountedPort]) -> Iterator[str]:
     """Yield a sentence for each promise that figures do not keep, and for each reader that needs more than is promised."""
-    port_ids = {each.port.id for each in ports}
-    if lookup.timing is not None and interface.output is not None and any(each.port.promise for each in ports):
-        for broken in find_broken_promises(lookup.architecture, lookup.timing.analysis):
-            if broken.leaf == interface.output.id and broken.port in port_ids:
-                yield f"`{_shorten_id(broken.port)}` promises {broken.promised}: {broken.words}."
+    broken: dict[str, JudgedWords] = {}
+    for judged in _judge_words(lookup, interface, ports):
+        known = broken.get(judged.promise)
+        # Of the readers of an age the one who reads the oldest.
+        if judged.state == "broken" and (known is None or rank_bound(judged.bound) > rank_bound(known.bound)):
+            broken[judged.promise] = judged
+    yield from (judged.sentence for judged in broken.values())
     freshness = {port.id: port.freshness for port in interface.inputs if port.freshness}
     for each in ports:
         for reader in each.readers:
             needed, promised = freshness.get(reader), each.promise.max_age
             if needed and promised and promised.value > needed.value:
                 yield f"`{_shorten_id(reader)}` needs what is no older than {needed}, and {promised} is promised."
+
+
+def find_unproven_words(
+    lookup: Lookup, interface: PartnerInterface, ports: Sequence[CountedPort], known: Collection[str]
+) -> Iterator[str]:
+    """Yield a sentence for each promise of which nobody knows whether it is kept, since figures are missing of elements
+    (activities) that are `known`: those that are new may have none yet.
+    """
+    names = activity_builder.name_activities(lookup.architecture)
+    givers = list_givers(lookup.architecture, interface)
+    for judged in (
+        *(each for endpoint in givers for each in judge_sent_gaps(lookup, names, endpoint)),
+        *_judge_words(lookup, interface, ports),
+    ):
+        missing = judged.bound.missing
+        if judged.state == "unknown" and not (missing and set(known).isdisjoint(missing)):
+            yield f"{judged.promise}: nobody knows it without figures of {', '.join(missing)}."
+
+
+def _judge_words(lookup: Lookup, interface: PartnerInterface, ports: Sequence[CountedPort]) -> Iterator[JudgedWords]:
+    """Yield what outputs promise these readers and what they ask for, with what follows from figures."""
+    if lookup.timing is None or interface.output is None:
+        return
+    analysis, port_ids = lookup.timing.analysis, {each.port.id for each in ports if each.port.promise}
+    inputs = {port.id for port in interface.inputs}
+    for each in judge_promises(lookup.architecture, analysis) if port_ids else ():
+        is_read_here = each.read_over is None or each.read_over.input in inputs
+        if each.leaf == interface.output.id and each.port in port_ids and is_read_here:
+            promise = f"`{_shorten_id(each.port)}` promises {each.promised}"
+            yield JudgedWords(promise, each.words, each.state, each.bound)
+    freshness = {port.id: port.freshness for port in interface.inputs if port.freshness}
+    for read in find_read_ages(analysis) if freshness else ():
+        if read.arc.input in freshness and read.arc.output == interface.output.id:
+            need = f"`{_shorten_id(read.arc.input)}` needs what is no older than {freshness[read.arc.input]}"
+            value = read.age.value
+            words = "there is no bound" if value is None else f"it may be {format_duration(value)} old when it is read"
+            yield JudgedWords(need, words, read.state, read.age)
 
 
 def identify_words(ports: Sequence[CountedPort]) -> list[list[str]]:

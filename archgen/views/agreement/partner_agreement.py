@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 from archgen.compare.match_elements import match_elements
 from archgen.compare.matched_ids import MatchedIds
 from archgen.frozen import dataclass, replace
-from archgen.model.agreed_terms import RULES
+from archgen.model.agreed_terms import GENERAL_TERMS, RULES, find_agreement
 from archgen.model.partner_interfaces import PartnerPair, find_interfaces_between
 from archgen.timing.chains.measured_comparison import Observation
 from archgen.timing.system import activity_builder
@@ -18,7 +18,8 @@ from archgen.views.agreement.budget_section import BudgetFinder, find_crossing_b
 from archgen.views.agreement.interface_record import InterfaceKey, InterfaceRecord
 from archgen.views.agreement.interface_terms import InterfaceTerms, gather_terms
 from archgen.views.agreement.measured_rows import add_measured
-from archgen.views.agreement.plain_terms import list_plain_terms
+from archgen.views.agreement.output_promises import find_unproven_words, list_counted_ports
+from archgen.views.agreement.plain_terms import list_contradictions, list_plain_terms
 from archgen.views.agreement.signature_record import SignatureRecord, SignedTag
 from archgen.views.agreement.term_changes import AgreementChanges, compare_revisions
 from archgen.views.graph_shapes import Graph
@@ -126,7 +127,28 @@ def _compare_with(
     old_partners = matched_ids.old_ids.get("partner", {})
     old_pair = old_partners.get(pair[0], pair[0]), old_partners.get(pair[1], pair[1])
     old_records = record_interfaces(earlier_lookup, old_pair, matched_ids)
-    return compare_revisions(name, old_records, records, matched_ids, rules)
+    known = frozenset(activity_builder.name_activities(earlier_lookup.architecture).values())
+    changes = compare_revisions(
+        name,
+        [_add_unproven(earlier_lookup, record, known, matched_ids) for record in old_records],
+        [_add_unproven(lookup, record, known, MatchedIds()) for record in records],
+        matched_ids,
+        rules,
+    )
+    old_terms = find_agreement(earlier_lookup.architecture.agreements, *old_pair).terms
+    terms = find_agreement(lookup.architecture.agreements, *pair).terms
+    words = tuple(title for key, title in GENERAL_TERMS.items() if old_terms.get(key) != terms.get(key))
+    return replace(changes, changed_words=words)
+
+
+def _add_unproven(
+    lookup: Lookup, record: InterfaceRecord, known: Collection[str], matched_ids: MatchedIds
+) -> InterfaceRecord:
+    """Return an interface with what is not shown to be kept any more: that is no more as signed than what is broken."""
+    interface = record.terms.interface
+    ports = list_counted_ports(lookup, interface)
+    unproven = list_contradictions(find_unproven_words(lookup, interface, ports, known), "Open promise", matched_ids)
+    return replace(record, plain_terms={**unproven, **record.plain_terms})
 
 
 def record_interfaces(

@@ -7,7 +7,7 @@ disagree about a rename. Most terms are derived (rates, gaps, chains) and no ele
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field
 
 from archgen.compare.matched_ids import MatchedIds
@@ -57,10 +57,7 @@ def list_plain_terms(
     for chain in interface_terms.chains:
         title = lookup.architecture.chains[chain.id].title
         terms |= _chain_terms(chain, title, matched_ids.common_id("chain", chain.id))
-    for sentence in interface_terms.contradictions:
-        # Another figure in it makes no other contradiction.
-        key = f"contradiction {_FIGURE.sub('', matched_ids.rename_in_text(sentence))}"
-        terms[key] = PlainTerm(CONTRADICTION_KIND, "Contradiction", sentence.replace("`", ""), "")
+    terms |= list_contradictions(interface_terms.contradictions, "Contradiction", matched_ids)
     for requirement_runs in interface_terms.requirements:
         requirement = requirement_runs[0].text
         key = f"requirement {matched_ids.common_id('requirement', requirement)}"
@@ -77,6 +74,17 @@ def list_plain_terms(
 def _unchanged_term(kind: str, name: str, text: str) -> PlainTerm:
     """Return a term without ids in its text."""
     return PlainTerm(kind, name, text, text)
+
+
+def list_contradictions(sentences: Iterable[str], name: str, matched_ids: MatchedIds) -> Mapping[str, PlainTerm]:
+    """Return contradictions, or what is not shown to be none, as terms."""
+    # Another figure in it makes no other contradiction, nor does it that there is none, or who reads the oldest.
+    return {
+        f"contradiction {_FIGURE.sub('', matched_ids.rename_in_text(sentence)).partition(': ')[0]}": PlainTerm(
+            CONTRADICTION_KIND, name, sentence.replace("`", ""), ""
+        )
+        for sentence in sentences
+    }
 
 
 def _fact_terms(interface_terms: InterfaceTerms, matched_ids: MatchedIds) -> Iterator[tuple[str, PlainTerm]]:

@@ -13,10 +13,12 @@ from fractions import Fraction
 from archgen.compare import Comparison
 from archgen.compare.comparison import ChangeKind
 from archgen.compare.figure_changes import BoundaryChange, FigureChange, TravelPath
+from archgen.compare.figure_noise import FigureNoise
 from archgen.compare.interface_figures import DELAY_NAMES
 from archgen.compare.sentence_words import tick_names
 from archgen.diagnostics.common_wording import join_words
 from archgen.frozen import dataclass
+from archgen.timing.figures.figure_wording import format_compared, format_duration
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.views.changes.figure_lines import FigureLine, describe_figure, join_partners
 from archgen.views.timing.value_format import UNKNOWN_FIGURE, display_duration
@@ -48,9 +50,9 @@ class _Boundary:
 
 def write_boundary_lines(comparison: Comparison, partner_names: Mapping[str, str]) -> tuple[FigureLine, ...]:
     """Return what changed between partners: lines of single interfaces, then those of many."""
-    elements_after = comparison.versions.elements_after
+    elements_after, noise = comparison.versions.elements_after, FigureNoise(comparison)
     boundaries = [
-        _describe_boundary(change, comparison)
+        _describe_boundary(change, comparison, noise)
         for change in comparison.boundaries
         # An output that is gone is a change of its own.
         if change.kind != "removed"
@@ -69,7 +71,7 @@ def write_boundary_lines(comparison: Comparison, partner_names: Mapping[str, str
     return tuple(lines)
 
 
-def _describe_boundary(change: BoundaryChange, comparison: Comparison) -> _Boundary:
+def _describe_boundary(change: BoundaryChange, comparison: Comparison, noise: FigureNoise) -> _Boundary:
     if change.kind != "changed":
         is_new = ("output", change.interface_id) not in comparison.versions.elements_before
         figures = [figure for figure in change.figures if _is_told_of_new(figure, is_new=is_new)]
@@ -83,7 +85,13 @@ def _describe_boundary(change: BoundaryChange, comparison: Comparison) -> _Bound
     lost_lead = next((lead for lead, names in names_by_lead.items() if names), "")
     remaining = [figure for figure in change.figures if not leads[figure]]
     figures = [
-        figure for figure in remaining if not (_follows_from_others(figure, change.figures) or _has_same_hosts(figure))
+        figure
+        for figure in remaining
+        if not (
+            _follows_from_others(figure, change.figures)
+            or _has_same_hosts(figure)
+            or noise.is_small_figure(change, figure)
+        )
     ]
     return _Boundary(change, tuple(figures), lost_lead, names_by_lead.get(lost_lead, ()))
 
@@ -141,7 +149,7 @@ def _is_sooner(figure: FigureChange) -> bool:
 
 def _write_sooner(boundaries: Sequence[_Boundary], partner_names: Mapping[str, str]) -> Iterator[FigureLine]:
     gains = [-(_measure_growth(figure) or 0) for boundary in boundaries for figure in boundary.figures]
-    most = display_duration(TimingValue(Fraction(max(gains))))
+    (most,) = format_compared([Fraction(max(gains))], format_duration)
     named = [
         _Boundary(boundary.change, (), "", tuple(figure.key.name for figure in boundary.figures))
         for boundary in boundaries

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from archgen.compare import Change, Comparison, PartnerBreak
-from archgen.compare.agreements import AgreementJudge, find_partner_id
+from archgen.compare.agreements import AgreementJudge, AgreementTarget, find_partner_id, list_agreement_targets
 from archgen.compare.change_hashes import agreement_key
 from archgen.compare.sentence_words import tick_names
 from archgen.diagnostics.common_wording import join_words
@@ -63,7 +63,7 @@ def describe_refusal(comparison: Comparison) -> str:
     """Describe who may accept what the policy refuses, in front of `write_missing_entries`; empty if nothing is refused,
     or nobody can judge that.
     """
-    partners = sorted(_find_refused_changes(comparison))
+    partners = sorted(_find_refused_targets(comparison))
     return f"mend it, or {_say_why(partners, comparison)}:" if partners else ""
 
 
@@ -72,27 +72,28 @@ def write_missing_entries(comparison: Comparison) -> tuple[str, ...]:
     line.
     """
     files_by_entries: dict[str, list[str]] = {}
-    for partner, changes in sorted(_find_refused_changes(comparison).items()):
+    for partner, targets in sorted(_find_refused_targets(comparison).items()):
         file = agreement_file(find_partner_id(partner, comparison.matched_ids))
-        files_by_entries.setdefault(_write_entries(changes, partner), []).append(file)
+        files_by_entries.setdefault(_write_entries(targets), []).append(file)
     return tuple(
         f"# {join_words(files)}{', each' if len(files) > 1 else ''}\n{entries}"
         for entries, files in files_by_entries.items()
     )
 
 
-def _find_refused_changes(comparison: Comparison) -> Mapping[str, Sequence[Change]]:
-    """Return the changes that the policy refuses, by the partner who did not agree. What cannot be judged is nothing that
-    anybody could agree on.
+def _find_refused_targets(comparison: Comparison) -> Mapping[str, Sequence[AgreementTarget]]:
+    """Return what entries have to name to accept what the policy refuses, by the partner who did not agree. What cannot be
+    judged is nothing that anybody could agree on.
     """
-    changes: dict[str, list[Change]] = {}
+    targets: dict[str, dict[AgreementTarget, None]] = {}
     for change in comparison.changes if comparison.is_judged else ():
         if not _is_acceptable(change):
             continue
         refused_breaks = [each for each in change.breaks if each.agreement is None and _is_refused(each, comparison)]
         for partner in dict.fromkeys(each.partner for each in refused_breaks):
-            changes.setdefault(partner, []).append(change)
-    return changes
+            own_breaks = [each for each in refused_breaks if each.partner == partner]
+            targets.setdefault(partner, {}).update(dict.fromkeys(list_agreement_targets(change, own_breaks)))
+    return {partner: list(names) for partner, names in targets.items()}
 
 
 def describe_remedy(change: Change, comparison: Comparison) -> str:
@@ -104,8 +105,8 @@ def describe_remedy(change: Change, comparison: Comparison) -> str:
     partners = change.unheard_partners
     partner_ids = [find_partner_id(partner, comparison.matched_ids) for partner in partners]
     files = join_words([f"`{agreement_file(partner_id)}`" for partner_id in partner_ids])
-    entries = dict.fromkeys(_write_entry(change, partner, "THE REASON") for partner in partners)
-    return f"mend it, or {_say_why(partners, comparison)}, in {files}: {join_words(list(entries))}"
+    targets = list_agreement_targets(change, [each for each in change.breaks if each.agreement is None])
+    return f"mend it, or {_say_why(partners, comparison)}, in {files}: {_write_flow_entries(targets, 'THE REASON')}"
 
 
 def _is_acceptable(change: Change) -> bool:
@@ -155,13 +156,14 @@ def describe_agreements(change: Change, comparison: Comparison) -> Iterator[str]
 
 def _describe_claim(entry: AcceptedChange, change: Change, comparison: Comparison) -> str:
     """Describe an entry that excuses nothing: why not, and what to write where."""
-    partners = [find_partner_id(partner, comparison.matched_ids) for partner in change.broken_partners]
+    partners_by_file = {find_partner_id(each, comparison.matched_ids): each for each in change.broken_partners}
     place = _describe_place(entry)
     flaw = AgreementJudge.from_comparison(comparison).find_flaw(entry, change)
     if flaw == "foreign file":
         names = join_words(name_each(change.broken_partners, name_partners(comparison)))
         return f"said in {place}, not by {names}: {entry.reason}"
-    needed_entry = _write_entry(change, change.broken_partners[partners.index(entry.partner or "")], entry.reason)
+    own_breaks = [each for each in change.breaks if each.partner == partners_by_file[entry.partner or ""]]
+    needed_entry = _write_flow_entries(list_agreement_targets(change, own_breaks), entry.reason)
     if flaw == "no key":
         return f"said in {place} without a `key`, which would accept whatever changes: write {needed_entry}"
     if flaw == "other change":
@@ -176,28 +178,24 @@ def _describe_place(entry: AcceptedChange) -> str:
     return f"`{entry.at.file}`" if entry.at.file else "the project"
 
 
-def _write_entry(change: Change, partner: str, reason: str) -> str:
-    """Return the entry that accepts a change, as it has to stand in a file."""
-    return f"`review: {{accepted: {{{_quote_text(change.element_id)}: {_write_body(change, partner, reason)}}}}}`"
+def _write_flow_entries(targets: Iterable[AgreementTarget], reason: str) -> str:
+    """Return the section that accepts something, in one line."""
+    return "`review: {accepted: {" + ", ".join(_write_lines(targets, reason)) + "}}`"
 
 
-def _write_entries(changes: Iterable[Change], partner: str) -> str:
-    """Return the section that accepts changes, a line for each element."""
-    bodies_by_element: dict[str, dict[str, None]] = {}
-    for change in changes:
-        body = _write_body(change, partner, "THE REASON")
-        bodies_by_element.setdefault(change.element_id, {})[body] = None
-    lines = ["review:", "  accepted:"]
+def _write_entries(targets: Iterable[AgreementTarget]) -> str:
+    """Return the section that accepts something, a line for each element."""
+    return "\n".join(("review:", "  accepted:", *(f"    {line}" for line in _write_lines(targets, "THE REASON"))))
+
+
+def _write_lines(targets: Iterable[AgreementTarget], reason: str) -> Iterator[str]:
+    bodies_by_element: dict[str, list[str]] = {}
+    for target in dict.fromkeys(targets):
+        body = f"{{key: {_quote_text(target.key)}, was: {_quote_text(target.hash)}, reason: {_quote_text(reason)}}}"
+        bodies_by_element.setdefault(target.element, []).append(body)
     for element_id, bodies in bodies_by_element.items():
         text = ", ".join(bodies)
-        lines.append(f"    {_quote_text(element_id)}: {text if len(bodies) == 1 else f'[{text}]'}")
-    return "\n".join(lines)
-
-
-def _write_body(change: Change, partner: str, reason: str) -> str:
-    change_hash = next(each.hash for each in change.breaks if each.partner == partner)
-    key = _quote_text(agreement_key(change))
-    return f"{{key: {key}, was: {_quote_text(change_hash)}, reason: {_quote_text(reason)}}}"
+        yield f"{_quote_text(element_id)}: {text if len(bodies) == 1 else f'[{text}]'}"
 
 
 def _quote_text(text: str) -> str:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from archgen.compare import ChainChange
 from archgen.compare.key_phrases import name_key
 from archgen.diagnostics.common_wording import join_words
 from archgen.frozen import dataclass
 from archgen.timing.analysis import ChainResult
-from archgen.timing.figures.figure_wording import format_duration, name_unknown_reason
+from archgen.timing.figures.figure_wording import format_compared, format_duration, name_unknown_reason
 
 _MAX_CAUSES = 3
 MINUS_SIGN = "\u2212"
@@ -30,10 +32,11 @@ class ChainRow:
 
 def make_chain_row(chain_change: ChainChange, *, is_only_edit: bool = False) -> ChainRow:
     """Return the row of a chain. Where there is only one edit, nobody asks for the reason."""
+    before, after = _format_bounds(chain_change)
     return ChainRow(
         chain_change.id,
-        _format_bound(chain_change.before),
-        _format_bound(chain_change.after),
+        before,
+        after,
         _format_growth(chain_change),
         _format_deadline(chain_change),
         _format_verdict(chain_change),
@@ -54,13 +57,19 @@ def _format_causes(chain_change: ChainChange) -> str:
     return join_words([*phrases[:_MAX_CAUSES], *([f"{surplus} more"] if surplus > 0 else [])])
 
 
-def _format_bound(result: ChainResult | None) -> str:
-    """Format how long a chain takes at most."""
-    if result is None:
-        return "not there"
-    if result.bound.value is None:
-        return name_unknown_reason(result.bound)
-    return ("" if result.bound.complete else "at least ") + format_duration(result.bound.value)
+def _format_bounds(chain_change: ChainChange) -> Iterator[str]:
+    """Yield how long a chain takes at most, before and after."""
+    results = chain_change.before, chain_change.after
+    values = [each.bound.value for each in results if each and each.bound.value is not None]
+    deadline = chain_change.deadline.value if chain_change.deadline else None
+    texts = iter(format_compared(values, format_duration, limit=deadline))
+    for result in results:
+        if result is None:
+            yield "not there"
+        elif result.bound.value is None:
+            yield name_unknown_reason(result.bound)
+        else:
+            yield ("" if result.bound.complete else "at least ") + next(texts)
 
 
 def _format_growth(chain_change: ChainChange) -> str:
@@ -72,7 +81,7 @@ def _format_growth(chain_change: ChainChange) -> str:
     )
     if old_bound is None or new_bound is None or old_bound == new_bound:
         return ""
-    return f"{'+' if new_bound > old_bound else MINUS_SIGN}{format_duration(abs(new_bound - old_bound))}"
+    return f"{'+' if new_bound > old_bound else MINUS_SIGN}{format_compared([abs(new_bound - old_bound)], format_duration)[0]}"
 
 
 def _format_deadline(chain_change: ChainChange) -> str:

@@ -12,6 +12,7 @@ from dataclasses import field
 
 from archgen.compare import Change, Comparison
 from archgen.compare.edits import Edit, list_edits
+from archgen.compare.figure_noise import FigureNoise
 from archgen.compare.meaning_sentences import is_read_by_others
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.frozen import dataclass
@@ -26,6 +27,7 @@ from archgen.views.changes.breaking_items import (
 from archgen.views.changes.chain_rows import ChainRow, make_chain_row
 from archgen.views.changes.change_wording import ChangeGroup, count_by_kind, group_changes, is_textual
 from archgen.views.changes.figure_lines import FigureLine, write_load_lines
+from archgen.views.changes.limit_lines import write_limit_lines, write_noise_line
 from archgen.views.changes.named_elements import name_elements
 from archgen.views.changes.owned_edits import name_owner
 from archgen.views.changes.partner_names import name_each, name_partners
@@ -167,6 +169,7 @@ def describe_comparison(
     repeated_findings = find_repeated_findings(comparison)
     caveat = " in what could be read" if any(reading_errors) else ""
     finding_groups = tuple(_group_findings(comparison, reading_errors, repeated_findings.keys()))
+    noise = FigureNoise(comparison)
     verdict = tuple(breaking_verdict.describe_verdict(comparison)) if comparison.only_breaking else ()
     return ComparisonDocument(
         title=comparison.after.architecture.project.title,
@@ -202,9 +205,17 @@ def describe_comparison(
         textual_changes=tuple(
             name_owner(edit, comparison, partner_names) for edit in other_edits if _is_textual_edit(edit, comparison)
         ),
-        boundary_lines=write_boundary_lines(comparison, partner_names),
+        boundary_lines=(
+            *write_limit_lines(comparison),
+            *write_boundary_lines(comparison, partner_names),
+            *write_noise_line(noise),
+        ),
         load_lines=write_load_lines(comparison, partner_names),
-        chain_rows=tuple(make_chain_row(chain, is_only_edit=len(edits) == 1) for chain in comparison.chains),
+        chain_rows=tuple(
+            make_chain_row(chain, is_only_edit=len(edits) == 1)
+            for chain in comparison.chains
+            if not noise.is_small_chain(chain)
+        ),
         finding_groups=finding_groups,
         graphs=graphs,
         element_titles=name_elements(comparison),

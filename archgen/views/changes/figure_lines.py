@@ -7,10 +7,12 @@ from collections.abc import Callable, Iterable, Mapping
 from archgen.compare import Comparison
 from archgen.compare.comparison import ChangeKind
 from archgen.compare.figure_changes import ComparedFigure, FigureChange, FigureKey, LoadChange, TravelPath, WireNames
+from archgen.compare.figure_noise import FigureNoise
 from archgen.compare.sentence_words import tick_names
 from archgen.diagnostics.common_wording import join_words
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.model.node import Qos
+from archgen.timing.figures.figure_wording import round_compared
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.views.changes.partner_names import name_each
 from archgen.views.inline_text import list_qos_settings
@@ -44,8 +46,21 @@ def describe_figure(figure: FigureChange, kind: str) -> str:
         lost = [setting for setting in old_settings if setting not in new_settings]
         gained = [setting for setting in new_settings if setting not in old_settings]
         return f"{name} {', '.join(lost) or _NO_FIGURE} → {', '.join(gained) or _NO_FIGURE}"
+    if isinstance(before, TimingValue) and isinstance(after, TimingValue):
+        return f"{name} {_format_pair(figure.key, before, after)}"
     lead = "travels" if isinstance(before, TravelPath) or isinstance(after, TravelPath) else name
     return f"{lead} {_format_figure(figure.key, before)} → {_format_figure(figure.key, after)}"
+
+
+def _format_pair(key: FigureKey, before: TimingValue, after: TimingValue) -> str:
+    """Return two figures with the digits that inputs carry; a rate is rounded down, all else up."""
+    values = [each.value for each in (before, after) if each.value is not None]
+    rounded = dict(zip(values, round_compared(values, upwards=key.name != "rate"), strict=True))
+    texts = []
+    for each in (before, after):
+        told = each if each.value is None else replace(each, value=rounded[each.value])
+        texts.append(("" if told == each else "~") + _format_figure(key, told))
+    return " → ".join(texts)
 
 
 def _format_figure(key: FigureKey, figure: ComparedFigure | None) -> str:
@@ -68,7 +83,12 @@ def _format_path(path: TravelPath) -> str:
 
 def write_load_lines(comparison: Comparison, partner_names: Mapping[str, str]) -> tuple[FigureLine, ...]:
     """Return a line for each host and link whose load changed noticeably."""
-    return tuple(FigureLine("changed", _describe_load(change, partner_names)) for change in comparison.loads)
+    noise = FigureNoise(comparison)
+    return tuple(
+        FigureLine("changed", _describe_load(change, partner_names))
+        for change in comparison.loads
+        if not noise.is_small_load(change)
+    )
 
 
 def _describe_load(change: LoadChange, partner_names: Mapping[str, str]) -> str:

@@ -67,7 +67,7 @@ CASES = {
     "the threads of the container": (
         BOX,
         [("threads: 2", "threads: 1")],
-        both("box/threads", f"{LATE} (157.001 ms → 252.001 ms); {ALL}", "certh", "sssa", "tum"),
+        both("box/threads", f"{LATE} (~158 ms → ~253 ms); {ALL}", "certh", "sssa", "tum"),
     ),
     "the link on the way": (
         ROBOT,

@@ -1,0 +1,159 @@
+"""What readers may count on in figures: promises, deadlines and freshness; and how two versions keep them."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+from archgen.analyses.kept_promises import judge_promises, judge_sent_limits, list_sent_limits
+from archgen.compare.figure_changes import LimitChange
+from archgen.compare.matched_ids import MatchedIds
+from archgen.compare.timing_pair import TimingPair
+from archgen.frozen import dataclass
+from archgen.model.architecture import Architecture
+from archgen.model.promise import FIGURE_KEYS, Promise
+from archgen.model.quantity import Quantity
+from archgen.model.relied_outputs import list_described_outputs, list_relied_outputs
+from archgen.timing.analysis import Analysis
+from archgen.timing.chains.limit_states import LimitState, find_worst_state
+from archgen.timing.chains.read_ages import find_read_ages
+from archgen.timing.figures.timing_values import TimingValue
+
+AskedLimits = Mapping[tuple[str, str], Quantity]
+"""The limits of a version by port (its common id) and key, as `LimitChange` has them."""
+
+
+class LimitKey(NamedTuple):
+    """A limit as `LimitChange` has it: by common ids."""
+
+    port: str
+    key: str
+    reader: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class JudgedLimit:
+    """A limit with what follows from the figures of a version: a rate in Hz, or a duration in ns."""
+
+    limit: Quantity
+    bound: TimingValue
+    state: LimitState
+
+
+def read_limits(architecture: Architecture, matched_ids: MatchedIds) -> dict[tuple[str, str], Quantity]:
+    """Return what a version asks for and promises."""
+    limits: dict[tuple[str, str], Quantity] = {}
+    for _, output in list_described_outputs(architecture):
+        for key in FIGURE_KEYS if output.promise else ():
+            if limit := getattr(output.promise, key):
+                limits[_name_output(architecture, matched_ids, output.id), key] = limit
+    for endpoint in architecture.endpoints:
+        for key, limit in list_sent_limits(architecture, endpoint):
+            # Where several nodes send it, whoever promises most binds all.
+            known = limits.get((port := matched_ids.common_id("output", endpoint.port or ""), key))
+            limits[port, key] = _find_stricter(key, limit, known) if known else limit
+    for entry in architecture.inputs.values():
+        if entry.freshness:
+            limits[matched_ids.common_id("input", entry.id), "freshness"] = entry.freshness
+    return limits
+
+
+def combine_stricter(first: AskedLimits, second: AskedLimits) -> AskedLimits:
+    """Return the limits of two versions, of each the stricter one."""
+    both = {key: _find_stricter(key[1], limit, second[key]) for key, limit in first.items() if key in second}
+    # A written gap is a figure as well: that it is longer, or gone, is a weaker promise in so many words.
+    written = {key: limit for key, limit in second.items() if key[1] == "timing.max_gap"}
+    return {**{key: limit for key, limit in first.items() if key[1] != "timing.max_gap"}, **second, **both, **written}
+
+
+def _find_stricter(key: str, first: Quantity, second: Quantity) -> Quantity:
+    return (max if key == "rate" else min)((first, second), key=lambda limit: limit.value)
+
+
+def _name_output(architecture: Architecture, matched_ids: MatchedIds, port: str) -> str:
+    """Return the common id of an output of a leaf, or of a composed component."""
+    shell, _, name = port.rpartition(".")
+    if shell in architecture.shells:
+        return f"{matched_ids.common_id('composed', shell)}.{name}"
+    return matched_ids.common_id("output", port)
+
+
+def judge_limits(
+    architecture: Architecture, analysis: Analysis, matched_ids: MatchedIds, limits: AskedLimits
+) -> dict[LimitKey, JudgedLimit]:
+    """Return how a version keeps limits, by common ids; without those whose ends it does not have."""
+    judged: dict[LimitKey, list[JudgedLimit]] = defaultdict(list)
+    names = {
+        each.id: _name_output(architecture, matched_ids, each.id) for _, each in list_described_outputs(architecture)
+    }
+    promises = {
+        own_id: Promise(**{key: limits[name, key] for key in FIGURE_KEYS if (name, key) in limits})  # type: ignore[arg-type]
+        for own_id, name in names.items()
+    }
+    for each in judge_promises(architecture, analysis, promises):
+        reader = matched_ids.common_id("input", each.read_over.input) if each.read_over else ""
+        judged[LimitKey(names[each.port], each.key, reader)].append(JudgedLimit(each.limit, each.bound, each.state))
+    for port, key, limit, gap, state in judge_sent_limits(
+        architecture, analysis, lambda port, key: limits.get((matched_ids.common_id("output", port), key))
+    ):
+        judged[LimitKey(matched_ids.common_id("output", port), key)].append(JudgedLimit(limit, gap, state))
+    inputs = {port: matched_ids.common_id("input", port) for port in architecture.inputs}
+    asked = {port: limit for port, name in inputs.items() if (limit := limits.get((name, "freshness")))}
+    for read_age in find_read_ages(analysis, {port: limit.value for port, limit in asked.items()}):
+        port = read_age.arc.input
+        judged[LimitKey(inputs[port], "freshness")].append(JudgedLimit(asked[port], read_age.age, read_age.state))
+    return {key: _find_worst(each) for key, each in judged.items()}
+
+
+def _find_worst(judged: list[JudgedLimit]) -> JudgedLimit:
+    """Return the one of several figures that is farthest from keeping a limit."""
+    state = find_worst_state(each.state for each in judged)
+    worst = [each for each in judged if each.state == state]
+    return max(worst, key=lambda each: (each.bound.value is None, each.bound.value or 0))
+
+
+def compare_limits(
+    before: Architecture, after: Architecture, matched_ids: MatchedIds, timing_pair: TimingPair | None
+) -> tuple[LimitChange, ...]:
+    """Return the limits that are kept otherwise than before, sorted; the stricter one of both versions counts.
+
+    Nobody can say so where a version could not be read.
+    """
+    if timing_pair is None:
+        return ()
+    asked_before, asked_after = read_limits(before, matched_ids), read_limits(after, MatchedIds())
+    if not asked_before:
+        return ()
+    judged_before = judge_limits(before, timing_pair.before, matched_ids, asked_before)
+    judged_after = judge_limits(after, timing_pair.after, MatchedIds(), combine_stricter(asked_before, asked_after))
+    return tuple(
+        LimitChange(
+            *key,
+            new.limit,
+            old.bound,
+            new.bound,
+            old.state,
+            new.state,
+            asked_after.get(key[:2]) != old.limit,
+            frozenset(_find_owners(after, key) if new.state == "broken" != old.state else ()),
+        )
+        for key, new in sorted(judged_after.items())
+        if (old := judged_before.get(key)) and (old.state, old.bound) != (new.state, new.bound)
+    )
+
+
+def _find_owners(architecture: Architecture, key: LimitKey) -> Iterator[str]:
+    """Yield who owns the port that asks or promises, and who reads an age."""
+    for port in filter(None, (key.port, key.reader)):
+        component = architecture.find_component(port.rpartition(".")[0])
+        yield from component.owners if component else ()
+
+
+def list_reliers(architecture: Architecture, matched_ids: MatchedIds) -> Iterator[tuple[str, str]]:
+    """Yield each output that an input of a leaf counts on, by common ids: as the reader names it, and that of the leaf."""
+    for counted in list_relied_outputs(architecture):
+        if counted.reader.id in architecture.inputs:
+            reader = matched_ids.common_id("input", counted.reader.id)
+            for port in dict.fromkeys((counted.port.id, counted.leaf.id)):
+                yield _name_output(architecture, matched_ids, port), reader
