@@ -25,8 +25,7 @@ class PartnerBreak:
     ...".
 
     `agreement` is why the partner agrees, None if it does not. `category` says which policy judges it. `variants` are
-    those in which it is lost, where nothing is lost in the project itself. `fallen` is the port and the key (`max_gap`) of
-    a promise or freshness that is not kept any more.
+    those in which it is lost, where nothing is lost in the project itself.
     """
 
     partner: str
