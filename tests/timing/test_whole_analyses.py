@@ -80,7 +80,7 @@ def list_everything(model: Architecture) -> Iterator[str]:
 
 def _list_ages(analysis: Analysis) -> Iterator[str]:
     for read in find_read_ages(analysis):
-        yield f"{read.arc.input} is {show_ms(read.age)} old at most, kept: {read.is_kept}"
+        yield f"{read.arc.input} is {show_ms(read.age)} old at most: {read.state}"
     for fused in find_fused_inputs(analysis):
         ages = ", ".join(f"{key} {show_ms(age)}" for key, age in fused.ages.items())
         yield f"{fused.activity} every {show_ms(fused.gap)}, apart {show_ms(fused.apart)}: {ages}"

@@ -244,7 +244,7 @@ def test_an_entry_may_accept_what_is_not_kept(compared_folders: ComparedFolders)
     after = {"archgen.yaml": load("20 ms", "20 ms")}
     refused = compared_folders(files, after)
     (entries,) = write_missing_entries(refused)
-    line = "sense.eye.rows: {key: max_gap, was: f00ebd, reason: THE REASON}"
+    line = 'sense.eye.rows: {key: max_gap, was: "462c98", reason: THE REASON}'
     assert entries == f"# review/b.yaml\nreview:\n  accepted:\n    {line}"
     accepted = compared_folders(files, {**after, "review/b.yaml": entries})
     assert not accepted.is_refused

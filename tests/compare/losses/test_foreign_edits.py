@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from archgen.compare.losses.change_context import ChangeContext
+from archgen.compare.losses.foreign_edits import find_foreign_edits
+from archgen.compare.review_facts import ReviewFacts
 from tests.compare.conftest import Compared
 
 ROBOT = """\
@@ -62,3 +65,16 @@ def test_the_owner_of_what_is_written_is_named(compared: Compared, old: str, new
 def test_nobody_is_asked_where_the_policy_does_not(compared: Compared) -> None:
     silent = ROBOT.replace("foreign: error", "foreign: off")
     assert not any(change.breaks for change in compared(silent, silent.replace("owner: r", "owner: p")).changes)
+
+
+@pytest.mark.parametrize(
+    ("followers", "facts", "count"),
+    [((), ReviewFacts(), 1), (None, ReviewFacts(), 0), ((), ReviewFacts(is_decided=True), 0)],
+)
+def test_who_is_judged_elsewhere_is_not_judged_again(
+    compared: Compared, followers: tuple[int, ...] | None, facts: ReviewFacts, count: int
+) -> None:
+    found = compared(ROBOT, ROBOT.replace("topic: /x", "topic: /y"))
+    sides = found.before.architecture, found.after.architecture
+    context = ChangeContext(*sides, found.matched_ids, found.versions, found.changes, facts, followers)
+    assert len(list(find_foreign_edits(context))) == count

@@ -15,20 +15,20 @@ ARC: Any = SimpleNamespace()
 
 
 @pytest.mark.parametrize(
-    ("age", "is_kept"),
+    ("age", "state"),
     [
-        (TimingValue(Fraction(10)), True),
-        (TimingValue(Fraction(9)), True),
-        (TimingValue(Fraction(11)), False),
+        (TimingValue(Fraction(10)), "kept"),
+        (TimingValue(Fraction(9)), "kept"),
+        (TimingValue(Fraction(11)), "broken"),
         # What is known of it is too much already, or is not yet.
-        (TimingValue(Fraction(11), complete=False, missing=("a",)), False),
-        (TimingValue(Fraction(9), complete=False, missing=("a",)), None),
-        (TimingValue(None, complete=False, missing=("a",)), None),
+        (TimingValue(Fraction(11), complete=False, missing=("a",)), "broken"),
+        (TimingValue(Fraction(9), complete=False, missing=("a",)), "unknown"),
+        (TimingValue(None, complete=False, missing=("a",)), "unknown"),
         # It has no bound at all, or none was found with all figures known.
-        (TimingValue(None, assumptions=("unbounded",)), False),
-        (TimingValue(None, complete=False, assumptions=("diverged",)), False),
-        (TimingValue(None, complete=False, missing=("a",), assumptions=("diverged",)), None),
+        (TimingValue(None, assumptions=("unbounded",)), "broken"),
+        (TimingValue(None, complete=False, assumptions=("diverged",)), "broken"),
+        (TimingValue(None, complete=False, missing=("a",), assumptions=("diverged",)), "unknown"),
     ],
 )
-def test_nothing_older_than_the_limit_is_read(age: TimingValue, is_kept: bool | None) -> None:  # noqa: FBT001
-    assert ReadAge(ARC, age, Fraction(10)).is_kept is is_kept
+def test_nothing_older_than_the_limit_is_read(age: TimingValue, state: str) -> None:
+    assert ReadAge(ARC, age, Fraction(10)).state == state
