@@ -177,9 +177,10 @@ def _judge_promise(
         gap = smallest_value(pace.gap for pace in paces) if paces else UNKNOWN_VALUE
         state = judge_upper_limit(gap, promise.max_gap.value)
         yield JudgedPromise(port, leaf, "max_gap", promise.max_gap, gap, state, at["max_gap"])
-    for arc, age in ages if promise.max_age is not None else ():
-        state = judge_upper_limit(age, promise.max_age.value)
-        yield JudgedPromise(port, leaf, "max_age", promise.max_age, age, state, at["max_age"], arc)
+    if promise.max_age is not None:
+        for arc, age in ages:
+            state = judge_upper_limit(age, promise.max_age.value)
+            yield JudgedPromise(port, leaf, "max_age", promise.max_age, age, state, at["max_age"], arc)
 
 
 def rank_bound(value: TimingValue) -> tuple[bool, Fraction]:

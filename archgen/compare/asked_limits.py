@@ -84,12 +84,14 @@ def judge_limits(
 ) -> dict[LimitKey, JudgedLimit]:
     """Return how a version keeps limits, by common ids; without those whose ends it does not have."""
     judged: dict[LimitKey, list[JudgedLimit]] = defaultdict(list)
+    asked_ports = {port for port, _ in limits}
     names = {
         each.id: _name_output(architecture, matched_ids, each.id) for _, each in list_described_outputs(architecture)
     }
     promises = {
         own_id: Promise(**{key: limits[name, key] for key in FIGURE_KEYS if (name, key) in limits})  # type: ignore[arg-type]
         for own_id, name in names.items()
+        if name in asked_ports
     }
     for each in judge_promises(architecture, analysis, promises):
         reader = matched_ids.common_id("input", each.read_over.input) if each.read_over else ""
@@ -99,8 +101,8 @@ def judge_limits(
     ):
         judged[LimitKey(matched_ids.common_id("output", port), key)].append(JudgedLimit(limit, gap, state))
     inputs = {port: matched_ids.common_id("input", port) for port in architecture.inputs}
-    asked = {port: limit for port, name in inputs.items() if (limit := limits.get((name, "freshness")))}
-    for read_age in find_read_ages(analysis, {port: limit.value for port, limit in asked.items()}):
+    asked = {port: needed for port, name in inputs.items() if (needed := limits.get((name, "freshness")))}
+    for read_age in find_read_ages(analysis, {port: needed.value for port, needed in asked.items()}):
         port = read_age.arc.input
         judged[LimitKey(inputs[port], "freshness")].append(JudgedLimit(asked[port], read_age.age, read_age.state))
     return {key: _find_worst(each) for key, each in judged.items()}

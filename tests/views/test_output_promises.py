@@ -12,6 +12,7 @@ from archgen.model.quantity import parse_quantity
 from archgen.timing.chains.measured_comparison import Observation
 from archgen.views.agreement.output_promises import list_counted_ports
 from archgen.views.agreement.partner_agreement import make_agreement
+from archgen.views.agreement.signed_terms import has_departures
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Facts, Table
 from tests.agreeing import checked, section, text, view
@@ -138,3 +139,57 @@ def test_what_was_measured_stands_beside_it_and_is_marked_where_it_is_worse(
     assert [column.title for column in table.columns][3:] == (["Measured"] if measured else [])
     cells = {text(row[0]): row[3] for row in table.rows if len(row) > 3 and row[3]}
     assert {name: (text(cell), cell[0].status == "missed") for name, cell in cells.items()} == measured
+
+
+KEPT = """\
+project: {id: p, title: P}
+partners: {a: A, b: B}
+types: {Rows: std_msgs/msg/Int32}
+hosts: {pc: {cores: 1}}
+groups:
+  sense: {owner: a, components: {eye: {outputs: {rows: {type: Rows, promise: {max_gap: 130 ms}}}}, log: Log}}
+  act: {owner: b, components: {base: {inputs: {rows: {from: eye.rows, freshness: 100 ms}}}}}
+nodes:
+  eye: {implements: eye, host: pc, timing: {rate: 10 Hz, wcet: 5 ms}, publishes: {rows: {qos: {deadline: 130 ms}}}}
+  base: {implements: base, host: pc, timing: {behaviour: event, wcet: 5 ms}}
+  log: {implements: log, host: pc, timing: {rate: 10 Hz, wcet: 5 ms}}
+"""
+LOG = "log, host: pc, timing: {rate: 10 Hz, wcet: 5 ms}"
+UNKNOWN = "nobody knows it without figures of log."
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        # What a figure was taken from is no longer shown to be kept: no more as signed than what is broken.
+        (
+            LOG,
+            LOG.replace(", wcet: 5 ms", ""),
+            [
+                f"The QoS deadline of 130 ms that eye promises may not be kept: {UNKNOWN}",
+                f"base.rows needs what is no older than 100 ms: {UNKNOWN}",
+                f"eye.rows promises gaps of at most 130 ms: {UNKNOWN}",
+            ],
+        ),
+        (
+            LOG,
+            LOG.replace("5 ms", "80 ms"),
+            [
+                "The QoS deadline of 130 ms that eye promises may not be kept: up to 190 ms is expected.",
+                "eye.rows promises gaps of at most 130 ms: it may be 190 ms between two messages.",
+            ],
+        ),
+        # That is how people begin.
+        ("log: Log}", "log: Log, stub: Stub}", []),
+    ],
+)
+def test_what_was_kept_when_it_was_signed_has_to_be(tmp_path: Path, old: str, new: str, told: list[str]) -> None:
+    later = KEPT.replace(old, new)
+    assert later != KEPT
+    later += "  stub: {implements: stub, host: pc, timing: {rate: 10 Hz}}\n" if "stub" in new else ""
+    before, after = _lookup(tmp_path / "1", KEPT), _lookup(tmp_path / "2", later)
+    changes = make_agreement(after, "a", "b", earlier_revision=("v1", before)).changes
+    assert changes is not None
+    terms = [term for key in changes.changes_by_key for term in changes.terms_of(key)]
+    assert sorted(term.after or "" for term in terms if term.term_kind == "contradictions") == told
+    assert has_departures(changes) is bool(told)

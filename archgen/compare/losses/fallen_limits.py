@@ -46,7 +46,7 @@ def find_fallen_limits(
                 parts[partner] = [*parts.get(partner, ()), *names]
     for (limit, growth, found), owned_readers in losers.items():
         verb, ending = ("asks", " for it") if limit.key == "freshness" else ("reads", " it")
-        lead, rest = ("breaks", "") if limit.new_state == "broken" else ("leaves", " no longer shown")
+        lead, rest = ("breaks", "") if limit.new_state == "broken" else ("leaves", " no longer shown to be kept")
         causes_found = [context.changes[index] for index in found.indices]
         found_hash = hash_fallen_limit(limit.port, limit.key, describe_limit(limit), causes_found, context.versions)
         reason = f"{lead} {describe_limit(limit)}{rest} ({growth}){found.note}; {{}}{ending}"

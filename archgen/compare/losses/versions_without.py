@@ -25,7 +25,6 @@ _MAX_ANALYSED = 20_000
 """How many activities are analysed for one comparison in all: those of a large robot with a few changes."""
 _NODE_KEYS = frozenset({"host", "container", "threads", "scheduling", "reentrant", "callback_groups"})
 """What a node says of itself alone; other keys say what it does for whom, and with whom."""
-_SECTIONS = {kind: f"{kind}s" for kind in ("node", "host", "container", "resource", "link", "type", "chain")}
 _TIMING_FIELDS = {"rate": ("rate", "period"), "wcet": ("wcet", "measured_times"), "core": ("core", "cores")}
 """The fields of `timing` that one compared key stands for, where they are several."""
 
@@ -95,9 +94,9 @@ def take_back_figure(context: ChangeContext, architecture: Architecture, change:
     kind, key = change.element_kind, change.key or ""
     if key.startswith("timing."):
         return _take_back_timing(context, architecture, change)
-    elements: Mapping[str, Any] = getattr(architecture, _SECTIONS.get(kind, ""), {})
-    old_elements: Mapping[str, Any] = getattr(context.before, _SECTIONS.get(kind, ""), {})
-    old_element = old_elements.get(context.old_id(kind, change.element_id))
+    section = f"{kind}s"
+    elements: Mapping[str, Any] = getattr(architecture, section, {})
+    old_element = getattr(context.before, section, {}).get(context.old_id(kind, change.element_id))
     name = key.removeprefix("latency.").partition(".")[0]
     if change.element_id not in elements or not hasattr(old_element, name):
         return None
@@ -107,8 +106,10 @@ def take_back_figure(context: ChangeContext, architecture: Architecture, change:
         value = context.matched_ids.common_id(name, value)
     if name == "through" and any(context.matched_ids.common_id(each.kind, each.id) != each.id for each in value):
         return None
-    changed = {**elements, change.element_id: replace(elements[change.element_id], **{name: value})}
-    return replace(architecture, **{_SECTIONS[kind]: changed})
+    changed: dict[str, Any] = {
+        section: {**elements, change.element_id: replace(elements[change.element_id], **{name: value})}
+    }
+    return replace(architecture, **changed)
 
 
 def _take_back_timing(context: ChangeContext, architecture: Architecture, change: Change) -> Architecture | None:
@@ -122,7 +123,7 @@ def _take_back_timing(context: ChangeContext, architecture: Architecture, change
             if old_node and is_meant and (change.key or "").startswith(lead):
                 old_part = context.old_id("component", part)
                 name = (change.key or "").removeprefix(lead).partition(".")[0]
-                values = {
+                values: dict[str, Any] = {
                     each: getattr(old_node.timing.get(old_part, Timing()), each, ...)
                     for each in _TIMING_FIELDS.get(name.removesuffix("s"), (name,))
                 }

@@ -53,6 +53,6 @@ def write_noise_line(noise: FigureNoise) -> Iterator[FigureLine]:
         threshold = format_percentage(noise.threshold)
         yield FigureLine(
             "changed",
-            f"{count_noun(len(moves), 'figure')} moved by less than {threshold} and changed no verdict; "
-            f"the most {which}, by {share}",
+            f"{count_noun(len(moves), 'figure')} moved by less than {threshold} and changed no verdict"
+            f"{'; the most' if len(moves) > 1 else ''}: {which}, by {share}",
         )

@@ -78,7 +78,7 @@ CAUSES = {
     "a figure that is taken away": (
         ("", "5 ms"),
         [
-            f"sense.other b: leaves {PROMISE} no longer shown (120 ms → not known without figures of `other`); {READ}",
+            f"sense.other b: leaves {PROMISE} no longer shown to be kept (120 ms → not known without figures of `other`); {READ}",
         ],
     ),
 }
@@ -256,6 +256,8 @@ def test_an_entry_may_accept_what_is_not_kept(compared_folders: ComparedFolders)
     other = compared_folders(files, {**after, "review/b.yaml": entries.replace("max_gap", "max_age")})
     assert other.is_refused
     assert [entry.key for entry in other.idle_acceptances] == ["max_age"]
+    # It is no other cause that was agreed on.
+    assert compared_folders(files, {"archgen.yaml": load("21 ms", "20 ms"), "review/b.yaml": entries}).is_refused
 
 
 def test_a_limit_is_told_by_its_figures(compared: Compared) -> None:

@@ -8,6 +8,7 @@ import pytest
 
 from archgen.timing.figures.figure_wording import (
     describe_timing_value,
+    format_compared,
     format_duration,
     format_number,
     format_rate,
@@ -143,3 +144,24 @@ def test_why_a_figure_is_unknown_is_one_word(value: TimingValue, reason: str) ->
 )
 def test_a_figure_is_told_with_its_side(value: TimingValue, unit: str, text: str) -> None:
     assert describe_timing_value(value, unit) == text
+
+
+@pytest.mark.parametrize(
+    ("values", "limit", "upwards", "texts"),
+    [
+        ([651_367_000], None, True, ["~652 ms"]),
+        ([651_367_000], None, False, ["~651 ms"]),
+        ([120_000_000, 175_000_000], 130_000_000, True, ["120 ms", "175 ms"]),
+        ([651_367_000, 651_900_000], None, True, ["~651.4 ms", "651.9 ms"]),  # as many as tell them apart
+        ([16_650_000], 16_667_000, True, ["16.65 ms"]),  # what is kept does not look broken
+        ([130_010_000], 130_000_000, True, ["~131 ms"]),
+        ([1_234_567_000_000], None, True, ["~1240 s"]),
+        ([0], None, True, ["0 ms"]),
+    ],
+)
+def test_compared_figures_have_the_digits_that_inputs_carry(
+    values: list[int], limit: int | None, *, upwards: bool, texts: list[str]
+) -> None:
+    figures = [Fraction(value) for value in values]
+    edge = None if limit is None else Fraction(limit)
+    assert format_compared(figures, format_duration, upwards=upwards, limit=edge) == texts
