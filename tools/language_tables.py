@@ -27,13 +27,19 @@ _FACTS = ("order", "listed", "bare", "data", "offers")
 _TEXTLESS_KINDS = frozenset({"integer", "boolean", "number"})
 
 
+_SECTIONS_OF_NO_ELEMENTS = frozenset({"agreements"})
+"""Sections by id that say something of several elements: nothing refers to their ids."""
+
+
 def make_tables(description: Description) -> str:
     """Return the text of the module."""
     parts = _name_parts(description)
     keys = {name: part["keys"] for name, part in parts.items() if "keys" in part}
     entries = {name: part["entries"] for name, part in parts.items() if "entries" in part}
     sections = {
-        section: entries[part] for section, part in keys[SLICE].items() if entries.get(part) in description.kinds
+        section: entries[part]
+        for section, part in keys[SLICE].items()
+        if entries.get(part) in description.kinds and section not in _SECTIONS_OF_NO_ELEMENTS
     }
     orders = {name: part["order"] for name, part in parts.items() if part.get("order", "counts") != "counts"}
     supporting = {

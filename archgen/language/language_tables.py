@@ -526,11 +526,10 @@ PLACED_KEYS: Mapping[str, tuple[str, ...]] = {
 }
 """Keys whose values keep their places, each in a field `KEY_at`."""
 SECTION_KINDS: Mapping[str, str] = {
-    "partners": "partner", "agreements": "agreement", "use_cases": "use_case", "requirements": "requirement",
-    "properties": "property_declaration", "component_types": "component_type", "libraries": "library",
-    "groups": "group", "nodes": "node", "types": "type", "hosts": "host", "containers": "container",
-    "resources": "resource", "links": "link", "frames": "frame", "chains": "chain", "views": "view",
-    "policies": "policy", "variants": "variant",
+    "partners": "partner", "use_cases": "use_case", "requirements": "requirement", "properties": "property_declaration",
+    "component_types": "component_type", "libraries": "library", "groups": "group", "nodes": "node", "types": "type",
+    "hosts": "host", "containers": "container", "resources": "resource", "links": "link", "frames": "frame",
+    "chains": "chain", "views": "view", "policies": "policy", "variants": "variant",
 }
 """Sections whose keys are ids of elements: the kind of these."""
 LISTED_PARTS: frozenset[str] = frozenset({
