@@ -20,10 +20,14 @@ from archgen.model.parameter import format_parameter
 from archgen.model.ros_distro import is_ros_1
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
     from archgen.model.architecture import Architecture
-    from archgen.model.node import Endpoint
+    from archgen.model.node import Endpoint, UseKind
+
+
+_GUESS_BUDGET = 1_000_000
+"""Names that topics are compared with, in all."""
 
 
 class _Fault(NamedTuple):
@@ -34,18 +38,39 @@ class _Fault(NamedTuple):
     severity: Severity | None = None
 
 
+class _KnownNames:
+    """The topics of one node: their names on the wire by use, and by what else one may call them."""
+
+    def __init__(self) -> None:
+        self.on_wire: dict[UseKind, dict[str, None]] = defaultdict(dict)
+        self.by_alias: dict[tuple[str | None, UseKind], str] = {}
+
+    def add(self, endpoint: Endpoint) -> None:
+        name, use = endpoint.name, endpoint.use
+        if name is not None:
+            self.on_wire[use][name] = None
+            for alias in (endpoint.program_name, endpoint.own_name, name[1:], name.rpartition("/")[2]):
+                self.by_alias.setdefault((alias, use), name)
+
+
 def ineffective_override(architecture: Architecture) -> Iterator[Diagnostic]:
     """A parameter that is to override the quality of service does nothing, or ends the node as it starts."""
     if is_ros_1(architecture.distro):
         return
-    endpoints: dict[str, list[Endpoint]] = defaultdict(list)
+    known_names: dict[str, _KnownNames] = defaultdict(_KnownNames)
     for endpoint in architecture.endpoints:
         if endpoint.flow == "topic":
-            endpoints[endpoint.node].append(endpoint)
+            known_names[endpoint.node].add(endpoint)
     seen_places = set[Span]()
+    compared_count = 0
     for node in architecture.nodes.values():
         for override in list_overrides(architecture, node) if not node.is_program else ():
-            fault = _find_bad_word(override) or _find_other_name(override, endpoints[node.id])
+            names = known_names[node.id]
+            fault = _find_bad_word(override) or _find_other_name(override, names)
+            # What stands in a file, or holds for all nodes, may be meant for another one.
+            if fault is None and override.origin == "node" and compared_count < _GUESS_BUDGET:
+                compared_count += len(names.by_alias)
+                fault = _guess_name(override, names)
             if fault is not None and override.at not in seen_places:
                 seen_places.add(override.at)  # what a file or the project says to several nodes is one slip
                 message = f"`{override.parameter}` {fault.text}"
@@ -65,21 +90,24 @@ def _find_bad_word(override: QosOverride) -> _Fault | None:
     return None
 
 
-def _find_other_name(override: QosOverride, endpoints: Sequence[Endpoint]) -> _Fault | None:
+def _find_other_name(override: QosOverride, names: _KnownNames) -> _Fault | None:
     """Return what is wrong where it names no end of the node; what a node has that is not known may be what it names."""
-    if any(map(override.is_for, endpoints)):
+    topic, use = override.topic, END_WORDS[override.end]
+    if topic in names.on_wire[use]:
         return _find_bad_effect(override)
-    if any(each.name == override.topic for each in endpoints):
-        verb = "publishes" if override.end == "publisher" else "subscribes to"
-        other_end = next(word for word in END_WORDS if word != override.end)
-        return _Fault(f"does nothing: the node {verb} no `{override.topic}`", f"write `{other_end}`")
-    ends = [(each, each.name) for each in endpoints if each.use == END_WORDS[override.end] and each.name]
-    for each, name in ends:
-        if override.topic in {each.program_name, each.own_name, name[1:], name.rpartition("/")[2]}:
-            text = f"does nothing: nothing is called `{override.topic}` once the node runs"
-            return _Fault(text, f"write the full name on the wire, `{name}`")
-    # What stands in a file, or holds for all nodes, may be meant for another one.
-    guess = did_you_mean(override.topic, [name for _, name in ends]) if override.origin == "node" else None
+    other_end, other_use = next((word, other) for word, other in END_WORDS.items() if other != use)
+    if topic in names.on_wire[other_use]:
+        verb = "publishes" if use == "publishes" else "subscribes to"
+        return _Fault(f"does nothing: the node {verb} no `{topic}`", f"write `{other_end}`")
+    if name := names.by_alias.get((topic, use)):
+        text = f"does nothing: nothing is called `{topic}` once the node runs"
+        return _Fault(text, f"write the full name on the wire, `{name}`")
+    return None
+
+
+def _guess_name(override: QosOverride, names: _KnownNames) -> _Fault | None:
+    on_wire = names.on_wire[END_WORDS[override.end]]
+    guess = did_you_mean(override.topic, on_wire) if override.topic not in on_wire else None
     return _Fault("does nothing: the node has no such topic", guess) if guess else None
 
 

@@ -78,8 +78,9 @@ def _gather_ends(
         if len({(domain_of(end), end.clock) for end in (*topic.writers, *topic.readers)}) < 2:  # noqa: PLR2004 - two ends
             continue
         for reader in topic.readers:
+            sources = frozenset(reader.sources)
             for writer in topic.writers:
-                is_joined = writer.port in reader.sources if reader.sources else not topic.shared
+                is_joined = writer.port in sources if sources else not topic.shared
                 if (
                     is_joined
                     and writer.node != reader.node

@@ -11,7 +11,7 @@ from archgen.checking.checked_project import CheckedProject
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity, settle_diagnostics
 from archgen.diagnostics.source_span import Span
-from archgen.findings.stale_codeowners import STALE_CODEOWNERS
+from archgen.findings.rule_table import STALE_CODEOWNERS
 from archgen.frozen import replace
 from archgen.git import GitError, find_object_ids
 from archgen.syntax.committed_files import CommittedFiles
@@ -50,11 +50,12 @@ def _judge_age(checked_project: CheckedProject, name: str, prefix: str, text: st
     missing_lines = [line for line in wanted_lines if line and line[0] != "#" and line not in present_lines]
     if not missing_lines:
         return None
-    surplus = len(missing_lines) - _MAX_LINES
-    told_lines = [f"`{line}`" for line in missing_lines[: None if surplus <= 1 else _MAX_LINES]]
+    told_lines = [f"`{line}`" for line in missing_lines[:_MAX_LINES]]
+    if len(missing_lines) > _MAX_LINES:
+        told_lines.append(f"{len(missing_lines) - _MAX_LINES} more")
     return Diagnostic(
         STALE_CODEOWNERS.name,
-        f"CODEOWNERS is out of date: it lacks {join_words([*told_lines, *([f'{surplus} more lines'] if surplus > 1 else [])])}",
+        f"CODEOWNERS is out of date: it lacks {join_words(told_lines)}",
         Span.of_file(os.path.relpath(f"/{name}", f"/{prefix}").replace(os.sep, "/")),
         help=f"`archgen owners --format codeowners -o {name}` makes it anew, from the top of the repository; lines of your own go below again",
     )

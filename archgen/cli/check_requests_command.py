@@ -86,9 +86,8 @@ def _merge_requests(requests: Sequence[OpenRequest], branch: str, project: Path 
     try:
         for merge in preview_merges(project, "HEAD", [*names], find_joint_breaks, leaves_out_unmergeable=True):
             merges.append(merge)
-            branches, *sides = ([names[ref] for ref in refs] for refs in (merge.branches, *merge.sides))
-            named_merge = replace(merge, branches=tuple(branches), sides=(tuple(sides[0]), tuple(sides[1])))
-            print_merge(branch, named_merge)
+            ours, theirs = (tuple(names[ref] for ref in side) for side in merge.sides)
+            print_merge(branch, replace(merge, sides=(ours, theirs)))
     except (GitError, ProjectNotFoundError) as error:
         raise click.UsageError(make_visible(str(error))) from None
     return merges

@@ -94,7 +94,7 @@ def mark_breaking_changes(
                 loss.reason,
                 category=loss.category,
                 fallen=loss.fallen,
-                fallen_state=loss.fallen_state,
+                hash=loss.hash,
                 at_most=loss.at_most,
             )
             breaks_by_index[loss.change_index][partner_break] = None

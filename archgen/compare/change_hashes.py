@@ -18,11 +18,8 @@ _HASH_DIGITS = 6
 
 def hash_values(values: Sequence[object]) -> str:
     """Return the first digits of the SHA-256 of values as canonical JSON."""
-    return hashlib.sha256(_write_canonically(values).encode()).hexdigest()[:_HASH_DIGITS]
-
-
-def _write_canonically(values: Sequence[object]) -> str:
-    return json.dumps(values, sort_keys=True, separators=(",", ":"), default=str)
+    text = json.dumps(values, sort_keys=True, separators=(",", ":"), default=str)
+    return hashlib.sha256(text.encode()).hexdigest()[:_HASH_DIGITS]
 
 
 def agreement_key(change: Change) -> str:
@@ -30,7 +27,7 @@ def agreement_key(change: Change) -> str:
     return change.key or change.kind
 
 
-def summarize_change(change: Change, versions: VersionPair) -> list[object]:
+def _summarize_change(change: Change, versions: VersionPair) -> list[object]:
     """Return element, key, and the values before and after: those of a new element, of a removed one what goes with it."""
     before, after = change.before, change.after
     match change.kind:
@@ -43,10 +40,14 @@ def summarize_change(change: Change, versions: VersionPair) -> list[object]:
     return [change.element_id, agreement_key(change), before, after]
 
 
-def hash_change(change: Change, versions: VersionPair, partner: str) -> str:
-    """Return the hash of a change, and of the requirements of a partner that it leaves unkept, if there are any."""
-    states = [each.fallen_state for each in change.breaks if each.partner == partner and each.fallen_state is not None]
-    return hash_values([*summarize_change(change, versions), *sorted(states)])
+def hash_change(change: Change, versions: VersionPair) -> str:
+    """Return the hash of a change."""
+    return hash_values(_summarize_change(change, versions))
+
+
+def hash_fallen_limit(port: str, key: str, limit: str, causes: Iterable[Change], versions: VersionPair) -> str:
+    """Return the hash of a promise or freshness that is kept no more: which one, its limit, and what caused that."""
+    return hash_values([port, key, limit, *(_summarize_change(cause, versions) for cause in causes)])
 
 
 def _walk_written(change: Change) -> Iterator[Change]:
@@ -61,8 +62,3 @@ def _list_values(change: Change, versions: VersionPair) -> list[object]:
     element = versions.elements_after.get((change.element_kind, change.element_id))
     values = {key: to_plain_data(value) for key, value in element.values.items()} if element else {}
     return [change.element_kind, change.element_id, values]
-
-
-def describe_fallen_state(port: str, key: str, limit: object, causes: Iterable[Change], versions: VersionPair) -> str:
-    """Return what an agreement holds of a requirement that is kept no more: which one, its limit, and what caused it."""
-    return _write_canonically([port, key, limit, *(summarize_change(cause, versions) for cause in causes)])

@@ -25,7 +25,8 @@ class PartnerBreak:
     ...".
 
     `agreement` is why the partner agrees, None if it does not. `category` says which policy judges it. `variants` are
-    those in which it is lost, where nothing is lost in the project itself.
+    those in which it is lost, where nothing is lost in the project itself. `fallen` is the port and the key (`max_gap`) of
+    a promise or freshness that is not kept any more.
     """
 
     partner: str
@@ -34,9 +35,6 @@ class PartnerBreak:
     category: BreakCategory = "wire"
     variants: tuple[str, ...] = ()
     fallen: tuple[str, str] | None = None
-    """The port and the key (`max_gap`) of a promise or freshness that is kept no more: an agreement may name them."""
-    fallen_state: str | None = None
-    """The requirement that is kept no more (see `describe_fallen_state`), of which an agreement holds the hash."""
     hash: str = ""
     """The hash that an agreement of the partner carries."""
     agreed_hash: str | None = None

@@ -31,7 +31,7 @@ class ReviewFacts:
 
     requesters: tuple[Author, ...] = ()
     authors: tuple[Author, ...] = ()
-    agreement_authors: Mapping[str, frozenset[Author]] = field(default_factory=dict)
+    agreement_authors: Mapping[str, tuple[Author, ...]] = field(default_factory=dict)
     """Who wrote the commits that touch a partner's file of agreements, by that file."""
     agreed_hashes: Callable[[str], Mapping[tuple[str, str], str] | None] = lambda _: None
     """Returns what had changed when a file of agreements was written last: hashes by element and key, None if unknown."""
@@ -62,10 +62,10 @@ class ReviewFacts:
 
 def _combine(answers: Iterable[bool | None]) -> bool | None:
     """Return what holds of several people: all of them stand for the partner, none does, or it cannot be said."""
-    different = set(answers)
-    if len(different) == 1:
-        return different.pop()
-    return False if different and True not in different else None
+    given = list(answers)
+    if not given or (True in given and not all(given)):
+        return None
+    return True if True in given else False if False in given else None
 
 
 def _is_reviewer(author: Author, partner_id: str, partners: Mapping[str, Partner], *, is_forge: bool) -> bool | None:

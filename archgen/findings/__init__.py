@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from archgen.findings.ignore_comments import UNUSED_IGNORE
-from archgen.findings.rule_table import UNKNOWN_RULE
-from archgen.findings.stale_codeowners import STALE_CODEOWNERS
+from archgen.findings.rule_table import STALE_CODEOWNERS, UNKNOWN_RULE
 
 RULES = (STALE_CODEOWNERS, UNUSED_IGNORE, UNKNOWN_RULE)
 """The rules about settings, comments, and what was written from the project."""

@@ -46,6 +46,12 @@ packages that do not ship with archgen.
 """No project breaks it by itself: only a package can, whose rules archgen.findings.plugged_rules runs."""
 
 
+STALE_CODEOWNERS = Rule(
+    "stale-codeowners",
+    Severity.WARNING,
+    "A CODEOWNERS file that archgen wrote is no longer what follows from the owners in the architecture.",
+    setting="rules: {stale-codeowners: note}  # off, note, warning or error",
+)
 _REVIEW_RULES = index_rules(COMPARISON_RULES)
 
 

@@ -62,12 +62,16 @@ class BranchMerge:
     commit holds no project. `sides` are the branches of what was merged: none of them is the main line.
     """
 
-    branches: tuple[str, ...]
+    sides: tuple[tuple[str, ...], tuple[str, ...]]
     conflicts: tuple[FileConflict, ...] = ()
     new_findings: tuple[Diagnostic, ...] = ()
     checked_project: CheckedProject | None = None
-    sides: tuple[tuple[str, ...], tuple[str, ...]] = ((), ())
     joint_breaks: JointBreaks = field(default_factory=JointBreaks)
+
+    @property
+    def branches(self) -> tuple[str, ...]:
+        """All branches that are merged."""
+        return self.sides[0] + self.sides[1]
 
     @property
     def goes_in_no_order(self) -> bool:
@@ -144,12 +148,16 @@ class BranchMerger:
         checked_project = self._check_commit(commit, revision)
         return _MergeState(branches, commit, _identify_findings(checked_project), checked_project)
 
-    def _check_commit(self, commit: str, name: str) -> CheckedProject | None:
-        # A branch that has all of the main line is what it is merged into: one tree, checked once.
+    def _check_commit(self, commit: str, name: str, *, is_kept: bool = True) -> CheckedProject | None:
+        # A branch that has all of the main line is what it is merged into: one tree, checked once. What several branches
+        # are together comes up once, and may be large.
         tree = look_up_tree(self._merge_folder.objects.repository, commit) or commit
-        if tree not in self._checked_trees:
-            self._checked_trees[tree] = self._check_tree(commit, name)
-        return self._checked_trees[tree]
+        if tree in self._checked_trees:
+            return self._checked_trees[tree]
+        checked_project = self._check_tree(commit, name)
+        if is_kept:
+            self._checked_trees[tree] = checked_project
+        return checked_project
 
     def _check_tree(self, commit: str, name: str) -> CheckedProject | None:
         try:
@@ -176,16 +184,18 @@ class BranchMerger:
             if problem is None:
                 settled_contents[conflict.path] = (conflict.mode, content)
         if any(conflict.problem for conflict in conflicts):
-            return BranchMerge(branches, tuple(conflicts), sides=sides), None
+            return BranchMerge(sides, tuple(conflicts)), None
         tree = self._merge_folder.replace_files(tree_merge.tree, settled_contents)
-        checked_project = self._check_commit(tree, " + ".join(branches)) if is_checked else ours.checked_project
+        checked_project = ours.checked_project
+        if is_checked:
+            checked_project = self._check_commit(tree, " + ".join(branches), is_kept=not ours.branches)
         joint_breaks, double_renames = self._judge_merge(ours, theirs, checked_project)
         if double_renames:
-            return BranchMerge(branches, (*conflicts, *double_renames), sides=sides), None
+            return BranchMerge(sides, (*conflicts, *double_renames)), None
         known_findings = ours.known_findings | theirs.known_findings
         findings = checked_project.findings if checked_project else ()
         new_findings = tuple(each for each in findings if identify_finding(each) not in known_findings)
-        branch_merge = BranchMerge(branches, tuple(conflicts), new_findings, checked_project, sides, joint_breaks)
+        branch_merge = BranchMerge(sides, tuple(conflicts), new_findings, checked_project, joint_breaks)
         commit = self._merge_folder.commit_tree(tree, (ours.commit, theirs.commit))
         known_findings |= _identify_findings(checked_project)
         parts = (*(ours.parts or (ours,)), theirs)
@@ -198,7 +208,7 @@ class BranchMerger:
             joined = self.merge_states(joined, state, is_checked=False)[1] if joined else None
         if joined is None or joined is states[0]:
             return joined
-        checked_project = self._check_commit(joined.commit, " + ".join(joined.branches))
+        checked_project = self._check_commit(joined.commit, " + ".join(joined.branches), is_kept=False)
         known_findings = joined.known_findings | _identify_findings(checked_project)
         return replace(joined, checked_project=checked_project, known_findings=known_findings)
 
@@ -345,39 +355,49 @@ def preview_merges(
             except GitError as error:
                 if not leaves_out_unmergeable:
                     raise
-                yield BranchMerge((branch,), (FileConflict("", str(error)),), sides=((), (branch,)))
+                yield BranchMerge(((), (branch,)), (FileConflict("", str(error)),))
                 continue
             yield branch_merge
             if merged_state is not None:
                 merged_states.append(replace(merged_state, parts=()))
-        yield from _merge_together(merger, merged_states)
+        yield from _merge_together(merger, main_state, merged_states)
 
 
-def _merge_together(merger: BranchMerger, states: Sequence[_MergeState]) -> Iterator[BranchMerge]:
-    """Merge branches one after the other; yield where one does not go with those before it, and at last all of them if
-    they do.
+def _merge_together(
+    merger: BranchMerger, main_state: _MergeState, states: Sequence[_MergeState]
+) -> Iterator[BranchMerge]:
+    """Merge branches one after the other; yield where one does not go with those before it, and at last those that go
+    together.
 
-    A branch that conflicts with those before it begins a line of its own, and each branch is merged into each line: so every
-    pair is seen, and pairs are merged by themselves only where a line says that something is wrong.
+    A branch that conflicts with those before it, or brings errors that would hide what later ones do, begins a line of its
+    own, and each branch is merged into each line: so every pair is seen, and pairs are merged by themselves only where a line
+    says that something is wrong.
     """
     lines: list[_MergeState] = []
-    whole_merge, is_sound = None, True
+    # By line; None where its branches do not go together.
+    whole_merges: dict[int, BranchMerge | None] = {}
     for state in states:
         home = None
         for number, line in enumerate(lines):
             branch_merge, merged_state = merger.merge_states(line, state)
             if branch_merge.has_news:
                 yield from _find_partners(merger, line, state, branch_merge)
-            if number == 0 and merged_state is not None:
-                whole_merge = replace(branch_merge, conflicts=())
-                is_sound &= not whole_merge.has_news
-            if home is None and merged_state is not None:
-                home = number
-                lines[number] = merged_state
+            if home is None and merged_state is not None and not _hides_more(main_state, merged_state):
+                home, lines[number] = number, merged_state
+                is_sound = not branch_merge.findings and whole_merges.get(number, branch_merge) is not None
+                whole_merges[number] = replace(branch_merge, conflicts=()) if is_sound else None
         if home is None:
             lines.append(state)
-    if whole_merge is not None and is_sound:
-        yield whole_merge
+    yield from filter(None, whole_merges.values())
+
+
+def _hides_more(main_state: _MergeState, merged_state: _MergeState) -> bool:
+    """Whether there are errors of reading or linking that the main line has not: what they are about is judged no more."""
+    old_errors, new_errors = (
+        {identify_finding(error) for error in (each.checked_project.structural_errors if each.checked_project else ())}
+        for each in (main_state, merged_state)
+    )
+    return not new_errors <= old_errors
 
 
 def _find_partners(

@@ -198,14 +198,12 @@ class _AgreementPair:
         return Change(kind, "project", project_id, key=key, breaks=breaks, text=text)  # type: ignore[arg-type]
 
     def _compare_standings(self, signed: CheckedProject, now: CheckedProject) -> Departures:
-        """Return by interface what of a version is not as it was signed, and what of the terms in words."""
+        """Return by interface what of a version is not as it was signed, and what of the terms of all."""
         changes = compare_lookups(("", self._look_at(signed)), self._look_at(now), self.new.pair)
         departures: dict[str, tuple[str, ...]] = {}
         for key, lines in group_departures(changes).items():
             departures[f"`{key[0]}`"] = (*departures.get(f"`{key[0]}`", ()), *lines)
-        then, there = (side.architecture.agreements.get(self.new.id, self.new).terms for side in (signed, now))
-        words = dict.fromkeys(name for name in (*then, *there) if then.get(name) != there.get(name))
-        return departures | ({"the terms in words": tuple(words)} if words else {})
+        return departures | ({"the terms": changes.changed_words} if changes.changed_words else {})
 
     def _compare_digits(self, signed: Signature, now: CheckedProject) -> Departures:
         """Return what is not as it was signed by the versions alone, where the signed commit is not here."""

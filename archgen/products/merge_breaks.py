@@ -9,6 +9,7 @@ from dataclasses import replace
 from archgen.compare import Change, Comparison, PartnerBreak
 from archgen.compare.match_elements import match_elements
 from archgen.compare.matched_ids import MatchedIds
+from archgen.compare.review_facts import ReviewFacts
 from archgen.merge.branch_merge import JointBreaks
 from archgen.pipeline import CheckedProject
 from archgen.products.break_findings import find_breaks
@@ -49,7 +50,9 @@ def find_joint_breaks(
 
 
 def _compare(before: CheckedProject, after: CheckedProject) -> Comparison:
-    return compare_named_versions(ProjectVersion("", before), ProjectVersion("", after))
+    # Whose edits are foreign each branch was asked by its own review: here nobody is the author.
+    facts = ReviewFacts(is_decided=True)
+    return compare_named_versions(ProjectVersion("", before), ProjectVersion("", after), forge_facts=facts)
 
 
 def _breaks_anybody(comparison: Comparison) -> bool:

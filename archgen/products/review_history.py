@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import posixpath
 from collections.abc import Mapping
 from functools import cache
 
 from archgen import git, pipeline, project
-from archgen.compare.change_hashes import agreement_key, hash_values, summarize_change
+from archgen.compare.breaking_changes import stricter_policy
+from archgen.compare.change_hashes import agreement_key, hash_change
 from archgen.compare.change_listing import find_changes
 from archgen.compare.match_elements import match_elements
 from archgen.compare.review_facts import Author, ReviewFacts, name_author
@@ -14,7 +16,7 @@ from archgen.diagnostics.diagnostic import Severity
 from archgen.frozen import replace
 from archgen.git.commit_authors import find_last_commit, find_own_mail, list_author_mails
 from archgen.git.project_revision import differs_from_head
-from archgen.model.review_settings import ReviewSettings, agreement_file
+from archgen.model.review_settings import agreement_file
 from archgen.pipeline import CheckedProject
 from archgen.products.comparison_input import make_comparison_input
 
@@ -23,9 +25,9 @@ def find_review_facts(
     before: CheckedProject, after: CheckedProject, base_commit: str, forge_facts: ReviewFacts
 ) -> ReviewFacts:
     """Return what is known of who changed a project: what the forge tells, and git of the commits since `base_commit`."""
-    old_review, new_review = before.architecture.review, after.architecture.review
-    is_asked = _asks_for_authors(old_review) or _asks_for_authors(new_review)
-    if not base_commit or not (is_asked or new_review.accepted):
+    reviews = before.architecture.review, after.architecture.review
+    is_asked = stricter_policy(*reviews).foreign is not Severity.OFF
+    if not base_commit or not (is_asked or reviews[1].accepted):
         return forge_facts
     try:
         repository = git.find_repository(after.root)
@@ -34,14 +36,14 @@ def find_review_facts(
         return forge_facts
     on_disk = not after.loaded_project.files.commit
 
-    def list_authors(path: str, files: tuple[str, ...]) -> frozenset[Author]:
+    def list_authors(path: str, files: tuple[str, ...]) -> tuple[Author, ...]:
         mails = list_author_mails(repository, base_commit, head, path)
         if on_disk and differs_from_head(after.root, files):
             mails |= {find_own_mail(repository)}
-        return frozenset(name_author(mail=mail) for mail in mails if mail)
+        return tuple(name_author(mail=mail) for mail in sorted(mails) if mail)
 
-    files = {agreement_file(partner): "" for partner in before.architecture.partners}
-    files = {file: "/".join(filter(None, (repository.prefix, file))) for file in files}
+    own_files = map(agreement_file, before.architecture.partners)
+    files = {file: posixpath.join(repository.prefix, file) for file in own_files}
     present_files = tuple(file for file in after.yaml_files if file in files)
 
     @cache
@@ -53,14 +55,10 @@ def find_review_facts(
 
     return replace(
         forge_facts,
-        authors=tuple(sorted(list_authors("", after.input_files), key=sorted)),
+        authors=list_authors("", after.input_files),
         agreement_authors={file: list_authors(files[file], (file,)) for file in present_files},
         agreed_hashes=hash_agreed_changes,
     )
-
-
-def _asks_for_authors(review: ReviewSettings) -> bool:
-    return review.breaking is not None and review.breaking.foreign is not Severity.OFF
 
 
 def _hash_changes(before: CheckedProject, after: CheckedProject, commit: str) -> Mapping[tuple[str, str], str]:
@@ -71,7 +69,4 @@ def _hash_changes(before: CheckedProject, after: CheckedProject, commit: str) ->
         return {}
     old, new = make_comparison_input(before), make_comparison_input(agreed_project)
     versions, changes = find_changes(old, new, match_elements(old.architecture, new.architecture))
-    return {
-        (change.element_id, agreement_key(change)): hash_values(summarize_change(change, versions))
-        for change in changes
-    }
+    return {(change.element_id, agreement_key(change)): hash_change(change, versions) for change in changes}

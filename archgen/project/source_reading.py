@@ -11,7 +11,7 @@ from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import find_closest
 from archgen.language.language_tables import COMMON_SECTIONS
-from archgen.model.agreed_terms import signature_file
+from archgen.model.agreed_terms import SIGNATURE_FOLDER
 from archgen.model.review_settings import agreement_file
 from archgen.project import baseline_reading
 from archgen.project.project_search import PROJECT_FILE
@@ -81,8 +81,11 @@ def _read_agreements(state: ReadingState) -> None:
     """Read what partners agreed on, whatever `sources` names: in a file that is not read it would count for nothing."""
     partner_tables = [document.root.get("partners") for document in state.documents]
     partner_ids = {key: None for table in partner_tables if isinstance(table, MappingNode) for key in table.entries}
-    pairs = (f"{first}-{second}" for first in partner_ids for second in partner_ids)
-    for file in (*map(agreement_file, partner_ids), *map(signature_file, pairs)):
+    found = file_patterns.list_yaml_files(state.files, SIGNATURE_FOLDER, is_deep=False)
+    signed = (
+        file for file in found if partner_ids.keys() >= {*posixpath.splitext(posixpath.basename(file))[0].split("-")}
+    )
+    for file in (*map(agreement_file, partner_ids), *signed):
         if file not in state.seen_files and state.files.has_path(file):
             _read_listed_slice(state, file, is_named=False)
 

@@ -67,4 +67,4 @@ def test_many_missing_lines_are_counted(tmp_path: Path) -> None:
     repository(tmp_path, {"archgen.yaml": TEXT})
     commit(tmp_path, {"CODEOWNERS": make_codeowners(check_project(tmp_path)).text.partition("\n")[0]})
     (message,) = list_stale(check_project(tmp_path))
-    assert message.endswith("lacks `* @p`, `/archgen.yaml @p`, `/review/p.yaml @p` and 5 more lines")
+    assert message.endswith("lacks `* @p`, `/archgen.yaml @p`, `/review/p.yaml @p` and 5 more")

@@ -321,7 +321,7 @@ def test_who_is_in_a_team_only_the_forge_knows(run: Run, robot: Path, monkeypatc
 def test_a_type_of_ones_own_changes_no_instance_of_others(
     run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    types = "component_types: {lamp: {timing: {rate: 1 Hz}, outputs: {on: Stop}}}\n"
+    types = "component_types: {lamp: {owner: norsk, timing: {rate: 1 Hz}, outputs: {on: Stop}}}\n"
     instance = (
         "groups: {light: {owner: aegir, components: {red: {is: lamp}, green: {is: lamp, timing: {rate: 5 Hz}}}}}\n"
     )
@@ -363,6 +363,23 @@ OWN_EDITS: tuple[Edits, ...] = (
     {"types.yaml": ("-", "types: {Depth: std_msgs/msg/Float32}\n")},
     {NODES: ("  beacon: {implements: beacon,", "  beacon: {parameters: {power: 3}, implements: beacon,")},
 )  # fmt: skip
+
+
+def test_types_in_somebodys_folder_are_his(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    types = "types: {Depth: {fields: {metres: float32}}, Speed: {message: std_msgs/msg/Float32, comment: In m/s}}\n"
+    group = "groups: {light: {owner: aegir, components: {red: {outputs: {x: Depth, y: Speed}}}}}\n"
+    top = repositories.repository(tmp_path / "hull", PROJECT | {"light/types.yaml": types, "light/groups.yaml": group})
+    repositories.git(top, "checkout", "-q", "-b", "work")
+    monkeypatch.setenv("GITHUB_ACTOR", "nora")
+    for old, new in (
+        ("In m/s", "In mm/s"),
+        ("metres: float32", "metres: float64"),
+        ("metres: float32", "depth: float32"),
+    ):
+        edit(top, {"light/types.yaml": (old, new)})
+        ran = judge(run, top)
+        assert (ran.status, "breaks Aegir (foreign)" in ran.out) == (1, True), new
+        repositories.git(top, "reset", "-q", "--hard", "main")
 
 
 @pytest.mark.parametrize("seed", range(20))

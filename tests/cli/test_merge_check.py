@@ -189,6 +189,7 @@ def test_the_json_holds_to_its_schema(run: Run, robot: Path) -> None:
         (["depth"], 0, 0),
         (["rename", "reader"], 1, 0),
         (["rename", "depth"], 0, 1),
+        (["reader", "depth"], 0, 0),
     ]
 
 

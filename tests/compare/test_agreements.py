@@ -9,7 +9,7 @@ import pytest
 
 from archgen import pipeline
 from archgen.compare.agreements import AgreementJudge, names_change
-from archgen.compare.change_hashes import hash_change, hash_values, summarize_change
+from archgen.compare.change_hashes import hash_change
 from archgen.compare.comparison import Change, PartnerBreak
 from archgen.compare.connection_maps import ConnectionMap
 from archgen.compare.matched_ids import MatchedIds
@@ -99,7 +99,7 @@ def test_a_partner_agrees_in_its_own_file_to_this_change_alone(
     assert [claim.reason for claim in judged.claims] == claims
 
 
-HASH = hash_change(TYPE, VERSIONS, "p")
+HASH = hash_change(TYPE, VERSIONS)
 OTHER = replace(TYPE, after="Other")
 ENTRY = AcceptedChange("g.a.x", "fine", "type", Span.of_file("review/p.yaml"))
 
@@ -111,17 +111,17 @@ ENTRY = AcceptedChange("g.a.x", "fine", "type", Span.of_file("review/p.yaml"))
         (replace(ENTRY, was="000000"), ReviewFacts(), "other change"),
         # Without a hash: what had changed when it was written, if anybody knows.
         (ENTRY, ReviewFacts(), None),
-        (ENTRY, ReviewFacts(agreed_hashes=lambda _: {("g.a.x", "type"): hash_values(summarize_change(TYPE, VERSIONS))}), None),
-        (ENTRY, ReviewFacts(agreed_hashes=lambda _: {("g.a.x", "type"): hash_values(summarize_change(OTHER, VERSIONS))}), "other change"),
+        (ENTRY, ReviewFacts(agreed_hashes=lambda _: {("g.a.x", "type"): hash_change(TYPE, VERSIONS)}), None),
+        (ENTRY, ReviewFacts(agreed_hashes=lambda _: {("g.a.x", "type"): hash_change(OTHER, VERSIONS)}), "other change"),
         (ENTRY, ReviewFacts(agreed_hashes=lambda _: {}), "other change"),
         # Written by somebody else.
         (ENTRY, ReviewFacts((name_author("paula"),)), None),
         (ENTRY, ReviewFacts((name_author("quinn"),)), "other author"),
         (ENTRY, ReviewFacts((name_author("quinn"), name_author("paula"))), None),
-        (ENTRY, ReviewFacts((name_author("quinn"),), agreement_authors={"review/p.yaml": frozenset({name_author(mail="1+Paula@users.noreply.github.com")})}), None),
-        (ENTRY, ReviewFacts((name_author("quinn"),), agreement_authors={"review/p.yaml": frozenset({name_author(mail="paula@p.example")})}, trusts_mails=False), "other author"),
-        (ENTRY, ReviewFacts(agreement_authors={"review/p.yaml": frozenset({name_author(mail="quinn@users.noreply.github.com")})}), "other author"),
-        (ENTRY, ReviewFacts(agreement_authors={"review/p.yaml": frozenset({name_author(mail="who@x.example")})}), None),
+        (ENTRY, ReviewFacts((name_author("quinn"),), agreement_authors={"review/p.yaml": (name_author(mail="1+Paula@users.noreply.github.com"),)}), None),
+        (ENTRY, ReviewFacts((name_author("quinn"),), agreement_authors={"review/p.yaml": (name_author(mail="paula@p.example"),)}, trusts_mails=False), "other author"),
+        (ENTRY, ReviewFacts(agreement_authors={"review/p.yaml": (name_author(mail="quinn@users.noreply.github.com"),)}), "other author"),
+        (ENTRY, ReviewFacts(agreement_authors={"review/p.yaml": (name_author(mail="who@x.example"),)}), None),
     ],
 )  # fmt: skip
 def test_an_entry_holds_for_this_change_and_from_the_partner_itself(

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from archgen.compare.change_hashes import describe_fallen_state, hash_change, hash_values
-from archgen.compare.comparison import Comparison, PartnerBreak
+from archgen.compare.change_hashes import hash_change, hash_fallen_limit, hash_values
+from archgen.compare.comparison import Comparison
 from tests.compare.conftest import Compared
 
 ROBOT = """\
@@ -23,9 +23,9 @@ nodes: {eye: {implements: eye, timing: {rate: 10 Hz, wcet: 5 ms}}}
 
 
 def hash_of(comparison: Comparison, element: str) -> str:
-    """Give the hash of the only change of an element, as `b` agrees to it."""
+    """Give the hash of the only change of an element."""
     (change,) = (change for change in comparison.changes if change.element_id == element)
-    return hash_change(change, comparison.versions, "b")
+    return hash_change(change, comparison.versions)
 
 
 def test_a_hash_is_that_of_canonical_json() -> None:
@@ -63,11 +63,18 @@ def test_what_is_derived_makes_no_other_hash(compared: Compared) -> None:
     assert hash_of(alone, "see.eye") == hash_of(beside, "see.eye")
 
 
-def test_a_fallen_requirement_belongs_to_the_hash_of_the_partner_who_relied_on_it(compared: Compared) -> None:
+def test_the_hash_of_a_fallen_promise_is_that_of_its_limit_and_causes(compared: Compared) -> None:
     comparison = compared(ROBOT, ROBOT.replace("rate: 10 Hz", "rate: 5 Hz"))
     (change,) = comparison.changes
-    state = describe_fallen_state("see.eye.rows", "max_gap", "130 ms", [change], comparison.versions)
-    fallen = replace(change, breaks=(PartnerBreak("b", "is late", fallen_state=state),))
-    plain = hash_change(replace(change, breaks=()), comparison.versions, "b")
-    assert hash_change(fallen, comparison.versions, "b") != plain
-    assert hash_change(fallen, comparison.versions, "a") == plain
+    hashes = {
+        hash_fallen_limit("see.eye.rows", key, limit, causes, comparison.versions)
+        for key, limit, causes in (
+            ("max_gap", "130 ms", [change]),
+            ("max_gap", "140 ms", [change]),
+            ("max_age", "130 ms", [change]),
+            ("max_gap", "130 ms", [replace(change, after="4 Hz")]),
+            ("max_gap", "130 ms", [change, change]),
+        )
+    }
+    assert len(hashes) == 5
+    assert hash_change(change, comparison.versions) not in hashes

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.forge.reviewed_request import find_reviewed_request
+from archgen.forge.reviewed_request import find_request_authors, find_reviewed_request
 from archgen.products.reviewed_change import ReviewedRequest
 
 MERGE = {"GITHUB_REF": "refs/pull/7/merge", "GITHUB_BASE_REF": "main", "GITHUB_SHA": "m1"}
@@ -60,3 +60,35 @@ def test_a_job_says_which_request_it_reviews(
         (tmp_path / "event.json").write_text(json.dumps(event), encoding="utf-8")
         environment = {**environment, "GITHUB_EVENT_PATH": str(tmp_path / "event.json")}
     assert find_reviewed_request(environment) == request_
+
+
+REQUEST = {
+    "user": {"login": "Nora"},
+    "head": {"repo": {"full_name": "f/hull"}},
+    "base": {"repo": {"full_name": "o/hull"}},
+}
+SAME = {**REQUEST, "head": REQUEST["base"]}
+LAB = {"GITLAB_USER_LOGIN": "nora", "GITLAB_USER_EMAIL": "Nora@n.example", "CI_MERGE_REQUEST_PROJECT_ID": "1"}
+
+
+@pytest.mark.parametrize(
+    ("event", "environment", "expected"),
+    [
+        (None, {}, ((), True, False)),
+        (None, {"GITHUB_ACTOR": "alva"}, (("@alva",), False, False)),
+        ({"pull_request": REQUEST}, {"GITHUB_ACTOR": "alva"}, (("@nora", "@alva"), False, False)),
+        ({"pull_request": SAME}, {"GITHUB_ACTOR": "Nora"}, (("@nora",), True, False)),
+        ({"merge_group": {}}, {"GITHUB_ACTOR": "alva", "GITHUB_EVENT_NAME": "merge_group"}, (("@alva",), False, True)),
+        ({"pull_request": ["strange"]}, {"GITHUB_ACTOR": "alva"}, (("@alva",), False, False)),
+        (None, LAB | {"CI_MERGE_REQUEST_SOURCE_PROJECT_ID": "2"}, (("@nora nora@n.example",), False, False)),
+        (None, LAB | {"CI_MERGE_REQUEST_SOURCE_PROJECT_ID": "1"}, (("@nora nora@n.example",), True, False)),
+        (None, LAB | {"CI_MERGE_REQUEST_EVENT_TYPE": "merge_train"}, (("@nora nora@n.example",), False, True)),
+    ],
+)
+def test_for_whom_a_job_runs(
+    tmp_path: Path, event: object, environment: dict[str, str], expected: tuple[tuple[str, ...], bool, bool]
+) -> None:
+    (tmp_path / "event.json").write_text(json.dumps(event), encoding="utf-8")
+    facts = find_request_authors({"GITHUB_EVENT_PATH": str(tmp_path / "event.json"), **environment})
+    requesters = tuple(" ".join(sorted(each)) for each in facts.requesters)
+    assert (requesters, facts.trusts_mails, facts.is_decided) == expected

@@ -129,12 +129,16 @@ def test_what_was_left_before_is_no_news(robot: Path, sign: Sign) -> None:
     assert "sense.lidar.scan" not in finding
 
 
-def test_words_are_signed_too(robot: Path, sign: Sign) -> None:
+def test_words_are_signed_too(run: Run, robot: Path, sign: Sign) -> None:  # noqa: F811 - the fixture
     sign()
     git(robot, "branch", "base")
     edit(robot, "30 days", "3 days", FILE)
     (finding,) = judge(robot)
-    assert "leaves what was signed of the terms in words (notice)" in finding
+    assert "leaves what was signed of the terms (Notice of changes)" in finding
+    ran = run("interfaces", robot, "--between", "a", "b", "--signed", "signed/a-b/2026-03-01")
+    assert ran.status == 1
+    assert "  terms: Notice of changes is not as it was signed" in ran.err.splitlines()
+    assert "Terms that are not what they were at signed/a" in ran.out.replace("\\", "")
 
 
 def test_a_variant_is_held_as_well(robot: Path, sign: Sign) -> None:

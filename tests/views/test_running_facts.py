@@ -73,8 +73,8 @@ def test_what_is_started_has_the_variables_of_project_and_host(tmp_path: Path) -
 
 def test_the_record(tmp_path: Path) -> None:
     record = make_record(view(checked(tmp_path, ROBOT)))
-    (first,) = record["nodes"]["a"]["endpoints"]  # type: ignore[index]
-    (second,) = record["nodes"]["b"]["endpoints"]  # type: ignore[index]
+    (first,) = record["nodes"]["a"]["endpoints"]
+    (second,) = record["nodes"]["b"]["endpoints"]
     assert {key: first[key] for key in ("qos_override", "domain", "clock", "runs")} == {
         "qos_override": "unknown",
         "domain": 42,
@@ -89,4 +89,4 @@ def test_the_record(tmp_path: Path) -> None:
     }
     assert second["unknown"] == ["clock"]
     assert "clock" not in second
-    assert record["project"]["environment"] == {"RMW": "x"}  # type: ignore[index]
+    assert record["project"]["environment"] == {"RMW": "x"}

@@ -34,7 +34,7 @@ class PartnerLoss:
     reason: str
     category: BreakCategory = "wire"
     fallen: tuple[str, str] | None = None
-    fallen_state: str | None = None
+    hash: str = ""
     at_most: Severity = Severity.ERROR
 
 

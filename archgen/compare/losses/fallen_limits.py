@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator
 
 from archgen.compare.asked_limits import AskedLimits, LimitKey, judge_limits, list_reliers, read_limits
-from archgen.compare.change_hashes import describe_fallen_state
+from archgen.compare.change_hashes import hash_fallen_limit
 from archgen.compare.figure_changes import LimitChange
 from archgen.compare.limit_wording import describe_growth, describe_limit
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
@@ -47,11 +47,11 @@ def find_fallen_limits(
     for (limit, growth, found), owned_readers in losers.items():
         verb, ending = ("asks", " for it") if limit.key == "freshness" else ("reads", " it")
         lead, rest = ("breaks", "") if limit.new_state == "broken" else ("leaves", " no longer shown to be kept")
+        causes_found = [context.changes[index] for index in found.indices]
+        found_hash = hash_fallen_limit(limit.port, limit.key, describe_limit(limit), causes_found, context.versions)
         reason = f"{lead} {describe_limit(limit)}{rest} ({growth}){found.note}; {{}}{ending}"
-        changes = [context.changes[index] for index in found.indices]
-        state = describe_fallen_state(limit.port, limit.key, str(limit.limit), changes, context.versions)
         for loss in context.shared_losses(found.indices, owned_readers, reason, verb):
-            yield replace(loss, fallen=(limit.port, limit.key), fallen_state=state)
+            yield replace(loss, fallen=(limit.port, limit.key), hash=found_hash)
 
 
 def _own_readers(context: ChangeContext, readers: Iterable[str]) -> dict[str, list[str]]:

@@ -108,6 +108,10 @@ def _list_owners(key: ElementKey, context: ChangeContext) -> tuple[str, ...]:
     """
     elements = context.versions.elements_before
     element = elements.get(key)
+    if element and element.kind == "message" and element.file:
+        # Its fields stand at a type, and belong to who owns that.
+        types = [key for key, each in elements.items() if key[0] == "type" and each.values.get("message") == element.id]
+        return tuple(owner for each in types for owner in _list_owners(each, context))
     if element is None or not element.owner:
         return ()
     co_owners = element.values.get("co_owners")

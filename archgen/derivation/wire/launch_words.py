@@ -49,9 +49,12 @@ def list_rule_words(node: Node, *, ros_1: bool) -> Iterator[RuleWord]:
             for text, at in words
             if JOINT in text and not (text.startswith("_") and not text.startswith("__"))
         )
-        return
-    if node.container is not None:
-        return  # what a container loads has no command line of its own
+    # What a container of ROS 2 loads has no command line of its own.
+    elif node.container is None:
+        yield from _list_in_ros_2(words)
+
+
+def _list_in_ros_2(words: Iterator[_PlacedWord]) -> Iterator[RuleWord]:
     is_for_ros = False
     for text, at in words:
         if text == "--ros-args":
@@ -77,6 +80,8 @@ def list_parameter_words(node: Node) -> Iterator[ParameterValue]:
     """
     words, places = node.arguments, node.argument_places or (NO_SPAN,) * len(node.arguments)
     is_for_ros = False
+    if node.container is not None:
+        return  # as above
     for flag, (word, at) in zip(words, list(zip(words, places, strict=True))[1:], strict=False):
         is_for_ros = flag == "--ros-args" or (is_for_ros and flag != "--")
         parameter, joint, text = word.partition(JOINT)

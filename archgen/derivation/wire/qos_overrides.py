@@ -59,9 +59,10 @@ class QosOverride:
     origin: ValueOrigin
     at: Span
 
-    def is_for(self, endpoint: Endpoint) -> bool:
-        """Whether it names this end; an id is the program's own, and may be that of any end."""
-        return self.topic == endpoint.name and END_WORDS.get(self.end) == endpoint.use and endpoint.flow == "topic"
+    @property
+    def wire_end(self) -> tuple[str, UseKind | None]:
+        """The name on the wire and the use of the ends that it names; an id is the program's own, and may be that of any."""
+        return self.topic, END_WORDS.get(self.end)
 
 
 def list_overrides(architecture: Architecture, node: Node) -> tuple[QosOverride, ...]:
@@ -72,6 +73,7 @@ def list_overrides(architecture: Architecture, node: Node) -> tuple[QosOverride,
     if not any(name.startswith(PREFIX) for name in chain(declarations, given, words)):
         return ()  # of nearly all nodes
     overrides = []
+    declared_ends = {name.rpartition(".")[0] for name in declarations if name.startswith(PREFIX)}
     parameters = {name: EffectiveParameter(name, each.value, "node", each.at) for name, each in words.items()}
     # What a launch gives stands behind the node's own words, and wins.
     given_later = find_effective_parameters(architecture, node)
@@ -83,20 +85,20 @@ def list_overrides(architecture: Architecture, node: Node) -> tuple[QosOverride,
         topic, end, policy = parts
         end_word, _, end_id = end.partition("_")
         value = parameter.value if parameter.is_known else None
-        effect = _find_effect(node, name, end_id, declarations)
+        # rclcpp and rclpy declare a parameter for each policy that a program takes.
+        is_declared, is_end_declared = name in declarations, name.rpartition(".")[0] in declared_ends
+        effect = "obeyed" if is_declared else "ignored" if is_end_declared else _guess_effect(node, end_id)
         overrides.append(
             QosOverride(name, topic, end_word, end_id, policy, value, effect, parameter.origin, parameter.at)
         )
     return tuple(overrides)
 
 
-def _find_effect(node: Node, name: str, end_id: str, declared_names: Iterable[str]) -> OverrideEffect:
-    # rclcpp and rclpy declare a parameter for each policy that a program takes.
-    if name in declared_names:
-        return "obeyed"
-    if any(each.startswith(f"{name.rpartition('.')[0]}.") for each in declared_names):
-        return "ignored"
-    # One that is generated has the values in its code, and gives its ends no ids.
+def _guess_effect(node: Node, end_id: str) -> OverrideEffect:
+    """Return what a program makes of an override of which it declares nothing.
+
+    One that is generated has the values in its code, and gives its ends no ids.
+    """
     return "unknown" if not node.is_generated else "ignored" if end_id else "obeyed"
 
 
@@ -129,11 +131,9 @@ def describe_values(policy: str) -> str:
 
 
 def override_qos(endpoint: Endpoint, overrides: Iterable[QosOverride]) -> Endpoint:
-    """Return an end with the quality of service that overrides give it, and where each policy comes from."""
+    """Return an end with the quality of service that its overrides give it, and where each policy comes from."""
     qos, effects, evidence = endpoint.qos, set[OverrideEffect](), dict(endpoint.evidence)
     for override in overrides:
-        if not override.is_for(endpoint):
-            continue
         changes = _list_changes(override)
         effects.add(override.effect)
         if changes:
@@ -141,8 +141,6 @@ def override_qos(endpoint: Endpoint, overrides: Iterable[QosOverride]) -> Endpoi
             evidence[f"qos.{override.policy}"] = Evidence("written", override.parameter, override.at)
         elif override.effect != "ignored":
             evidence[f"qos.{override.policy}"] = Evidence("unknown", override.parameter, override.at)
-    if not effects:
-        return endpoint
     effect: OverrideEffect = "unknown" if "unknown" in effects else "obeyed" if "obeyed" in effects else "ignored"
     qos_if_ignored = endpoint.qos if effect == "unknown" and qos != endpoint.qos else None
     return replace(endpoint, qos=qos, qos_override=effect, qos_if_ignored=qos_if_ignored, evidence=evidence)

@@ -18,7 +18,7 @@ from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Container
-from archgen.model.node import Clock, Endpoint, Evidence, Node, RunState
+from archgen.model.node import Clock, Endpoint, Evidence, Node, RunState, UseKind
 from archgen.model.parameter import format_parameter
 from archgen.model.parameter_values import EffectiveParameter, find_effective_parameters
 from archgen.model.ros_distro import is_ros_1
@@ -106,7 +106,8 @@ class NodeState:
     runs: RunState | None
     lifecycle: LifecycleState | None
     """The state in which it stays, where that is not `active`."""
-    overrides: tuple[QosOverride, ...]
+    overrides: Mapping[tuple[str, UseKind | None], list[QosOverride]]
+    """By the name on the wire and the use of the ends that they name."""
     evidence: Mapping[str, Evidence]
     places: tuple[Span, ...]
     """Those of the evidence, which does not compare them."""
@@ -126,7 +127,9 @@ class RunningStates:
         domain = None if self._is_ros_1 else self._find_domain(node, evidence)
         clock = "system" if node.is_program else self._find_clock(node, evidence)
         runs, lifecycle = self._find_run_state(node, evidence)
-        overrides = () if self._is_ros_1 or node.is_program else list_overrides(self._architecture, node)
+        overrides: dict[tuple[str, UseKind | None], list[QosOverride]] = {}
+        for override in () if self._is_ros_1 or node.is_program else list_overrides(self._architecture, node):
+            overrides.setdefault(override.wire_end, []).append(override)
         places = tuple(each.at for each in evidence.values())
         return NodeState(domain, clock, runs, lifecycle, overrides, evidence, places)
 
@@ -265,7 +268,8 @@ def _complete_endpoint(node: Node, state: NodeState, endpoint: Endpoint) -> Endp
         runs=runs,
         evidence={**endpoint.evidence, **evidence},
     )
-    return override_qos(completed, state.overrides) if state.overrides else completed
+    overrides = state.overrides.get((endpoint.name or "", endpoint.use)) if endpoint.flow == "topic" else None
+    return override_qos(completed, overrides) if overrides else completed
 
 
 def _find_end_state(node: Node, state: NodeState, endpoint: Endpoint) -> RunState | None:

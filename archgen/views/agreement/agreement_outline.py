@@ -118,6 +118,7 @@ def _changes_notice(content: AgreementContent) -> tuple[Paragraph, ...]:
     names_by_word = {
         "Frames": list_changed_frames(content),
         "Parameters and operations": list_changed_settings(content),
+        "Terms": content.changes.changed_words,
     }
     others = [_name_changed(word, since, names) for word, names in names_by_word.items() if names]
     if others and not content.changes.has_changes:

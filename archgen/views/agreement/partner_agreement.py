@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping, Sequence
 from archgen.compare.match_elements import match_elements
 from archgen.compare.matched_ids import MatchedIds
 from archgen.frozen import dataclass, replace
-from archgen.model.agreed_terms import RULES
+from archgen.model.agreed_terms import GENERAL_TERMS, RULES, find_agreement
 from archgen.model.partner_interfaces import PartnerPair, find_interfaces_between
 from archgen.timing.chains.measured_comparison import Observation
 from archgen.timing.system import activity_builder
@@ -128,13 +128,17 @@ def _compare_with(
     old_pair = old_partners.get(pair[0], pair[0]), old_partners.get(pair[1], pair[1])
     old_records = record_interfaces(earlier_lookup, old_pair, matched_ids)
     known = frozenset(activity_builder.name_activities(earlier_lookup.architecture).values())
-    return compare_revisions(
+    changes = compare_revisions(
         name,
         [_add_unproven(earlier_lookup, record, known, matched_ids) for record in old_records],
         [_add_unproven(lookup, record, known, MatchedIds()) for record in records],
         matched_ids,
         rules,
     )
+    old_terms = find_agreement(earlier_lookup.architecture.agreements, *old_pair).terms
+    terms = find_agreement(lookup.architecture.agreements, *pair).terms
+    words = tuple(title for key, title in GENERAL_TERMS.items() if old_terms.get(key) != terms.get(key))
+    return replace(changes, changed_words=words)
 
 
 def _add_unproven(

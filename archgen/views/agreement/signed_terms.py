@@ -65,6 +65,7 @@ def list_departures(changes: AgreementChanges) -> Iterator[str]:
             yield from (f"  {line}" for line in lines)
         else:
             yield f"`{key[0]}` {lines[0]}"
+    yield from (f"terms: {title} is not as it was signed" for title in changes.changed_words)
 
 
 def list_expected_changes(changes: AgreementChanges) -> Iterator[str]:

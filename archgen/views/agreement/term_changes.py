@@ -66,6 +66,8 @@ class AgreementChanges:
     earlier_versions: Mapping[InterfaceKey, str] = field(default_factory=dict)
     """The version that an interface of the earlier revision had there, also of those that are gone."""
     later_versions: Mapping[InterfaceKey, str] = field(default_factory=dict)
+    changed_words: tuple[str, ...] = ()
+    """What is agreed otherwise for all interfaces, by the titles of terms."""
 
     def terms_of(self, key: InterfaceKey) -> tuple[TermChange, ...]:
         """Return the changed terms of an interface that is in both revisions."""

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 
 from archgen.compare import Change, Comparison
 from archgen.compare.change_sentences import READERS_LEAD
 from archgen.compare.edits import Edit
+from archgen.compare.sentence_words import tick_names
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.frozen import dataclass, replace
@@ -15,6 +17,8 @@ from archgen.views.changes import breaking_verdict
 from archgen.views.changes.owned_edits import name_owner
 from archgen.views.changes.partner_names import name_each
 
+_BACKTICKED = re.compile(r"`([^`]*)`")
+_MAX_NAMES = 3
 _MAX_PLACES = 4
 _MAX_LOSSES = 4
 """How many places of one rule, and how many losses of each category by what is not read any more, are written out."""
@@ -100,7 +104,22 @@ def _share_losses(edit: Edit, partner_names: Mapping[str, str]) -> Iterator[Shar
     ]
     # With a file that is not read any more goes all that it held, with a type all its instances change: one cause, and
     # not one more reason for each element.
-    yield from _limit_losses(shared) if edit.element_kind in {"project", "component_type"} else shared
+    is_many = edit.element_kind in {"project", "component_type"}
+    yield from _limit_losses(list(_join_instances(edit, shared))) if is_many else shared
+
+
+def _join_instances(edit: Edit, losses: Sequence[SharedLoss]) -> Iterator[SharedLoss]:
+    """Yield losses that are the same of each instance once, with the names of what is lost."""
+    elements = tuple(f"{change.element_id}." for change in edit.changes if change.element_kind != "component_type")
+    names_by_loss: dict[SharedLoss, list[str]] = {}
+    for loss in losses:
+        named = (name for name in _BACKTICKED.findall(loss.reason) if f"{name}.".startswith(elements))
+        name = next(named, "")
+        # A placeholder that nobody can write in a name.
+        joint = replace(loss, reason=loss.reason.replace(f"`{name}`", "\0", 1)) if name else loss
+        names_by_loss.setdefault(joint, []).append(name)
+    for loss, names in names_by_loss.items():
+        yield replace(loss, reason=loss.reason.replace("\0", tick_names(names, _MAX_NAMES)))
 
 
 def _limit_losses(losses: Sequence[SharedLoss]) -> Iterator[SharedLoss]:

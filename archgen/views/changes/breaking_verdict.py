@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from archgen.compare import Change, Comparison, PartnerBreak
-from archgen.compare.agreements import AgreementJudge, find_partner_id, list_agreement_targets
+from archgen.compare.agreements import AgreementJudge, AgreementTarget, find_partner_id, list_agreement_targets
 from archgen.compare.change_hashes import agreement_key
 from archgen.compare.sentence_words import tick_names
 from archgen.diagnostics.common_wording import join_words
@@ -25,8 +25,6 @@ from archgen.views.changes.partner_names import name_each, name_partners
 from archgen.views.inline_text import count_noun
 
 _MAX_FILES = 4
-_Target = tuple[str, str, str]
-"""What an entry names: element, key and hash."""
 _ALL_CLEAR = "no change breaks another partner"
 _PLAIN_TEXT = re.compile(r"[A-Za-z_](?:[\w ./-]*[\w])?", re.ASCII)
 """A text that YAML reads as itself; the words that it reads as something else are no ids."""
@@ -83,16 +81,18 @@ def write_missing_entries(comparison: Comparison) -> tuple[str, ...]:
     )
 
 
-def _find_refused_targets(comparison: Comparison) -> Mapping[str, Sequence[_Target]]:
+def _find_refused_targets(comparison: Comparison) -> Mapping[str, Sequence[AgreementTarget]]:
     """Return what entries have to name to accept what the policy refuses, by the partner who did not agree. What cannot be
     judged is nothing that anybody could agree on.
     """
-    targets: dict[str, dict[_Target, None]] = {}
+    targets: dict[str, dict[AgreementTarget, None]] = {}
     for change in comparison.changes if comparison.is_judged else ():
-        for each in change.breaks if _is_acceptable(change) else ():
-            if each.agreement is None and _is_refused(each, comparison):
-                own_targets = list_agreement_targets(change, [each])
-                targets.setdefault(each.partner, {}).update(dict.fromkeys(own_targets))
+        if not _is_acceptable(change):
+            continue
+        refused_breaks = [each for each in change.breaks if each.agreement is None and _is_refused(each, comparison)]
+        for partner in dict.fromkeys(each.partner for each in refused_breaks):
+            own_breaks = [each for each in refused_breaks if each.partner == partner]
+            targets.setdefault(partner, {}).update(dict.fromkeys(list_agreement_targets(change, own_breaks)))
     return {partner: list(names) for partner, names in targets.items()}
 
 
@@ -106,8 +106,7 @@ def describe_remedy(change: Change, comparison: Comparison) -> str:
     partner_ids = [find_partner_id(partner, comparison.matched_ids) for partner in partners]
     files = join_words([f"`{agreement_file(partner_id)}`" for partner_id in partner_ids])
     targets = list_agreement_targets(change, [each for each in change.breaks if each.agreement is None])
-    entries = [_write_entry(target, "THE REASON") for target in targets]
-    return f"mend it, or {_say_why(partners, comparison)}, in {files}: {join_words(entries)}"
+    return f"mend it, or {_say_why(partners, comparison)}, in {files}: {_write_flow_entries(targets, 'THE REASON')}"
 
 
 def _is_acceptable(change: Change) -> bool:
@@ -157,15 +156,14 @@ def describe_agreements(change: Change, comparison: Comparison) -> Iterator[str]
 
 def _describe_claim(entry: AcceptedChange, change: Change, comparison: Comparison) -> str:
     """Describe an entry that excuses nothing: why not, and what to write where."""
-    partners = [find_partner_id(partner, comparison.matched_ids) for partner in change.broken_partners]
+    partners_by_file = {find_partner_id(each, comparison.matched_ids): each for each in change.broken_partners}
     place = _describe_place(entry)
     flaw = AgreementJudge.from_comparison(comparison).find_flaw(entry, change)
     if flaw == "foreign file":
         names = join_words(name_each(change.broken_partners, name_partners(comparison)))
         return f"said in {place}, not by {names}: {entry.reason}"
-    partner = change.broken_partners[partners.index(entry.partner or "")]
-    targets = list_agreement_targets(change, [each for each in change.breaks if each.partner == partner])
-    needed_entry = join_words([_write_entry(target, entry.reason) for target in targets])
+    own_breaks = [each for each in change.breaks if each.partner == partners_by_file[entry.partner or ""]]
+    needed_entry = _write_flow_entries(list_agreement_targets(change, own_breaks), entry.reason)
     if flaw == "no key":
         return f"said in {place} without a `key`, which would accept whatever changes: write {needed_entry}"
     if flaw == "other change":
@@ -180,26 +178,24 @@ def _describe_place(entry: AcceptedChange) -> str:
     return f"`{entry.at.file}`" if entry.at.file else "the project"
 
 
-def _write_entry(target: _Target, reason: str) -> str:
-    """Return the entry that accepts a change, as it has to stand in a file."""
-    return f"`review: {{accepted: {{{_quote_text(target[0])}: {_write_body(target, reason)}}}}}`"
+def _write_flow_entries(targets: Iterable[AgreementTarget], reason: str) -> str:
+    """Return the section that accepts something, in one line."""
+    return "`review: {accepted: {" + ", ".join(_write_lines(targets, reason)) + "}}`"
 
 
-def _write_entries(targets: Iterable[_Target]) -> str:
-    """Return the section that accepts changes, a line for each element."""
+def _write_entries(targets: Iterable[AgreementTarget]) -> str:
+    """Return the section that accepts something, a line for each element."""
+    return "\n".join(("review:", "  accepted:", *(f"    {line}" for line in _write_lines(targets, "THE REASON"))))
+
+
+def _write_lines(targets: Iterable[AgreementTarget], reason: str) -> Iterator[str]:
     bodies_by_element: dict[str, list[str]] = {}
-    for target in targets:
-        bodies_by_element.setdefault(target[0], []).append(_write_body(target, "THE REASON"))
-    lines = ["review:", "  accepted:"]
+    for target in dict.fromkeys(targets):
+        body = f"{{key: {_quote_text(target.key)}, was: {_quote_text(target.hash)}, reason: {_quote_text(reason)}}}"
+        bodies_by_element.setdefault(target.element, []).append(body)
     for element_id, bodies in bodies_by_element.items():
         text = ", ".join(bodies)
-        lines.append(f"    {_quote_text(element_id)}: {text if len(bodies) == 1 else f'[{text}]'}")
-    return "\n".join(lines)
-
-
-def _write_body(target: _Target, reason: str) -> str:
-    _, key, change_hash = target
-    return f"{{key: {_quote_text(key)}, was: {_quote_text(change_hash)}, reason: {_quote_text(reason)}}}"
+        yield f"{_quote_text(element_id)}: {text if len(bodies) == 1 else f'[{text}]'}"
 
 
 def _quote_text(text: str) -> str:

@@ -244,13 +244,15 @@ def test_an_entry_may_accept_what_is_not_kept(compared_folders: ComparedFolders)
     after = {"archgen.yaml": load("20 ms", "20 ms")}
     refused = compared_folders(files, after)
     (entries,) = write_missing_entries(refused)
-    assert entries == (
-        "# review/b.yaml\nreview:\n  accepted:\n    sense.eye.rows: {key: max_gap, was: fec16e, reason: THE REASON}"
-    )
+    line = "sense.eye.rows: {key: max_gap, was: f00ebd, reason: THE REASON}"
+    assert entries == f"# review/b.yaml\nreview:\n  accepted:\n    {line}"
     accepted = compared_folders(files, {**after, "review/b.yaml": entries})
     assert not accepted.is_refused
     assert all(each.agreement == "THE REASON" for change in accepted.changes for each in change.breaks)
     assert accepted.idle_acceptances == ()
+    # Other causes are another loss.
+    worse = compared_folders(files, {"archgen.yaml": load("20 ms", "30 ms"), "review/b.yaml": entries})
+    assert worse.is_refused
     other = compared_folders(files, {**after, "review/b.yaml": entries.replace("max_gap", "max_age")})
     assert other.is_refused
     assert [entry.key for entry in other.idle_acceptances] == ["max_age"]

@@ -76,8 +76,10 @@ NAMES = {
         DERIVED,
         [("eye: {", "eye: {remaps: {/sensing/camera/image: /eye/raw}, ")],
         [
-            "eye/remaps./sensing/camera/image sssa: takes the topic `/sensing/camera/image` from SSSA (`mind`); it is "
-            "`/eye/raw` now"
+            (
+                "eye/remaps./sensing/camera/image sssa: takes the topic `/sensing/camera/image` from SSSA (`mind`); "
+                "it is `/eye/raw` now"
+            )
         ],
     ),
     "a remap that fits nothing": (NODES, [("eye: {", "eye: {remaps: {/eye/imgae: /eye/raw}, ")], []),

@@ -4,15 +4,24 @@ from __future__ import annotations
 
 import json
 import random
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from archgen.bringup.program_names import (
+    ProgramNames,
+    choose_own_name,
+    group_by_program,
+    group_endpoints,
+    index_endpoints,
+)
 from archgen.derivation.wire.remap_rules import NodeNames, apply_launch_names, read_arguments
+from archgen.model.architecture import Architecture
 from archgen.model.node import Node
 from tests.derivation.wire.test_remap_rules import REFUSED_IN_ROS_2, ROS_2_ROWS
+from tests.derivation.wire.test_wire_names import MOVED_BY_ARGUMENTS, SHARED_PROGRAM, SWAP
 from tests.outside_tools import run_judge
 from tests.ros_1_environment import SYSTEM_PYTHON, require_ros_1, ros_1_environment
 from tests.ros_2_kilted import kilted_environment, make_kilted_python
@@ -200,6 +209,30 @@ def test_real_nodes_agree_with_each_row_of_the_rules(tmp_path: Path) -> None:
 
 def _write_words(rules: str) -> list[str]:
     return ["--ros-args", *(word for rule in rules.split(" ") for word in ("-r", rule))]
+
+
+@pytest.mark.ros
+def test_trap_1_generated_code_and_launch_files_give_the_names_of_the_record(
+    derived: Callable[[str], Architecture], tmp_path: Path
+) -> None:
+    """What generated code says, with the rules that launch files give it, is on a real node what the endpoint is called."""
+    cases, expected = [], []
+    for text in (SHARED_PROGRAM, SWAP, MOVED_BY_ARGUMENTS):
+        architecture = derived(text)
+        program_names, endpoints = ProgramNames(architecture, 2), index_endpoints(architecture)
+        for nodes in group_by_program(architecture, architecture.nodes.values()).values():
+            for (_, _, key), ends in group_endpoints(nodes, endpoints).items():
+                said = choose_own_name(key, ends, is_shared=len(nodes) > 1)
+                for end in ends:
+                    node = architecture.nodes[end.node]
+                    rules = [f"{own}:={name}" for own, name in program_names.find_remaps(node).items()]
+                    words = [*node.arguments, *_write_words(" ".join(rules))] if rules else [*node.arguments]
+                    place = {"name": node.name, "namespace": node.namespace}
+                    cases.append({**place, "words": ["n", *words], "written": [said]})
+                    expected.append(end.name)
+    answers = ask_ros(_ROS_2_NAMES, make_ros_python(), ros_environment(27, tmp_path), cases)
+    assert [each["names"][f"topic {case['written'][0]}"] for each, case in zip(answers, cases, strict=True)] == expected
+    assert len(expected) >= 9
 
 
 @pytest.mark.ros

@@ -62,12 +62,21 @@ def test_trap_1_the_generator_folds_all_rules_into_one_for_each_end(derived: Der
     assert {end.node: end.name for end in architecture.endpoints} == {"one": "/raw1", "two": "/raw2", "three": "/raw3"}
 
 
-def test_trap_1_a_swap_is_not_swapped_back_in_generated_code(derived: Derived) -> None:
-    text = """
+SWAP = """
 groups: {g: {components: {a: {outputs: {o: std_msgs/msg/Bool, p: std_msgs/msg/Bool}}}}}
 nodes: {sup: {implements: a, publishes: {o: /x, p: /y}, remaps: {/x: /y, /y: /x, /tf: tf}}}
 """
-    architecture = derived(text)
+MOVED_BY_ARGUMENTS = """
+component_types: {stop: {inputs: {in: std_msgs/msg/Bool}, outputs: {safety: std_msgs/msg/Bool}}}
+groups: {g: {components: {a: {is: stop, inputs: {in: b.safety}}, b: {is: stop, inputs: {in: a.safety}}}}}
+nodes:
+  one: {implements: a, arguments: [--ros-args, -r, "/g/a/safety:=/q", -r, "__ns:=/deep"], remaps: {/tf: tf}}
+  two: {implements: b, namespace: /b, publishes: {safety: out}, arguments: ["out:=~/private", --ros-args, -r, "__node:=new"]}
+"""
+
+
+def test_trap_1_a_swap_is_not_swapped_back_in_generated_code(derived: Derived) -> None:
+    architecture = derived(SWAP)
     assert [each.name for each in architecture.endpoints] == ["/y", "/x"]
     # The program says the names on the wire itself.
     assert ProgramNames(architecture, 2).find_remaps(architecture.nodes["sup"]) == {"/tf": "tf"}
