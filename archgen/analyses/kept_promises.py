@@ -30,7 +30,8 @@ if TYPE_CHECKING:
     from archgen.timing.system.timing_system import Arc
 
 
-_NOUNS = {"rate": "", "max_gap": "gaps of at most ", "max_age": "no greater age than "}
+PROMISED_WORDS = {"rate": "", "max_gap": "gaps of at most ", "max_age": "no greater age than "}
+"""What stands before a promised figure, by its key."""
 _HELP = {
     "rate": "let it be sent more often, or promise a lower rate",
     "max_gap": "let it be sent more often and at each run, or promise a longer gap",
@@ -57,7 +58,7 @@ class JudgedPromise(NamedTuple):
     @property
     def promised(self) -> str:
         """Return what is promised, in words."""
-        return f"{_NOUNS[self.key]}{self.limit}"
+        return f"{PROMISED_WORDS[self.key]}{self.limit}"
 
     @property
     def words(self) -> str:
@@ -167,7 +168,7 @@ def _find_paces(architecture: Architecture, analysis: Analysis) -> Mapping[str, 
 def _judge_promise(
     port: str, leaf: str, promise: Promise, paces: Sequence[EventPace], ages: Sequence[tuple[Arc, TimingValue]]
 ) -> Iterator[JudgedPromise]:
-    at = {key: promise.places.get(key, promise.at) for key in _NOUNS}
+    at = {key: promise.places.get(key, promise.at) for key in PROMISED_WORDS}
     if promise.rate is not None:
         rate = add_values(pace.rate for pace in paces) if paces else UNKNOWN_VALUE
         is_sent_once = bool(paces) and all(pace.behaviour == "once" for pace in paces)

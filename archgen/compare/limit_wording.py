@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from archgen.analyses.kept_promises import PROMISED_WORDS
 from archgen.compare.figure_changes import LimitChange
 from archgen.compare.sentence_words import tick_names
 from archgen.timing.figures.figure_wording import format_compared, format_duration, format_rate
 from archgen.timing.figures.timing_values import TimingValue
-
-_PROMISED = {"rate": "", "max_gap": "gaps of at most ", "max_age": "no greater age than "}
 
 
 def describe_limit(limit: LimitChange) -> str:
@@ -20,7 +19,7 @@ def describe_limit(limit: LimitChange) -> str:
         return f"the deadline of {limit.limit} that is offered for {tick_names([limit.port])}"
     if limit.key == "timing.max_gap":
         return f"the largest gap of {limit.limit} of {tick_names([limit.port])}"
-    return f"the promise of {tick_names([limit.port])} of {_PROMISED[limit.key]}{limit.limit}"
+    return f"the promise of {tick_names([limit.port])} of {PROMISED_WORDS[limit.key]}{limit.limit}"
 
 
 def describe_growth(limit: LimitChange) -> str:

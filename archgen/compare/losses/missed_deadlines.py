@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from fractions import Fraction
 from itertools import pairwise
 
 from archgen.compare.comparison import ChainChange
@@ -132,7 +133,8 @@ def _lateness_reason(old_result: ChainResult, new_result: ChainResult) -> str:
         growth = _format_growth(old_result, new_result)
         return f"takes away the proof that {chain_name} meets {limit} ({growth})"
     if old_result.verdict == "met" and new_verdict in {"open", "not proven"}:
-        met_phrase = f"{chain_name}, which met {limit} with {_format_bound(old_result.bound)}"
+        (met_text,) = format_compared([old_result.bound.value or Fraction(0)], format_duration, limit=limit_value)
+        met_phrase = f"{chain_name}, which met {limit} with {met_text}"
         return f"leaves {met_phrase}, without a bound" if new_result.terms else f"cuts {met_phrase}"
     return ""
 

@@ -57,12 +57,12 @@ CASES = {
     "who shares the host": (
         FAN,
         [("wcet: 1 ms, priority", "wcet: 70 ms, priority")],
-        both("tracking.fan/timing.wcet", f"leaves the {MET} 153.001 ms, without a bound; `eye` of CERTH and `feet` of TUM are on it", "certh", "tum"),
+        both("tracking.fan/timing.wcet", f"leaves the {MET} ~154 ms, without a bound; `eye` of CERTH and `feet` of TUM are on it", "certh", "tum"),
     ),
     "the cores of the host": (
         ROBOT.replace("pc: {cores: 1}", "pc: {cores: 2}").replace(*LATE_START).replace("wcet: 20 ms", "wcet: 80 ms"),
         [("pc: {cores: 2}", "pc: {cores: 1}")],
-        both("pc/cores", f"leaves the {MET} 189.001 ms, without a bound; {ALL}", "certh", "sssa", "tum"),
+        both("pc/cores", f"leaves the {MET} ~190 ms, without a bound; {ALL}", "certh", "sssa", "tum"),
     ),
     "the threads of the container": (
         BOX,
