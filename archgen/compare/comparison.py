@@ -25,7 +25,8 @@ class PartnerBreak:
     ...".
 
     `agreement` is why the partner agrees, None if it does not. `category` says which policy judges it. `variants` are
-    those in which it is lost, where nothing is lost in the project itself.
+    those in which it is lost, where nothing is lost in the project itself. `fallen` is the port and the key (`max_gap`) of
+    a promise or freshness that is not kept any more.
     """
 
     partner: str

@@ -262,4 +262,4 @@ def _find_clashes(writer: Endpoint, reader: Endpoint) -> tuple[QosConflict, ...]
 def _name_domain(domain: int | None) -> str:
     if domain is None:
         return "a domain that nobody knows"
-    return f"the domain {domain}" if domain else "the usual one"
+    return f"the domain {domain}" if domain else "the usual domain"

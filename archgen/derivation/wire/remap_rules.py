@@ -274,7 +274,7 @@ class NodeNames:
             return self._look_up(program_name, self._services if flow == "service" else self._topics)
         if self._moves_actions and (found := self._look_up(program_name, self._topics)):
             return found
-        names: set[str | None] = set()
+        names: list[str | None] = []
         first_rule: RemapRule | None = None
         for part in ACTION_PARTS[1 if self._ros_1 else 2]:
             found = self._look_up(
@@ -282,10 +282,10 @@ class NodeNames:
             )
             if found is None or (found[0] is not None and not found[0].endswith(part)):
                 return None
-            names.add(found[0] and found[0].removesuffix(part))
+            names.append(found[0] and found[0].removesuffix(part))
             first_rule = first_rule or found[1]
         # An action whose parts have gone different ways is none any more, and stays where it was.
-        return (names.pop(), first_rule) if first_rule and len(names) == 1 else None
+        return (names[0], first_rule) if first_rule and len(set(names)) == 1 else None
 
     def _look_up(self, program_name: str, table: Mapping[str, RemapRule | None]) -> tuple[str | None, RemapRule] | None:
         if program_name not in table:

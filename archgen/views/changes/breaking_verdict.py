@@ -87,10 +87,12 @@ def _find_refused_targets(comparison: Comparison) -> Mapping[str, Sequence[Agree
     """
     targets: dict[str, dict[AgreementTarget, None]] = {}
     for change in comparison.changes if comparison.is_judged else ():
-        for each in change.breaks if _is_acceptable(change) else ():
-            if each.agreement is None and _is_refused(each, comparison):
-                own_targets = list_agreement_targets(change, [each])
-                targets.setdefault(each.partner, {}).update(dict.fromkeys(own_targets))
+        if not _is_acceptable(change):
+            continue
+        refused_breaks = [each for each in change.breaks if each.agreement is None and _is_refused(each, comparison)]
+        for partner in dict.fromkeys(each.partner for each in refused_breaks):
+            own_breaks = [each for each in refused_breaks if each.partner == partner]
+            targets.setdefault(partner, {}).update(dict.fromkeys(list_agreement_targets(change, own_breaks)))
     return {partner: list(names) for partner, names in targets.items()}
 
 

@@ -22,7 +22,7 @@ nodes:
 """
 AT_EYE = "executable: e,"
 NAMES = "`/ask`, `/tf` and `/x`"
-FAR = f"runs what is on {NAMES} in the domain 7, where `leg` of B runs in the usual one: nothing arrives any more"
+FAR = f"runs what is on {NAMES} in the domain 7, where `leg` of B runs in the usual domain: nothing arrives any more"
 STILL = "no longer has `eye` run (`{}`), and with it " + NAMES + "; `leg` of B needs it"
 NOBODY = STILL.format("nobody activates it")
 SIMULATED = f"runs what is on {NAMES} by simulated time, where `leg` of B runs by the time of the system"
