@@ -46,7 +46,7 @@ def find_unmade_connections(context: ChangeContext) -> Iterator[PartnerLoss]:
     for input_id, sources in sorted(connections_before.sources_by_input.items()):
         partner = context.owner_before("input", input_id)
         sources_after = connections_after.sources_by_input.get(input_id, frozenset())
-        lost_sources = {each for each in sources if context.output_heirs.get(each, each) not in sources_after}
+        lost_sources = [each for each in sorted(sources) if context.output_heirs.get(each, each) not in sources_after]
         is_made = not sources_after and connections_before.is_made(input_id, sources)
         is_of_group = bool(lost_sources) and all((each, input_id) in connections_before.group_pairs for each in sources)
         if (

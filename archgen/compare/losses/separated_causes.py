@@ -120,8 +120,8 @@ class CauseSeparator:
         component = self._context.after.components.get(change.element_id)
         if isinstance(change.after, list) and change.element_kind == "connection":
             gained = {source.rpartition(".")[0] for source in change.after} - self._context.before.components.keys()
-            if gained & set(wholes):
-                return min(gained & set(wholes), key=str)
+            if whole_sources := sorted(gained.intersection(filter(None, wholes))):
+                return whole_sources[0]
         node = self._context.after.nodes.get(change.element_id) if change.element_kind == "node" else None
         parts = [find_whole(self._context, change), *(node.implements if node else (change.element_id,))]
         whole = next((part for part in parts if part in wholes and part), None)

@@ -55,7 +55,7 @@ def _list_bound_partners(context: ChangeContext, change: Change) -> set[str]:
     for chain_id in (each.text for each in requirement.verified_by if each.kind == "chain"):
         chain = context.before.chains.get(chain_id)
         elements |= {(point.kind, point.id) for point in (chain.through if chain else ())}
-    owners = (context.owner_before(kind, context.matched_ids.common_id(kind, name)) for kind, name in elements)
+    owners = (context.owner_before(kind, context.matched_ids.common_id(kind, name)) for kind, name in sorted(elements))
     return {owner for owner in owners if owner}
 
 
