@@ -30,12 +30,12 @@ def expected_rules() -> frozenset[str]:
     return frozenset(rule for folder in folders for case in read_cases(folder) for rule in case.expected_rules)
 
 
-DATED_RULES = frozenset({"expired-use"})
-"""Rules that need a commit, which a case has not: tests/project/test_commit_days.py."""
+RULES_OF_REPOSITORIES = frozenset({"expired-use", "stale-codeowners"})
+"""Rules that need a repository, which a case has not: tests/project/test_commit_days.py, tests/checking/test_codeowners_age.py."""
 
 
 @pytest.mark.parametrize(
-    "rule", [rule for rule in SHIPPED_RULES if rule.name not in DATED_RULES], ids=lambda rule: rule.name
+    "rule", [rule for rule in SHIPPED_RULES if rule.name not in RULES_OF_REPOSITORIES], ids=lambda rule: rule.name
 )
 def test_every_rule_has_a_case(rule: Rule, expected_rules: frozenset[str]) -> None:
     assert rule.name in expected_rules, "write one in cases/*.txt beside the tests of the rule's room"

@@ -110,7 +110,7 @@ def test_dry_run_prints_the_difference_and_writes_nothing(run: Run, first: Path)
         ),
         (("component", "devices.lidar"), "there is a component 'lidar' already: archgen.yaml:25:7"),
         (("group", "devices"), "there is a group 'devices' already: archgen.yaml:21:3"),
-        (("node", "amcl"), "there is a node 'amcl' already: archgen.yaml:167:3"),
+        (("node", "amcl"), "there is a node 'amcl' already: archgen.yaml:168:3"),
         (("component", "arm"), "say in which group with --group: devices, navigation, service"),
         (("component", "device.arm"), "there is no group 'device'; did you mean `devices`?"),
         (("component", "a.arm", "--group", "b"), "'a.arm' is in the group 'a', and --group says 'b'"),
