@@ -229,7 +229,7 @@ def test_a_new_project_works_at_once_by_its_first_lines(tmp_path: Path) -> None:
         assert set(server.complete("groups/sensing.yaml", group.replace("owner: lab", "owner: |"))) == {"lab"}
         assert set(server.complete("groups/sensing.yaml", group.replace("[R-1]", "[|]"))) == {"R-1"}
         keys = server.complete("groups/sensing.yaml", f"{group.rstrip()}\n    |\n")
-        assert {"host", "container", "publishes"} < set(keys)
+        assert {"host", "container", "subscribes"} < set(keys)
 
 
 def test_hostile_names_stay_names(tmp_path: Path) -> None:
