@@ -1,4 +1,4 @@
-"""What endpoints are called on the wire, in whole projects: the traps of effective.md, each by its name."""
+"""What endpoints are called on the wire, in whole projects: the traps of launches, each by its name."""
 
 from __future__ import annotations
 
