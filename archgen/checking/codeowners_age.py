@@ -79,7 +79,7 @@ def _read_codeowners(checked_project: CheckedProject) -> tuple[str, str, str] | 
         root = Path(os.path.realpath(files.root))
         top = next((each for each in (root, *root.parents) if os.path.lexists(each / ".git")), root)
         prefix = root.relative_to(top).as_posix().removeprefix(".")
-        found = [(name, _read_bytes(top / name)) for name in names]
+        found = [(name, _read_unlinked(top / name)) for name in names]
     else:
         return None
     return next(
@@ -88,9 +88,12 @@ def _read_codeowners(checked_project: CheckedProject) -> tuple[str, str, str] | 
     )
 
 
-def _read_bytes(path: Path) -> bytes | None:
+def _read_unlinked(path: Path) -> bytes | None:
+    """Return the first bytes of a file that is reached without links: these may lead out of the repository."""
+    if os.path.realpath(path) != str(path) or not path.is_file():
+        return None
     try:
         with path.open("rb") as stream:
-            return stream.read(_MAX_BYTES + 1) if path.is_file() else None
+            return stream.read(_MAX_BYTES + 1)
     except OSError:
         return None

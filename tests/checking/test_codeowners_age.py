@@ -44,6 +44,23 @@ def test_a_file_of_ones_own_is_not_judged(tmp_path: Path) -> None:
     assert list_stale(check_project(tmp_path)) == []
 
 
+@pytest.mark.parametrize("linked", [".github", ".github/CODEOWNERS"])
+def test_a_file_behind_a_link_is_not_read(tmp_path: Path, linked: str) -> None:
+    top, outside = tmp_path / "top", tmp_path / "outside" / linked
+    repository(top, {"archgen.yaml": TEXT})
+    stale_text = make_codeowners(check_project(top)).text.partition("* @p")[0]
+    target = outside / "CODEOWNERS" if linked == ".github" else outside
+    target.parent.mkdir(parents=True)
+    target.write_text(stale_text, encoding="utf-8")
+    link = top / linked
+    link.parent.mkdir(exist_ok=True)
+    link.symlink_to(outside)
+    assert list_stale(check_project(top)) == []
+    link.unlink()
+    outside.rename(link)
+    assert len(list_stale(check_project(top))) == 1
+
+
 @pytest.mark.parametrize("setting", ["off", "error"])
 def test_the_project_sets_its_severity(tmp_path: Path, setting: str) -> None:
     files = {"archgen.yaml": TEXT, "CODEOWNERS": ""}
