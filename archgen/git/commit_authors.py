@@ -25,4 +25,4 @@ def find_own_mail(repository: GitRepository) -> str:
 def _log(repository: GitRepository, form: str, base: str, head: str, path: str, *options: str) -> str:
     words = ("--no-mailmap", "--no-show-signature", form, *options, "--end-of-options", head, f"^{base}", "--")
     # A path as it is called: `*` and `:` are signs to git.
-    return run_git(repository.top, "--literal-pathspecs", "log", *words, *([f"{path}"] if path else [])).text
+    return run_git(repository.top, "--literal-pathspecs", "log", *words, *([path] if path else [])).text
