@@ -34,9 +34,8 @@ from archgen.compare.losses.separated_causes import CauseSeparator
 from archgen.compare.losses.timing_causes import TimingCauses
 from archgen.compare.losses.unserved_requirements import find_unserved_requirements
 from archgen.compare.losses.weakened_demands import find_rewritten_requirements, find_weakened_policies
-from archgen.compare.losses.weakened_outputs import find_weakened_outputs
+from archgen.compare.losses.weakened_outputs import find_weakened_outputs, find_weakened_sizes
 from archgen.compare.losses.weakened_promises import find_weakened_deadlines
-from archgen.compare.losses.weakened_sizes import find_weakened_sizes
 from archgen.compare.losses.weakened_words import find_weakened_words
 from archgen.compare.timing_pair import TimingPair
 from archgen.diagnostics.diagnostic import Severity

@@ -8,8 +8,7 @@ from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.asked_limits import compare_limits
 from archgen.compare.boundary_changes import find_boundary_changes
 from archgen.compare.breaking_changes import find_idle_acceptances, mark_breaking_changes, stricter_policy
-from archgen.compare.chain_causes import add_chain_causes
-from archgen.compare.chain_changes import compare_chains
+from archgen.compare.chain_changes import add_chain_causes, compare_chains
 from archgen.compare.change_listing import find_changes
 from archgen.compare.comparison import Comparison
 from archgen.compare.concerned_owners import find_concerned_owners
