@@ -38,7 +38,7 @@ from archgen.views.generation.program_parameters import (
 )
 from archgen.views.generation.program_ports import PORT_SECTIONS, record_ports, record_qos
 from archgen.views.generation.property_needs import find_text_fault
-from archgen.views.records.record_values import to_plain
+from archgen.views.records.record_sources import to_plain
 from archgen.views.used_messages import collect_messages
 
 __all__ = [

@@ -9,7 +9,51 @@ from typing import Literal
 
 from archgen.frozen import dataclass
 from archgen.views.graph_shapes import Graph
-from archgen.views.sequence_shapes import SequenceChart
+
+MessageStyle = Literal["data", "service", "action", "physical", "broken", "inner"]
+
+
+@dataclass(frozen=True, slots=True)
+class Lifeline:
+    """Who takes part: a box with a line below it. `colour` is an index into the palette of group hues, None for no hue."""
+
+    title: str
+    kind: Literal["actor", "component", "composed", "unknown"] = "component"
+    colour: int | None = None
+    ref: str | None = None
+    tooltip: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class SequenceMessage:
+    """A step: an arrow from one lifeline to another, by their positions; both the same for what happens inside.
+
+    `text` stands above the arrow behind `number`, the lines of `detail` in small type below the text.
+    """
+
+    number: int
+    tail: int
+    head: int
+    text: str = ""
+    detail: str = ""
+    style: MessageStyle = "data"
+    ref: str | None = None
+    tooltip: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class SequenceChart:
+    """A sequence of steps; `id` and `title` are as in Graph."""
+
+    id: str
+    title: str
+    lifelines: tuple[Lifeline, ...]
+    messages: tuple[SequenceMessage, ...]
+    legend: tuple[str, ...] = ()
+    """Which styles of messages the legend explains."""
+    notes: tuple[str, ...] = ()
+    alt: str = ""
+
 
 SegmentKind = Literal["sampling", "response", "link", "load", "other_load", "met", "missed", "unproven", "open", "best"]
 

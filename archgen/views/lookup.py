@@ -26,7 +26,7 @@ from archgen.model.step_connections import UseCaseSteps
 from archgen.timing.system import message_sizes
 from archgen.views.requirement_trace import RequirementTrace, trace_requirements
 from archgen.views.timing.timing_lookup import TimingLookup
-from archgen.views.type_texts import TypeTexts
+from archgen.views.type_names import TypeTexts
 
 T = TypeVar("T")
 

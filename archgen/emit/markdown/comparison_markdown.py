@@ -30,7 +30,7 @@ from archgen.views.changes.comparison_document import ComparisonDocument, Findin
 from archgen.views.changes.figure_lines import FigureLine
 from archgen.views.graph_shapes import Graph
 from archgen.views.graphs.changes import SMALL_BUDGET
-from archgen.views.graphs.changes.group_folding import fits_budget
+from archgen.views.graphs.changes.picture_folding import fits_budget
 from archgen.views.inline_text import count_noun
 
 _SHOWN_PARTNERS = 12

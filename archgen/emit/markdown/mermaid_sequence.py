@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from archgen.emit.markdown.mermaid_chart import escape_mermaid
-from archgen.views.sequence_shapes import Lifeline, SequenceChart, SequenceMessage
+from archgen.views.chart_shapes import Lifeline, SequenceChart, SequenceMessage
 
 _MAX_LENGTH = 60
 _ARROWS = {"service": "-->>", "action": "-->>", "broken": "-x"}

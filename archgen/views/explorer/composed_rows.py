@@ -9,8 +9,7 @@ from archgen.model.component_nesting import list_surrounding
 from archgen.views.explorer.column_layout import Place
 from archgen.views.explorer.element_keys import Key, list_composed_keys
 from archgen.views.explorer.map_places import Path
-from archgen.views.explorer.map_shapes import Row
-from archgen.views.explorer.row_values import list_path, list_places, shorten_description
+from archgen.views.explorer.map_shapes import Row, list_path, list_places, shorten_description
 from archgen.views.graphs.element_boxes import type_lines, worst_severity
 from archgen.views.lookup import Lookup
 

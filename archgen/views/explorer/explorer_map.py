@@ -13,8 +13,9 @@ from archgen.timing.analysis import EventPace
 from archgen.views.explorer import element_keys, map_flows
 from archgen.views.explorer.composed_rows import make_composed_rows
 from archgen.views.explorer.map_places import NO_HOME, MapPlaces, find_places
-from archgen.views.explorer.map_shapes import ExplorerMap, Row
-from archgen.views.explorer.row_values import (
+from archgen.views.explorer.map_shapes import (
+    ExplorerMap,
+    Row,
     describe_paces,
     find_shortest_step,
     list_passed_leaves,
@@ -27,7 +28,7 @@ from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.search.search_entry import join_entry_parts
 from archgen.views.tables.statistics_tables import PROGRESS_STEPS
-from archgen.views.timing import chain_status, rate_phrases
+from archgen.views.timing import chain_status, value_format
 
 
 def make_explorer_map(lookup: Lookup) -> ExplorerMap:
@@ -152,7 +153,7 @@ class _MapMaker:
             if name in architecture.requirements:
                 yield ("requirement", name, f"{name} {architecture.requirements[name].title}")
         yield from self._list_property_names()
-        yield from (("period", step, words) for step, words in rate_phrases.PERIOD_STEP_WORDS.items())
+        yield from (("period", step, words) for step, words in value_format.PERIOD_STEP_WORDS.items())
         yield from (("progress", str(number), step) for number, step in enumerate(PROGRESS_STEPS))
 
     def _list_property_names(self) -> Iterator[Row]:

@@ -15,7 +15,7 @@ from archgen.model.parameter_values import canonical_name, find_effective_parame
 from archgen.model.port_media import word_of_medium
 from archgen.model.ros_distro import is_ros_1
 from archgen.views.generation.generation_context import GeneratedView, GenerationContext, write_place
-from archgen.views.records.record_values import to_plain
+from archgen.views.records.record_sources import to_plain
 
 
 @dataclass(frozen=True, slots=True)

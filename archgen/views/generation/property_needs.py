@@ -17,7 +17,7 @@ from archgen.views.generation.component_records import (
     name_tag,
 )
 from archgen.views.generation.generation_context import GenerationContext
-from archgen.views.records.record_values import to_plain
+from archgen.views.records.record_sources import to_plain
 
 _TAG = re.compile(r"[A-Za-z][A-Za-z0-9_-]*\Z")
 _LINE_BREAKING = frozenset(("Cc", "Cs", "Zl", "Zp"))

@@ -13,7 +13,7 @@ from archgen.frozen import dataclass, replace
 from archgen.model.node import Endpoint, Topic
 from archgen.model.port_media import ROS, key_of_carrier, label_of_medium
 from archgen.views.graph_shapes import Arrow, Box, Graph
-from archgen.views.graphs import node_boxes
+from archgen.views.graphs import element_boxes
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
@@ -49,7 +49,7 @@ def draw_implementation(lookup: Lookup, component_id: str) -> Graph:
         end.node: _neighbour_box(lookup, end.node) for end in drawn_arrows if end.node not in subject_ids
     }
     subject_boxes = tuple(
-        node_boxes.node_box(lookup, lookup.architecture.nodes[each], is_subject=True) for each in sorted(subject_ids)
+        element_boxes.node_box(lookup, lookup.architecture.nodes[each], is_subject=True) for each in sorted(subject_ids)
     )
     graph = Graph(
         f"implementation/{component_id}",
@@ -133,7 +133,7 @@ def _draw_topics(
         topic = carriers[name]
         if name not in star_of_topic:
             own_endpoints = [each for each in (*topic.writers, *topic.readers) if each.node in subject_ids]
-            yield replace(node_boxes.topic_box(topic, own_endpoints), id=f"topic {name}")
+            yield replace(element_boxes.topic_box(topic, own_endpoints), id=f"topic {name}")
     for star in dict.fromkeys(star_of_topic.values()):
         names = [name for name, stands in star_of_topic.items() if stands == star]
         shown_lines = (
@@ -152,7 +152,7 @@ def _draw_topics(
 
 
 def _neighbour_box(lookup: Lookup, name: str) -> Box:
-    return node_boxes.neighbour_node_box(
+    return element_boxes.neighbour_node_box(
         lookup, lookup.architecture.nodes[name[1:]], "left" if name[0] == "<" else "right"
     )
 

@@ -11,10 +11,10 @@ from archgen.frozen import replace
 from archgen.model.node import Node
 from archgen.model.port_media import label_of_medium
 from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
-from archgen.views.graphs import element_boxes, node_boxes
+from archgen.views.graphs import element_boxes
+from archgen.views.graphs.element_boxes import NodeFlow
 from archgen.views.graphs.graph_folding import fold_graph
 from archgen.views.graphs.legend_keys import add_legend_keys
-from archgen.views.graphs.node_boxes import NodeFlow
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 
@@ -31,7 +31,7 @@ def draw_nodes(lookup: Lookup, graph_id: str, title: str, node_ids: Collection[s
     home_frames = {node.id: find_home_frame(lookup, node) for node in chosen_nodes}
     node_flows = [
         each
-        for each in node_boxes.list_node_flows(lookup.architecture)
+        for each in element_boxes.list_node_flows(lookup.architecture)
         if each.tail in home_frames and each.head in home_frames
     ]
     frames = tuple(draw_home_frame(lookup, each) for each in dict.fromkeys(home_frames.values()))
@@ -53,7 +53,7 @@ def draw_nodes(lookup: Lookup, graph_id: str, title: str, node_ids: Collection[s
 
 
 def _node_box(lookup: Lookup, node: Node) -> Box:
-    return node_boxes.node_box(lookup, node)
+    return element_boxes.node_box(lookup, node)
 
 
 def find_home_frame(lookup: Lookup, node: Node) -> str:

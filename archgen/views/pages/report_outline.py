@@ -12,12 +12,12 @@ from archgen.model.partner_interfaces import PartnerPair
 from archgen.model.project_history import History
 from archgen.model.report_settings import ReportSettings
 from archgen.views import inline_text
-from archgen.views.agreement.signature_record import SignedTag
+from archgen.views.agreement.agreement_content import SignedTag
 from archgen.views.chart_shapes import Drawing
 from archgen.views.graph_shapes import GraphKind
 from archgen.views.lookup import Lookup
 from archgen.views.pages import timing_chapter, variant_chapter
-from archgen.views.pages.component_sections import ReportSections
+from archgen.views.pages.component_pages import ReportSections
 from archgen.views.pages.timing_chapter import make_figures
 from archgen.views.pages.variant_chapter import VariantDifference
 from archgen.views.sequences.sequence_blocks import make_use_case_sections
@@ -27,10 +27,10 @@ from archgen.views.tables import (
     finding_tables,
     frame_table,
     functional_tables,
-    project_growth,
     property_tables,
     requirement_tables,
     start_table,
+    statistics_tables,
     type_tables,
 )
 
@@ -285,7 +285,7 @@ class _ChapterMaker:
 
     def make_statistics(self) -> list[Section]:
         """Make the appendix of size, progress and growth."""
-        growth_blocks = project_growth.make_growth_blocks(self.edition.history, self.edition.drawings)
+        growth_blocks = statistics_tables.make_growth_blocks(self.edition.history, self.edition.drawings)
         return self._make_appendix("progress", "Statistics", *self.edition.statistics, *growth_blocks)
 
     def _make_appendix(self, anchor: str, title: str, *blocks: Block | None) -> list[Section]:

@@ -12,7 +12,7 @@ from archgen.compare import Comparison
 from archgen.views.graph_shapes import Graph
 from archgen.views.graphs.changes.component_changes import draw_component_changes
 from archgen.views.graphs.changes.node_changes import draw_node_changes
-from archgen.views.graphs.changes.picture_budget import LARGE_BUDGET, SMALL_BUDGET, PictureBudget
+from archgen.views.graphs.changes.picture_folding import LARGE_BUDGET, SMALL_BUDGET, PictureBudget
 
 __all__ = ["LARGE_BUDGET", "SMALL_BUDGET", "PictureBudget", "draw_changes"]
 

@@ -13,7 +13,6 @@ from archgen.views.graph_shapes import Box, Cluster, ElementChange, Graph
 from archgen.views.graphs import element_boxes
 from archgen.views.graphs.changes.broken_readers import BrokenReaders
 from archgen.views.graphs.changes.change_arrows import ConnectionLine, bundle_arrows
-from archgen.views.graphs.changes.group_folding import fold_to_budget
 from archgen.views.graphs.changes.merged_versions import (
     ChangeNotes,
     MergedEdge,
@@ -21,8 +20,7 @@ from archgen.views.graphs.changes.merged_versions import (
     describe_changed_flows,
     merged_edges,
 )
-from archgen.views.graphs.changes.neighbour_folding import fold_neighbours
-from archgen.views.graphs.changes.picture_budget import PictureBudget
+from archgen.views.graphs.changes.picture_folding import PictureBudget, fold_neighbours, fold_to_budget
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup, make_lookup
