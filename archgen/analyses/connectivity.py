@@ -1,10 +1,10 @@
-"""Is everything connected? Isolated components, inputs that nothing feeds, outputs that nobody reads."""
+"""Is everything connected? Isolated components, inputs that nothing feeds or that name a source twice, outputs that nobody reads."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity, diagnose_repetition
 from archgen.model.library_ports import is_offered_by_library, waits_for_calls
 from archgen.model.port_media import is_physical
 
@@ -177,9 +177,41 @@ def _has_open_reference(component: Component) -> bool:
     )
 
 
+def _repeated_source(architecture: Architecture) -> Iterator[Diagnostic]:
+    """An input names the same source twice."""
+    for port in architecture.inputs.values():
+        first_connections: dict[str, Connection] = {}
+        for connection in port.connections:
+            first_connection = first_connections.setdefault(connection.target, connection)
+            if first_connection is not connection:
+                yield diagnose_repetition(
+                    "repeated-source",
+                    f"`{port.name}` of `{port.component}` names `{connection.target}` twice",
+                    connection.at,
+                    first_connection.at,
+                    help_line="take one of them out, or name what was meant",
+                    element=port.component,
+                )
+
+
+def _mixed_source(architecture: Architecture) -> Iterator[Diagnostic]:
+    """An input comes from a component and from outside of the system at once."""
+    for port in architecture.inputs.values():
+        if port.connections and port.external is not None:
+            yield Diagnostic(
+                "mixed-source",
+                f"`{port.name}` of `{port.component}` comes from `{port.connections[0].target}` and from outside",
+                port.at,
+                help="keep `from` or `external`, or write two inputs",
+                element=port.component,
+            )
+
+
 RULES = (
     (disconnected_component, Severity.WARNING),
     (unfed_input, Severity.WARNING),
     (empty_reference, Severity.WARNING),
     (unread_output, Severity.WARNING),
+    (_repeated_source, Severity.WARNING),
+    (_mixed_source, Severity.WARNING),
 )

@@ -1,11 +1,12 @@
-"""Are rates consistent: what elements state and what their inputs give, what is sent and what is read?"""
+"""Are rates consistent, and do triggers form cycles that never end, or that never begin?"""
 
 from __future__ import annotations
 
 import math
-from collections import Counter
+from collections import Counter, defaultdict
 from typing import TYPE_CHECKING
 
+from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.rule_options import RuleOption
 from archgen.diagnostics.source_span import NO_SPAN
@@ -164,6 +165,71 @@ def _report_overflow(edge: EdgeFit, target: Activity, depths: tuple[int, Fractio
     )
 
 
+def _endless_trigger(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
+    """Elements fire one another in a ring: an event that enters it circulates for ever."""
+    for ring in analysis.endless:
+        members = [analysis.system.activities[name] for name in ring]
+        # It is an error only if the behaviour of every member is written: an inferred one may be wrong. The finding is
+        # placed at a member whose behaviour is written, if there is one.
+        inferred_members = [activity for activity in members if activity.behaviour_inferred]
+        first = next((activity for activity in members if not activity.behaviour_inferred), members[0])
+        is_certain = not inferred_members
+        yield Diagnostic(
+            "endless-trigger",
+            f"{_join_quoted(ring)} fire one another without an end"
+            if len(ring) > 1
+            else f"`{ring[0]}` fires itself without an end",
+            first.places.get("trigger", first.at),
+            severity=None if is_certain else Severity.WARNING,
+            labels=tuple(
+                Label(member.at, "in the ring") for member in members if member is not first and member.at != NO_SPAN
+            ),
+            help="let one of them run by a timer (`period`), or only sample what comes back: name its other inputs in `trigger`",
+            element=first.id,
+        )
+
+
+def _deadlocked_trigger(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
+    """Elements wait for all of several inputs, one of which never comes: they never run."""
+    arriving_keys = _find_arriving_keys(analysis)
+    for ring in analysis.deadlocked:
+        members = [analysis.system.activities[name] for name in ring]
+        # Only an activity that waits for several inputs can start a deadlock; the other members wait for its output.
+        first = next(activity for activity in members if activity.mode in {"all", "match"})
+        missing_keys = [key for key in first.triggers if key not in arriving_keys[first.id]]
+        reason = (
+            f"nothing feeds {_join_quoted(missing_keys)}"
+            if missing_keys
+            else f"{_join_quoted(ring)} wait for one another"
+        )
+        awaited = "all of its triggers" if first.mode == "all" else "messages that match"
+        yield Diagnostic(
+            "deadlocked-trigger",
+            f"`{first.id}` never runs: it waits for {awaited}, and {reason}",
+            first.places.get("trigger", first.at),
+            labels=tuple(
+                Label(member.at, "waits, too") for member in members if member is not first and member.at != NO_SPAN
+            ),
+            help=f"name in `trigger: {{{first.mode}: [...]}}` only the inputs that it has to wait for",
+            element=first.id,
+        )
+
+
+def _find_arriving_keys(analysis: Analysis) -> dict[str, set[str]]:
+    """Return the input keys at which something arrives, from other activities or from outside, by activity id."""
+    arriving_keys = defaultdict[str, set[str]](set)
+    for arc in analysis.system.arcs:
+        arriving_keys[arc.target].add(arc.input)
+    for name, keys in analysis.system.external_inputs.items():
+        arriving_keys[name].update(keys)
+    return arriving_keys
+
+
+def _join_quoted(names: tuple[str, ...] | list[str]) -> str:
+    """Join names in backticks as in "`a`, `b` and `c`"."""
+    return join_words([f"`{name}`" for name in names])
+
+
 RULES = (
     (
         period_conflict,
@@ -180,4 +246,6 @@ RULES = (
         Severity.WARNING,
         (RuleOption("margin", 0, 0, 1000, "The share of what can come that must fit in besides."),),
     ),
+    (_endless_trigger, Severity.ERROR),
+    (_deadlocked_trigger, Severity.ERROR),
 )

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from archgen import compose, derivation, link
-from archgen.checking.interface_loading import load_project_interfaces
-from archgen.checking.merged_project import MergedProject
+from archgen.checking.merged_project import MergedProject, load_project_interfaces
 from archgen.compose.expanded_project import ExpandedProject
 from archgen.derivation.derived_parts import DerivedParts
 from archgen.diagnostics.diagnostic import Diagnostic

@@ -158,7 +158,7 @@ def _set_up_merge_hook(target: Path) -> None:
     """Let git check the project after each merge, and say what there is."""
     from archgen.diagnostics.safe_text import make_visible
     from archgen.git import GitError
-    from archgen.start.merge_hook_setup import install_merge_hook
+    from archgen.start.merge_driver_setup import install_merge_hook
 
     try:
         with command_support.explain_write_errors():

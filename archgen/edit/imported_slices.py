@@ -15,7 +15,7 @@ from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.edit import slice_update
 from archgen.edit.earlier_import import ImportOrigin, keep_places, list_known_ids, read_earlier_import
 from archgen.edit.edit_proof import list_new_errors
-from archgen.edit.said_elsewhere import leave_out_said, list_said_values
+from archgen.edit.slice_update import leave_out_said, list_said_values
 from archgen.importers.foreign_import import ForeignImport
 from archgen.model import element_ids
 from archgen.pipeline import CheckedProject

@@ -19,7 +19,7 @@ from archgen.pipeline import CheckedProject
 from archgen.products import project_views, signed_agreements
 from archgen.products.compared_versions import ProjectVersion
 from archgen.products.output_options import OutputOptions
-from archgen.products.picture_drawing import draw_or_warn
+from archgen.products.product_writing import draw_or_warn
 from archgen.timing.analysis import ChainResult
 from archgen.timing.chains.measured_comparison import Observation
 from archgen.timing.search.chain_budgets import MAX_SHARE_TRIES, SharedBudget, UnknownBudgetError, share_chain_budget

@@ -113,7 +113,7 @@ def _find_differences(checked_project: CheckedProject) -> Mapping[str, VariantDi
     """Return what is different in each variant; nothing is loaded for a project without any."""
     if not checked_project.variants:
         return {}
-    from archgen.products.variant_differences import find_variant_differences
+    from archgen.products.variant_breaks import find_variant_differences
 
     return find_variant_differences(checked_project)
 

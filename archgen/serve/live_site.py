@@ -21,10 +21,9 @@ from archgen.products.output_options import OutputOptions
 from archgen.project import ProjectNotFoundError
 from archgen.project.project_search import PROJECT_FILE, find_project
 from archgen.resources import resource_path
-from archgen.serve.error_notes import list_error_notes
+from archgen.serve.error_notes import LiveStatus, list_error_notes
 from archgen.serve.file_watch import WatchedPlaces, join_paths
 from archgen.serve.live_pictures import LivePictures
-from archgen.serve.live_status import LiveStatus
 from archgen.serve.project_state import (
     ProjectState,
     SelectionError,

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.safe_text import make_visible
-from archgen.emit.data.repository_path import path_in_repository
+from archgen.emit.data.findings_data import path_in_repository
 from archgen.emit.terminal.findings_text import render_finding_text
 
 if TYPE_CHECKING:

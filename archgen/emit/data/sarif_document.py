@@ -15,7 +15,7 @@ from urllib.parse import quote_from_bytes
 from archgen.diagnostics.finding_identity import number_findings
 from archgen.diagnostics.safe_text import format_json, make_visible
 from archgen.diagnostics.source_span import Span
-from archgen.emit.data.repository_path import path_in_repository
+from archgen.emit.data.findings_data import path_in_repository
 from archgen.findings import rule_pages
 from archgen.findings.variant_findings import phrase_absence
 from archgen.resources import HOME_URL

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from archgen.emit.graphviz import arrow_styles, box_styles, palette
-from archgen.emit.graphviz.box_decorations import add_decorations
+from archgen.emit.graphviz.box_styles import add_decorations
 from archgen.emit.graphviz.dot_text import escape_label, wrap_text
 from archgen.emit.graphviz.placed_scene import DotAttributes, Scene, SceneLine, ScenePart
 from archgen.emit.graphviz.styled_graph import measure_nodes

@@ -23,11 +23,11 @@ from archgen.emit.graphviz import (
     sequence_layout,
     two_step_layout,
 )
-from archgen.emit.graphviz.box_decorations import add_decorations
+from archgen.emit.graphviz.box_styles import add_decorations
 from archgen.emit.graphviz.dot_text import clean_label_text
 from archgen.emit.graphviz.drawn_legend import add_graph_legend
 from archgen.emit.graphviz.glyph_outlines import shorten_glyphs
-from archgen.emit.graphviz.layout_memory import NO_MEMORY, LayoutMemory
+from archgen.emit.graphviz.line_crossings import NO_MEMORY, LayoutMemory
 from archgen.emit.graphviz.placed_scene import Scene
 from archgen.emit.graphviz.png_writer import render_png
 from archgen.emit.graphviz.styled_graph import StyledGraph, style_graph

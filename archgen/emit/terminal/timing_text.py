@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 
 from archgen.diagnostics.text_columns import TextRow, format_section
-from archgen.emit.terminal import chain_remedies, timing_legend
+from archgen.emit.terminal import chain_gaps, timing_legend
 from archgen.emit.terminal.chain_gaps import describe_gaps
 from archgen.emit.terminal.figure_text import format_figure, format_missing
 from archgen.simulation.chain_evidence import NO_EVIDENCE, ChainEvidence
@@ -36,7 +36,7 @@ def format_timing(
             "What is late or not proven to be in time, why, and what to do",
             _advice_rows(analysis, chains.values(), evidence),
         ),
-        (chain_remedies.REMEDY_TITLE, chain_remedies.list_remedy_rows(chains, evidence)),
+        (chain_gaps.REMEDY_TITLE, chain_gaps.list_remedy_rows(chains, evidence)),
         ("Hosts", _host_rows(analysis)),
         ("Resources: load, and longest time from asking until done", _resource_rows(analysis)),
         ("Links", _link_rows(analysis)),
@@ -61,12 +61,12 @@ def _chain_rows(analysis: Analysis, chains: Iterable[ChainResult], evidence: Cha
             format_figure(result.bound),
             deadline,
             VERDICT_WORDS[result.verdict] if result.deadline else "",
-            chain_remedies.describe_slack(result),
+            chain_gaps.describe_slack(result),
             "; ".join(
                 filter(
                     None,
                     (
-                        chain_remedies.describe_witness(result.id, evidence.witnesses.get(result.id)),
+                        chain_gaps.describe_witness(result.id, evidence.witnesses.get(result.id)),
                         describe_gaps(result, analysis),
                     ),
                 )
@@ -80,7 +80,7 @@ def _advice_rows(analysis: Analysis, chains: Iterable[ChainResult], evidence: Ch
         for result in chains:
             advice = advise_on_chain(analysis, result) if result.verdict == verdict else None
             if advice is not None:
-                advice = chain_remedies.replace_advice(advice, evidence.remedies.get(result.id))
+                advice = chain_gaps.replace_advice(advice, evidence.remedies.get(result.id))
                 yield from zip((result.id, "", ""), (sentence for sentence in advice if sentence), strict=False)
 
 

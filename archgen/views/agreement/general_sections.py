@@ -53,9 +53,7 @@ def write_budget_section(content: AgreementContent) -> Iterator[Section]:
             Column("May take", 0.7, "right"),
         )
         table = Table("table:budgets", "Who may take how much", columns, tuple(rows), numbered=False)
-        yield Section(
-            "page:budgets", "Execution times", (Paragraph(inline_text.to_inlines(_BUDGET_LEAD)), table)
-        )
+        yield Section("page:budgets", "Execution times", (Paragraph(inline_text.to_inlines(_BUDGET_LEAD)), table))
 
 
 def _chain_rows(content: AgreementContent, chain_id: str, budget: SharedBudget) -> Iterator[tuple[Inlines, ...]]:
@@ -163,9 +161,7 @@ def write_use_case_section(content: AgreementContent) -> Iterator[Section]:
         table = make_step_table(lookup, lookup.architecture.use_cases[use_case_id], steps)
         tables.append(table)
     if tables:
-        yield Section(
-            "page:use_cases", "Use cases", (Paragraph(inline_text.to_inlines(_USE_CASE_LEAD)), *tables)
-        )
+        yield Section("page:use_cases", "Use cases", (Paragraph(inline_text.to_inlines(_USE_CASE_LEAD)), *tables))
 
 
 def _list_crossing_steps(content: AgreementContent) -> dict[str, tuple[ConnectedStep, ...]]:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from archgen.emit.graphviz import graph_drawing, two_step_layout
-from archgen.emit.graphviz.layout_memory import LayoutMemory
+from archgen.emit.graphviz.line_crossings import LayoutMemory
 from archgen.views.graph_shapes import Graph
 from archgen.views.graphs import draw_components
 from archgen.views.lookup import make_lookup

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from archgen.emit.markdown.mermaid_sequence import write_sequence_diagram
+from archgen.emit.markdown.mermaid_chart import write_sequence_diagram
 from archgen.views.chart_shapes import Lifeline, SequenceChart, SequenceMessage
 
 

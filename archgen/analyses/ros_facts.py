@@ -1,18 +1,23 @@
-"""Do the messages, services and actions exist?"""
+"""Does the ROS of the project have what is written for it: its distribution, keys of nodes, messages, one message a topic?"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN, Span, first_written_span
 from archgen.diagnostics.suggestions import find_closest
 from archgen.model.architecture import Architecture
 from archgen.model.component import Input, Output
-from archgen.model.known_interfaces import Interfaces, InterfaceStatus
+from archgen.model.known_interfaces import KNOWN_DISTROS, Interfaces, InterfaceStatus, guess_distro
 from archgen.model.message_types import flow_of
+from archgen.model.node import Endpoint, Qos
+from archgen.model.ros_distro import PAST_DISTROS, is_ros_1
+
+if TYPE_CHECKING:
+    from archgen.model.node import Node
 
 _FLOW_NOUNS = {"topic": "message", "service": "service", "action": "action"}
 
@@ -25,7 +30,7 @@ class MessageMention(NamedTuple):
     element: str
 
 
-def find_message_mentions(architecture: Architecture) -> Iterator[MessageMention]:
+def _find_message_mentions(architecture: Architecture) -> Iterator[MessageMention]:
     """Yield every mention of a message written in the project, once for each span, without planned messages.
 
     A message is planned wherever it is mentioned if one type with `status: planned` maps to it.
@@ -56,7 +61,7 @@ def _find_written_messages(architecture: Architecture) -> Iterator[MessageMentio
 def _mentions_with_status(architecture: Architecture, status: InterfaceStatus) -> Iterator[MessageMention]:
     return (
         mention
-        for mention in find_message_mentions(architecture)
+        for mention in _find_message_mentions(architecture)
         if architecture.interfaces.status_of(mention.message) == status
     )
 
@@ -154,7 +159,7 @@ def _suggest_definition_file(message: str) -> str:
     return f'add its definition, for instance as `{file}` with `ros: {{interfaces: ["msgs/**/*.{kind}"]}}`'
 
 
-def action_as_message(architecture: Architecture) -> Iterator[Diagnostic]:
+def _action_as_message(architecture: Architecture) -> Iterator[Diagnostic]:
     """The message that describes an action is used as if it were sent on a topic."""
     interfaces = architecture.interfaces
     for message, span, element in _mentions_with_status(architecture, "known"):
@@ -169,8 +174,124 @@ def action_as_message(architecture: Architecture) -> Iterator[Diagnostic]:
             )
 
 
+def unknown_distro(architecture: Architecture) -> Iterator[Diagnostic]:
+    """The project is for a ROS distribution of which archgen holds no interfaces."""
+    distro = architecture.distro
+    if distro is None or distro in KNOWN_DISTROS:
+        return
+    meant_distro = guess_distro(distro)
+    if meant_distro != distro:
+        message = f"no ROS distribution is called `{distro}`: messages are checked as of `{meant_distro}`"
+        help_line = f"did you mean `{meant_distro}`?"
+    else:
+        message = f"archgen holds no interfaces of `{distro}`: no message is checked"
+        help_line = f"archgen holds the interfaces of {', '.join(sorted(KNOWN_DISTROS))}"
+    severity = Severity.WARNING if distro in PAST_DISTROS else None
+    yield Diagnostic("unknown-distro", message, architecture.distro_at, help=help_line, severity=severity)
+
+
+_KIND_REMEDIES = {
+    "lifecycle": "leave it out: a node of ROS 1 has no managed states",
+    "composable": "write `nodelet`, which is what ROS 1 loads into one process",
+    "nodelet": "write `composable`, which is what ROS 2 loads into one process",
+}
+_ROS_1_KINDS = frozenset({"nodelet"})
+_ROS_2_KINDS = frozenset({"lifecycle", "composable"})
+_ROS_2_QOS_KEYS = ("reliability", "history", "deadline", "lifespan", "liveliness", "lease_duration")
+"""`depth` is the queue size of ROS 1, and `durability: transient_local` its latched topic: both may stand there."""
+
+
+def _other_ros_generation(architecture: Architecture) -> Iterator[Diagnostic]:
+    """A node uses what only the other generation of ROS has."""
+    distro = guess_distro(architecture.distro)
+    if distro not in KNOWN_DISTROS and distro not in PAST_DISTROS:
+        return
+    foreign_kinds, generation = (_ROS_2_KINDS, "ROS 1") if is_ros_1(distro) else (_ROS_1_KINDS, "ROS 2")
+    for node in architecture.nodes.values():
+        for kind in node.kinds:
+            if kind in foreign_kinds:
+                yield Diagnostic(
+                    "other-ros-generation",
+                    f"the node `{node.id}` is of the kind `{kind}`, which {generation} ({distro}) does not have",
+                    node.kind_at,
+                    help=_KIND_REMEDIES[kind],
+                    element=node.id,
+                )
+        if is_ros_1(distro):
+            yield from _report_foreign_qos(node, distro)
+
+
+def _report_foreign_qos(node: Node, distro: str | None) -> Iterator[Diagnostic]:
+    """Report the quality of service of a node of ROS 1: all of its entries in one finding, at the first."""
+    foreign_uses = [use for use in node.uses if use.qos is not None and _needs_ros_2(use.qos)]
+    first_qos = foreign_uses[0].qos if foreign_uses else None
+    if first_qos is not None:
+        keys = join_words([f"`{use.key}`" for use in foreign_uses])
+        yield Diagnostic(
+            "other-ros-generation",
+            f"the node `{node.id}` sets the quality of service of {keys}, which ROS 1 ({distro}) does not have",
+            first_qos.at,
+            help="leave it out; of `qos`, ROS 1 has `depth` (its queue size) and `durability: transient_local` (latched)",
+            element=node.id,
+        )
+
+
+def _needs_ros_2(qos: Qos) -> bool:
+    """Whether settings ask for more than what every topic of ROS 1 has."""
+    return any(getattr(qos, key) != getattr(Qos(), key) for key in _ROS_2_QOS_KEYS)
+
+
+def topic_type_conflict(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Several messages are named for one topic, service or action."""
+    for topic in architecture.topics.values():
+        users = _first_user_by_message((*topic.writers, *topic.readers))
+        if len(users) > 1:
+            # The finding is placed at the second user: the first one set the message, the second one deviates from it.
+            first, second = list(users.values())[:2]
+            labels = (
+                Label(_message_span(user, architecture), f"`{user.message}` here, by the node `{user.node}`")
+                for user in users.values()
+                if user is not second
+            )
+            names = " and ".join(f"`{message}`" for message in users)
+            yield Diagnostic(
+                "topic-type-conflict",
+                f"the {topic.flow} `{topic.name}` carries {names}",
+                _message_span(second, architecture),
+                labels=tuple(label for label in labels if label.span != NO_SPAN),
+                help=f"give both nodes the same message, or one of them another {topic.flow}: `{first.node}` has "
+                f"`{first.message}`, `{second.node}` `{second.message}`",
+                element=second.node,
+            )
+
+
+def _first_user_by_message(endpoints: tuple[Endpoint, ...]) -> dict[str, Endpoint]:
+    """Return the first endpoint that uses each message, by message, in the order of the endpoints."""
+    users = dict[str, Endpoint]()
+    for endpoint in endpoints:
+        if endpoint.message is not None:
+            users.setdefault(endpoint.message, endpoint)
+    return users
+
+
+def _message_span(endpoint: Endpoint, architecture: Architecture) -> Span:
+    """Return the span where an endpoint's message was written, else its endpoint's, its port's or its node's."""
+    port = architecture.outputs.get(endpoint.port or "") or architecture.inputs.get(endpoint.port or "")
+    node = architecture.nodes.get(endpoint.node)
+    return first_written_span(
+        endpoint.message_at,
+        endpoint.at,
+        port.type_at if port else NO_SPAN,
+        port.at if port else NO_SPAN,
+        node.at if node else NO_SPAN,
+    )
+
+
 RULES = (
+    (unknown_distro, Severity.ERROR),
+    (_other_ros_generation, Severity.WARNING),
     (unknown_message, Severity.ERROR),
     (unchecked_message, Severity.NOTE),
-    (action_as_message, Severity.WARNING),
+    (_action_as_message, Severity.WARNING),
+    (topic_type_conflict, Severity.ERROR),
 )
