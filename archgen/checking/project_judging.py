@@ -7,11 +7,10 @@ from collections.abc import Iterable, Mapping
 from archgen import analyses
 from archgen.checking.all_rules import index_all_rules, list_structural_errors
 from archgen.checking.checked_project import CheckedProject
-from archgen.checking.linked_project import LinkedProject, PartMemory, link_merged_project
-from archgen.checking.merged_project import MergedProject
+from archgen.checking.linked_project import LinkedProject, MergedProject, PartMemory, link_merged_project
 from archgen.diagnostics.diagnostic import Diagnostic, Severity, settle_diagnostics
 from archgen.diagnostics.rule_options import OptionValues
-from archgen.findings import error_aftermath, finding_limit, ignore_comments, instance_findings, rule_table
+from archgen.findings import error_aftermath, ignore_comments, instance_findings, rule_table
 from archgen.frozen import replace
 from archgen.installed_plugins import RULES, list_entries
 from archgen.link import (
@@ -128,7 +127,7 @@ def _settle_findings(
         if ignores or Severity.OFF in loaded_project.rule_settings.values()
         else ()
     )
-    return finding_limit.limit_findings(settled_findings), silenced_findings
+    return instance_findings.limit_findings(settled_findings), silenced_findings
 
 
 def _find_silenced(

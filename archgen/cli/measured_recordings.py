@@ -14,7 +14,7 @@ from archgen.diagnostics.safe_text import format_json, make_visible
 from archgen.diagnostics.text_columns import find_width, wrap_line
 
 if TYPE_CHECKING:
-    from archgen.edit.measured_slice import MeasuredSlice
+    from archgen.edit.measured_figures import MeasuredSlice
     from archgen.importers.recorded_files import ReadRecordings
     from archgen.model.architecture import Architecture
     from archgen.pipeline import CheckedProject
@@ -132,7 +132,7 @@ def _refuse_errors(checked_project: CheckedProject, *, has_errors: bool) -> None
 
 
 def _make_slice(checked_project: CheckedProject, recordings: ReadRecordings, slice_path: Path) -> MeasuredSlice:
-    from archgen.edit.measured_slice import make_measured_slice
+    from archgen.edit.measured_figures import make_measured_slice
 
     measured_slice = make_measured_slice(
         checked_project, recordings.observations, _name_slice(checked_project.root, slice_path)

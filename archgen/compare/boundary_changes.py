@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from archgen.analyses.qos_compatibility import find_qos_conflicts
 from archgen.compare.architecture_version import ArchitectureVersion
-from archgen.compare.figure_changes import BoundaryChange, BoundaryKind, FigureChange, FigureKey, WireNames
+from archgen.compare.comparison import BoundaryChange, BoundaryKind, FigureChange, FigureKey, WireNames
 from archgen.compare.interface_figures import (
     RECEIVER_NAMES,
     FigureReader,

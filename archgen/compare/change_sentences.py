@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from archgen.compare.compared_elements import ComparedElement
 from archgen.compare.comparison import Change
-from archgen.compare.key_phrases import describe_key_change, shorten_text
-from archgen.compare.kinds import ELEMENT_KINDS
-from archgen.compare.meaning_sentences import (
+from archgen.compare.element_sentences import (
     describe_field_changes,
     describe_outer_messages,
     describe_output_timing,
     describe_readers,
 )
-from archgen.compare.partner_titles import name_partner
-from archgen.compare.sentence_words import tick_names
-from archgen.compare.version_pair import VersionPair
+from archgen.compare.key_phrases import describe_key_change, name_partner, shorten_text, tick_names
+from archgen.compare.kinds import ELEMENT_KINDS
+from archgen.compare.version_pair import ComparedElement, VersionPair
 from archgen.derivation import ros_names
 from archgen.model.quantity import Quantity
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from archgen.compare.compared_elements import MAPPED_KEY, SOME_PORTS, ComparedElement, ElementKey
 from archgen.compare.kinds import find_key
 from archgen.compare.kinds.ros_kinds import default_qos
 from archgen.compare.normal_values import ElementTitle, to_plain_data
+from archgen.compare.version_pair import MAPPED_KEY, SOME_PORTS, ComparedElement, ElementKey
 from archgen.model.path_resolver import title_from_id
 
 ElementsByKey = Mapping[ElementKey, ComparedElement]

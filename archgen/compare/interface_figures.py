@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 
-from archgen.compare.figure_changes import ComparedFigure, FigureChange, FigureKey, TravelPath
+from archgen.compare.comparison import ComparedFigure, FigureChange, FigureKey, TravelPath
 from archgen.compare.matched_ids import MatchedIds
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.model.architecture import Architecture

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 from archgen import pipeline
 from archgen.compare.architecture_version import ArchitectureVersion
-from archgen.compare.compared_elements import MAPPED_KEY, ComparedElement
 from archgen.compare.element_listing import list_elements
 from archgen.compare.matched_ids import MatchedIds
+from archgen.compare.version_pair import MAPPED_KEY, ComparedElement
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.edit.new_element import NewElement
 from archgen.model.architecture import Architecture

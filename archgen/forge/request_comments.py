@@ -13,8 +13,7 @@ from archgen.emit.markdown.inert_text import write_code, write_sentence, write_t
 from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE, LimitedComment
 from archgen.forge.comment_post import CommentOutcome, put_comment
 from archgen.forge.forge_api import ForgeError, run_within
-from archgen.forge.pull_request import find_request
-from archgen.forge.reviewed_request import OpenRequest
+from archgen.forge.pull_request import OpenRequest, find_request
 from archgen.merge.branch_merge import BranchMerge
 from archgen.merge.merge_sentences import describe_conflict
 

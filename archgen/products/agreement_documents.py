@@ -28,8 +28,8 @@ from archgen.views import inline_text
 from archgen.views.agreement.agreement_content import SignedTag
 from archgen.views.agreement.general_sections import BudgetFinder
 from archgen.views.agreement.partner_agreement import PartnerAgreement, make_agreement
-from archgen.views.graph_shapes import Graph
 from archgen.views.lookup import Lookup
+from archgen.views.picture_shapes import Graph
 from archgen.views.shapes import Paragraph, Section
 from archgen.views.tables.finding_tables import describe_severities
 from archgen.views.timing.timing_lookup import complete_with_chains

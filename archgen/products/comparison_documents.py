@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from archgen.pipeline import CheckedProject
     from archgen.products.output_options import OutputOptions
     from archgen.views.changes.site_changes import SiteChanges
-    from archgen.views.graph_shapes import Graph
+    from archgen.views.picture_shapes import Graph
 
 
 def describe_versions(

@@ -17,7 +17,7 @@ from archgen.products import report_cache
 from archgen.products.leaving_links import refuse_leaving_links
 from archgen.products.output_options import DrawingProgress, OutputOptions
 from archgen.products.product_inputs import FinishProduct, MadeProduct, Product, ProductInputs
-from archgen.views.chart_shapes import Drawing
+from archgen.views.picture_shapes import Drawing
 
 if TYPE_CHECKING:
     from archgen.emit.graphviz.worker_pool import DrawingWorker

@@ -24,10 +24,10 @@ from archgen.products.output_options import OutputOptions
 from archgen.project import ProjectNotFoundError
 from archgen.views import drawing_set
 from archgen.views.agreement.agreement_content import SignedTag
-from archgen.views.chart_shapes import Drawing
 from archgen.views.lookup import DocumentScope, Lookup, add_timing, make_lookup
 from archgen.views.pages.report_outline import DetailLevel, DocumentEdition
 from archgen.views.pages.variant_chapter import VariantDifference
+from archgen.views.picture_shapes import Drawing
 from archgen.views.tables import statistics_tables
 from archgen.views.timing.timing_lookup import complete_with_chains
 

@@ -12,8 +12,8 @@ from pathlib import Path
 from archgen.emit import site
 from archgen.emit.site import page_pictures
 from archgen.emit.site.chapter_html import ChapterWriter
-from archgen.emit.site.explorer_files import EXPLORER_ANCHOR
 from archgen.emit.site.page_links import renew_ids
+from archgen.emit.site.script_files import EXPLORER_ANCHOR
 from archgen.pipeline import CheckedProject, UnknownVariantError, VersionCache
 from archgen.products.compared_versions import ProjectVersion
 from archgen.products.comparison_documents import read_version_before

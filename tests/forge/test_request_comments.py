@@ -15,13 +15,13 @@ from click.testing import CliRunner
 
 from archgen.cli import main
 from archgen.forge import ForgeError
+from archgen.forge.pull_request import OpenRequest, find_target_branch, list_open_requests
 from archgen.forge.request_comments import (
     RequestComment,
     format_request_comments,
     post_request_comments,
     read_request_comments,
 )
-from archgen.forge.reviewed_request import OpenRequest, find_target_branch, list_open_requests
 from tests import repositories
 from tests.forge.conftest import Forge, github, gitlab
 from tests.running import ROOT

@@ -15,7 +15,7 @@ from archgen.products.output_options import OutputOptions
 from archgen.products.product_table import PRODUCTS
 from archgen.products.product_writing import DrawnPictures
 from archgen.views import drawing_set
-from archgen.views.chart_shapes import Drawing
+from archgen.views.picture_shapes import Drawing
 
 
 @pytest.fixture

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from archgen.pipeline import CheckedProject
-from archgen.views.agreement.agreed_words import list_word_rows
 from archgen.views.agreement.general_sections import describe_standing, list_start_steps, list_variant_differences
+from archgen.views.agreement.interface_sections import list_word_rows
 from archgen.views.agreement.partner_agreement import make_agreement, record_interfaces
 from archgen.views.agreement.term_changes import AgreementChanges
 from tests.agreeing import checked, lines, section, text, view

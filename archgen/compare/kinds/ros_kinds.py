@@ -11,9 +11,10 @@ from archgen.compare.element_likeness import letter_pairs
 from archgen.compare.element_relations import ElementRelations, project_messages
 from archgen.compare.kinds.element_owners import CO_OWNERS, find_type_owner, read_owner
 from archgen.compare.kinds.key_spec import Effect, KeySpec, ReadContext, Worsening
-from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec
-from archgen.compare.kinds.shared_features import (
+from archgen.compare.kinds.kind_spec import (
     NAME_FEATURES,
+    FeatureSpec,
+    KindSpec,
     mark_values,
     reference_feature,
     text_feature,

@@ -8,8 +8,7 @@ from typing import Any, NamedTuple
 
 from archgen.compare.comparison import Change
 from archgen.compare.key_phrases import name_key
-from archgen.compare.losses.change_context import ChangeContext
-from archgen.compare.losses.loss_wording import tick_name
+from archgen.compare.losses.change_context import ChangeContext, tick_name
 from archgen.compare.losses.timing_causes import TimingCauses
 from archgen.compare.timing_pair import can_affect_timing
 from archgen.derivation import derive_low_level

@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from archgen.compare import ChainChange, Change, Comparison
-from archgen.compare.edits import list_edits
-from archgen.compare.figure_changes import (
+from archgen.compare.comparison import (
     BoundaryChange,
     ComparedFigure,
     FigureChange,
@@ -15,6 +14,7 @@ from archgen.compare.figure_changes import (
     TravelPath,
     WireNames,
 )
+from archgen.compare.edits import list_edits
 from archgen.compare.figure_noise import FigureNoise
 from archgen.compare.type_origins import TypeKey, trace_origins
 from archgen.diagnostics.safe_text import format_json

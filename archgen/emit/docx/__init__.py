@@ -11,20 +11,24 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from archgen.emit.docx.contents_lists import write_contents
-from archgen.emit.docx.document_parts import clean_settings, replace_document_text
 from archgen.emit.docx.document_text import format_document
 from archgen.emit.docx.docx_file import save_package
-from archgen.emit.docx.page_filling import fill_pages
-from archgen.emit.docx.page_flow import assign_sheets, estimate_pages
-from archgen.emit.docx.report_template import create_writer, open_template, warn_of_template
+from archgen.emit.docx.page_flow import assign_sheets, estimate_pages, fill_pages
+from archgen.emit.docx.report_template import (
+    clean_settings,
+    create_writer,
+    open_template,
+    replace_document_text,
+    warn_of_template,
+)
 from archgen.emit.docx.section_pieces import list_anchors, write_sections
-from archgen.emit.docx.template_checks import TemplateError
 from archgen.emit.docx.template_placeholders import (
     fill_placeholders,
     find_contents_mark,
     find_placeholders,
     place_contents,
 )
+from archgen.emit.docx.template_repair import TemplateError
 from archgen.emit.docx.title_page import (
     list_placeholder_values,
     write_core_properties,

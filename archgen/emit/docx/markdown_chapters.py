@@ -19,8 +19,16 @@ from archgen.emit.docx.figures import PictureRun, read_chapter_picture, write_pi
 from archgen.emit.docx.list_numbering import LIST_LEVELS
 from archgen.emit.docx.page_flow import FlowPiece
 from archgen.emit.docx.table_pieces import MAX_COLUMNS, write_chapter_table
-from archgen.emit.docx.text_pieces import Heading, ParagraphContent, write_heading, write_list_item, write_text
-from archgen.emit.docx.text_runs import LINE_BREAK, format_runs, join_text
+from archgen.emit.docx.text_pieces import (
+    LINE_BREAK,
+    Heading,
+    ParagraphContent,
+    format_runs,
+    join_text,
+    write_heading,
+    write_list_item,
+    write_text,
+)
 from archgen.emit.docx.word_xml import format_run
 from archgen.emit.term_mentions import MentionFinder, begin_text
 from archgen.views.shapes import Inlines, Markdown, Text

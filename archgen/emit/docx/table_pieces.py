@@ -19,7 +19,7 @@ from archgen.emit.docx.docx_writer import DocxWriter
 from archgen.emit.docx.page_flow import FlowPiece
 from archgen.emit.docx.paper_sheets import PaperSheet
 from archgen.emit.docx.text_metrics import TextFace, measure_word
-from archgen.emit.docx.text_runs import MUTED_COLOUR, RunSetting, format_runs, join_text
+from archgen.emit.docx.text_pieces import MUTED_COLOUR, RunSetting, format_runs, join_text
 from archgen.emit.docx.word_xml import escape_text, format_paragraph, format_run, points_to_twips
 from archgen.views.shapes import Column, Facts, Inlines, Table
 

@@ -16,8 +16,7 @@ from archgen.emit.docx.docx_writer import DocxWriter
 from archgen.emit.docx.figures import write_figure
 from archgen.emit.docx.page_flow import FlowPiece
 from archgen.emit.docx.table_pieces import write_facts, write_table
-from archgen.emit.docx.text_pieces import ParagraphContent, write_paragraph, write_text
-from archgen.emit.docx.text_runs import join_text
+from archgen.emit.docx.text_pieces import ParagraphContent, join_text, write_paragraph, write_text
 from archgen.emit.docx.word_xml import clean_line, format_paragraph, format_run
 from archgen.emit.own_file_marks import PROGRAM_NAME, PROGRAM_PART
 from archgen.views.shapes import Facts, Figure, Outline, Section, Table

@@ -31,7 +31,7 @@ from archgen.emit.graphviz.worker_pool import (
 )
 from archgen.emit.graphviz.worker_pool import draw_tasks as draw_all
 from archgen.emit.picture import Picture
-from archgen.views.chart_shapes import Chart, Drawing, SequenceChart
+from archgen.views.picture_shapes import Chart, Drawing, SequenceChart
 
 __all__ = ["PICTURE_FORMATS", "MissingGraphviz", "dark_rules", "draw_pictures", "start_early_workers"]
 

@@ -27,7 +27,7 @@ from dataclasses import replace
 from archgen.emit.graphviz import palette
 from archgen.emit.graphviz.dot_text import escape_label, quote_value, safe_address, wrap_text
 from archgen.emit.graphviz.placed_scene import DotAttributes, Scene, ScenePart
-from archgen.views.graph_shapes import Box
+from archgen.views.picture_shapes import Box
 
 LinkResolver = Callable[[str], str | None]
 

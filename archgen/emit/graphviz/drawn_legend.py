@@ -10,7 +10,7 @@ from archgen.emit.graphviz.dot_text import escape_label, wrap_text
 from archgen.emit.graphviz.placed_scene import DotAttributes, Scene, SceneLine, ScenePart
 from archgen.emit.graphviz.styled_graph import measure_nodes
 from archgen.frozen import replace
-from archgen.views.graph_shapes import Arrow, Box, Graph, PeriodStep
+from archgen.views.picture_shapes import Arrow, Box, Graph, PeriodStep
 
 _SAMPLE_SIZE = (24.0, 11.0)
 _ROW_HEIGHT = 15.0

@@ -28,7 +28,7 @@ from archgen.emit.graphviz.styled_graph import (
     write_dot,
 )
 from archgen.frozen import replace
-from archgen.views.graph_shapes import Box, Cluster
+from archgen.views.picture_shapes import Box, Cluster
 
 _WIDEST_FRAME = 800.0
 """The widest frame whose boxes are not wrapped, in points: about a landscape page."""

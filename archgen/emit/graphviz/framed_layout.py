@@ -19,7 +19,7 @@ from archgen.emit.graphviz.styled_graph import (
     title_attributes,
     write_dot,
 )
-from archgen.views.graph_shapes import Cluster, Graph
+from archgen.views.picture_shapes import Cluster, Graph
 
 _SCREEN_SIZE = (1000.0, 700.0)
 _CUT_PENALTY = 0.05

@@ -32,8 +32,7 @@ from archgen.emit.graphviz.placed_scene import Scene
 from archgen.emit.graphviz.png_writer import render_png
 from archgen.emit.graphviz.styled_graph import StyledGraph, style_graph
 from archgen.emit.picture import Picture
-from archgen.views.chart_shapes import Chart, Drawing, SequenceChart
-from archgen.views.graph_shapes import Graph
+from archgen.views.picture_shapes import Chart, Drawing, Graph, SequenceChart
 
 _LAYOUT_FUNCTIONS = {
     "flow": flow_layout.lay_out_flow,

@@ -29,7 +29,7 @@ from archgen.emit.graphviz.styled_graph import (
     title_attributes,
     write_dot,
 )
-from archgen.views.graph_shapes import Arrow
+from archgen.views.picture_shapes import Arrow
 
 _PAGE_SIZE = (1105.0, 728.0)
 """A landscape A3 page without its margins, in points: the text size of a scene is judged on it."""

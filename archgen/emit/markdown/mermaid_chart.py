@@ -7,9 +7,17 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from archgen.emit.safe_names import make_identifier
-from archgen.views.chart_shapes import Lifeline, SequenceChart, SequenceMessage
-from archgen.views.graph_shapes import Arrow, Box, Cluster, ElementChange, Graph
 from archgen.views.graphs.graph_folding import fold_graph
+from archgen.views.picture_shapes import (
+    Arrow,
+    Box,
+    Cluster,
+    ElementChange,
+    Graph,
+    Lifeline,
+    SequenceChart,
+    SequenceMessage,
+)
 
 _MAX_LABEL_LENGTH = 60
 _BOX_SHAPES = {"topic": "[]", "service": "{{}}", "action": "{{}}", "node": "([])", "composed": "[[]]", "port": "[]"}

@@ -10,7 +10,7 @@ from archgen.diagnostics.text_columns import TextRow, align_rows
 from archgen.emit.data import timing_json
 from archgen.emit.terminal import chain_gaps
 from archgen.emit.terminal.chain_gaps import describe_gaps, describe_slack
-from archgen.emit.terminal.figure_text import format_figure, format_missing
+from archgen.emit.terminal.timing_text import format_figure, format_missing
 from archgen.simulation.chain_evidence import NO_EVIDENCE, ChainEvidence
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm
 from archgen.timing.chains.chain_advice import advise_on_chain

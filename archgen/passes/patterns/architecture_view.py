@@ -15,10 +15,10 @@ from archgen.passes.patterns.view_elements import (
     ComponentIndex,
     ConceptualTypes,
     ViewElement,
+    ViewReferences,
     is_instance,
     list_view_elements,
 )
-from archgen.passes.patterns.view_references import ViewReferences
 from archgen.passes.patterns.view_values import read_view_value
 from archgen.passes.project_tree import ProjectTree
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, YamlNode

@@ -9,11 +9,10 @@ from archgen.frozen import dataclass
 from archgen.model.agreed_terms import RULES
 from archgen.timing.search.chain_budgets import SharedBudget
 from archgen.views import inline_text
-from archgen.views.agreement.interface_record import InterfaceKey, InterfaceRecord
-from archgen.views.agreement.term_changes import AgreementChanges
-from archgen.views.graph_shapes import Graph
+from archgen.views.agreement.term_changes import AgreementChanges, InterfaceKey, InterfaceRecord
 from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.lookup import Lookup
+from archgen.views.picture_shapes import Graph
 from archgen.views.shapes import Column, Inlines, Paragraph, Table, Text
 
 

@@ -16,12 +16,11 @@ from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.search.chain_budgets import PartnerShare, SharedBudget
 from archgen.views import inline_text, start_phrases
 from archgen.views.agreement.agreement_content import AgreementContent
-from archgen.views.agreement.interface_record import InterfaceRecord
-from archgen.views.agreement.term_changes import AgreementChanges, write_signed_kind
+from archgen.views.agreement.term_changes import AgreementChanges, InterfaceRecord, write_signed_kind
 from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.sequences.sequence_blocks import make_step_table
 from archgen.views.shapes import Column, Facts, Inlines, Paragraph, Section, Table, Text, drop_empty_columns
-from archgen.views.tables.frame_table import link_declared_frame, link_writer
+from archgen.views.tables.functional_tables import link_declared_frame, link_writer
 from archgen.views.tables.start_table import link_step
 from archgen.views.timing import value_format
 

@@ -15,21 +15,20 @@ from archgen.timing.system import activity_builder
 from archgen.views.agreement.agreement_content import AgreementContent, SignatureRecord, SignedTag
 from archgen.views.agreement.agreement_outline import outline_agreement
 from archgen.views.agreement.general_sections import BudgetFinder, find_crossing_budgets
-from archgen.views.agreement.interface_record import InterfaceKey, InterfaceRecord
 from archgen.views.agreement.interface_terms import InterfaceTerms, gather_terms, interface_title
-from archgen.views.agreement.measured_rows import add_measured
 from archgen.views.agreement.output_promises import find_unproven_words, list_counted_ports
 from archgen.views.agreement.plain_terms import list_contradictions, list_plain_terms
-from archgen.views.agreement.term_changes import AgreementChanges, compare_revisions
+from archgen.views.agreement.promise_rows import add_measured
+from archgen.views.agreement.term_changes import AgreementChanges, InterfaceKey, InterfaceRecord, compare_revisions
 from archgen.views.elements import element_names
-from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 from archgen.views.graphs import element_boxes
-from archgen.views.graphs.component_flows import FlowStyle
+from archgen.views.graphs.drawn_level import FlowStyle
 from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.graphs.graph_folding import fold_graph
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
+from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph
 from archgen.views.shapes import Outline, Paragraph
 
 PictureSide = Literal["left", "right"]

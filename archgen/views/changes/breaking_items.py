@@ -11,15 +11,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from archgen.compare import Change, Comparison
 from archgen.compare.change_sentences import READERS_LEAD
 from archgen.compare.edits import Edit
-from archgen.compare.key_phrases import shorten_text
+from archgen.compare.key_phrases import shorten_text, tick_names
 from archgen.compare.left_out_files import find_affected_names, find_left_out
-from archgen.compare.sentence_words import tick_names
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.frozen import dataclass, replace
 from archgen.model.review_settings import BREAK_CATEGORIES, BreakCategory
 from archgen.views.changes import breaking_verdict
-from archgen.views.changes.partner_names import name_each
+from archgen.views.changes.named_elements import name_each
 
 _BACKTICKED = re.compile(r"`([^`]*)`")
 _PAIR_RULES = frozenset({"incompatible-qos", "two-domains", "two-clocks"})

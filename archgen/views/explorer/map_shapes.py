@@ -16,7 +16,7 @@ from archgen.model.component import Component
 from archgen.model.component_nesting import list_surrounding
 from archgen.timing.analysis import EventPace
 from archgen.views.element_references import place_run
-from archgen.views.explorer.map_places import Path
+from archgen.views.explorer.column_layout import Path
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.search.search_entry import to_plain_text

@@ -178,3 +178,18 @@ def list_parameter_tags(parameter: SetParameter, backend: str) -> list[str]:
     *sets, name = parameter.path
     hints = parameter.declaration.hints if parameter.declaration else {}
     return [*map(make_camel_name, sets), name_tag(hints, backend, name)]
+
+
+def find_type_words(architecture: Architecture, component: Component) -> str | None:
+    """Return the component type that a component is made from, in words; of what stands inside of an instance the type with
+    the names behind it. None for a component without a type.
+    """
+    parts: list[str] = []
+    around: Component | None = component
+    while around is not None:
+        if around.component_type is not None:
+            type_name = around.type_name if not around.component_type.endswith(">") else around.component_type
+            return " ".join([type_name.replace("<", " of "), *reversed(parts)])
+        parts.append(around.name)
+        around = architecture.shells.get(around.parent or "")
+    return None

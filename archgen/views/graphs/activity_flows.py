@@ -7,10 +7,10 @@ from typing import Literal
 
 from archgen.frozen import dataclass
 from archgen.timing.system.timing_system import Activity, Arc
-from archgen.views.graph_shapes import Box
-from archgen.views.graphs.ros_graph import find_home_frame
+from archgen.views.graphs.implementation_graph import find_home_frame
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
+from archgen.views.picture_shapes import Box
 from archgen.views.timing import value_format
 from archgen.views.timing.timing_lookup import TimingLookup
 

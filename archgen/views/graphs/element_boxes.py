@@ -13,9 +13,9 @@ from archgen.model.component_nesting import find_component, list_members
 from archgen.model.node import Endpoint, Node, Qos, Topic
 from archgen.model.port_media import ROS, key_of_channel, label_of_carrier, name_medium, name_on_medium
 from archgen.views.elements.element_names import join_surrounding_titles
-from archgen.views.graph_shapes import Box, Cluster
 from archgen.views.inline_text import count_noun, strip_marks
 from archgen.views.lookup import Lookup
+from archgen.views.picture_shapes import Box, Cluster
 from archgen.views.timing_words import format_short_timing
 from archgen.views.type_names import name_component_type
 

@@ -16,9 +16,9 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun
+from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph
 
 MAX_BOXES = 70
 MAX_ARROWS = 160

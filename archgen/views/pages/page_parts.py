@@ -11,9 +11,9 @@ from archgen.model.architecture import Architecture
 from archgen.model.made_elements import find_made_element
 from archgen.views import inline_text
 from archgen.views.element_references import place_run
-from archgen.views.graph_shapes import GraphKind
 from archgen.views.lookup import Lookup
 from archgen.views.pages.report_outline import DocumentEdition
+from archgen.views.picture_shapes import GraphKind
 from archgen.views.shapes import Block, Bullets, Figure, Page, Paragraph, Section, Table, Text
 
 MAX_ROWS = 1_500

@@ -35,7 +35,6 @@ from archgen.views.shapes import Block, Bullets, Facts, Figure, Markdown, Page, 
 from archgen.views.tables import (
     deployment_tables,
     finding_tables,
-    frame_table,
     functional_tables,
     property_tables,
     requirement_tables,
@@ -44,7 +43,7 @@ from archgen.views.tables import (
     type_tables,
 )
 from archgen.views.timing.chain_waterfall import WATERFALL_FACTS, make_waterfall
-from archgen.views.timing.slack_waterfall import make_slack_waterfall
+from archgen.views.timing.host_waterfall import make_slack_waterfall
 
 
 def make_pages(lookup: Lookup, edition: DocumentEdition) -> tuple[Page, ...]:
@@ -257,7 +256,7 @@ class PageMaker:
         view_drawings = [f"views/{name}" for name in self.architecture.views]
         yield self._spanning_page("views", "Views", *make_figures(self.edition.drawings, *view_drawings))
         yield from self.variant_pages()
-        if frames := frame_table.make_frame_table(self.lookup):
+        if frames := functional_tables.make_frame_table(self.lookup):
             yield self._spanning_page("frames", "Frames", *make_figures(self.edition.drawings, "frames"), frames)
         if sections := property_tables.make_property_sections(self.lookup):
             yield self._listing_page("properties", "Properties", sections)

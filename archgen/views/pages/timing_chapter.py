@@ -6,8 +6,8 @@ from collections.abc import Collection, Iterator, Mapping
 
 from archgen.timing.analysis import ChainResult
 from archgen.views import inline_text
-from archgen.views.chart_shapes import Drawing
 from archgen.views.lookup import Lookup
+from archgen.views.picture_shapes import Drawing
 from archgen.views.shapes import Block, Figure, Paragraph, Section
 from archgen.views.tables import functional_tables
 from archgen.views.timing import element_timing, timing_tables, timing_verdicts, use_tables

@@ -8,10 +8,10 @@ from collections.abc import Iterable, Iterator
 from archgen.analyses.size_counts import measure_progress
 from archgen.model.report_settings import ReportSettings
 from archgen.views import inline_text
-from archgen.views.chart_shapes import Drawing
 from archgen.views.lookup import Lookup
 from archgen.views.pages import dashboard, page_marks
 from archgen.views.pages.report_outline import DocumentEdition
+from archgen.views.picture_shapes import Drawing
 from archgen.views.shapes import (
     Block,
     Column,

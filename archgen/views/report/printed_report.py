@@ -13,13 +13,13 @@ from collections.abc import Iterable, Iterator, Mapping
 from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField
 from archgen.views import inline_text
 from archgen.views.agreement.message_fields import field_type_run
-from archgen.views.chart_shapes import Drawing
 from archgen.views.elements.functional_level import list_group_facts
 from archgen.views.graphs.element_boxes import name_in_place
-from archgen.views.lookup import Lookup
+from archgen.views.lookup import Lookup, collect_messages
 from archgen.views.pages import report_outline
 from archgen.views.pages.context_pages import shown_topics
 from archgen.views.pages.report_outline import DocumentEdition
+from archgen.views.picture_shapes import Drawing
 from archgen.views.report import condensed_blocks, front_pages
 from archgen.views.report.condensed_blocks import shorten_message
 from archgen.views.report.figure_mentions import mention_section
@@ -41,7 +41,6 @@ from archgen.views.shapes import (
     drop_column,
 )
 from archgen.views.tables import type_tables
-from archgen.views.used_messages import collect_messages
 
 _TIMING_ANNEX = "Rates, loads and traffic"
 _LARGE_DRAWINGS = ("components", "ros", "timing")

@@ -13,9 +13,9 @@ from archgen.model.step_connections import ConnectedStep
 from archgen.model.use_case_steps import StepEnd
 from archgen.timing.chains.use_case_times import UseCaseTimes
 from archgen.views import short_figures
-from archgen.views.chart_shapes import Lifeline, MessageStyle, SequenceChart, SequenceMessage
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
+from archgen.views.picture_shapes import Lifeline, MessageStyle, SequenceChart, SequenceMessage
 from archgen.views.timing import value_format
 
 CHART_PREFIX = "sequences/"

@@ -16,8 +16,8 @@ from archgen.diagnostics.common_wording import floor_percent, shorten_hash
 from archgen.model.architecture import Architecture
 from archgen.model.project_history import FindingCounts, History, HistoryPoint, ProgressRow
 from archgen.views import inline_text
-from archgen.views.chart_shapes import BarSegment, Chart, ChartBar
 from archgen.views.inline_text import count_noun
+from archgen.views.picture_shapes import BarSegment, Chart, ChartBar
 from archgen.views.shapes import Block, Column, Figure, Inlines, Paragraph, Table, Text
 
 _FIGURE_LABELS = {

@@ -8,8 +8,8 @@ from archgen.timing.analysis import EventPace, HostLoad
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.system.timing_system import Activity
 from archgen.views import element_references, inline_text, timing_words
-from archgen.views.graph_shapes import PeriodStep as Step
 from archgen.views.lookup import Lookup
+from archgen.views.picture_shapes import PeriodStep as Step
 from archgen.views.shapes import Column, Inlines, Status, Table, Text, drop_empty_columns
 from archgen.views.timing import load_charts, value_format
 from archgen.views.timing.timing_lookup import TimingLookup

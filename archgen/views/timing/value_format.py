@@ -12,7 +12,7 @@ from archgen.timing import analysis
 from archgen.timing.analysis import Analysis
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.system.core_placement import is_missing_cores
-from archgen.views.graph_shapes import PeriodStep
+from archgen.views.picture_shapes import PeriodStep
 from archgen.views.short_figures import shorten_text
 
 _SIDE_SIGNS = {"exact": "", "at least": ">= ", "at most": "<= "}

@@ -26,9 +26,9 @@ from archgen.emit.graphviz import (
 from archgen.emit.graphviz.drawing_worker import DrawingFailure, DrawingTask
 from archgen.emit.graphviz.worker_pool import DrawingWorker
 from archgen.emit.picture import Picture
-from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs import draw_component, draw_group, draw_overview
 from archgen.views.lookup import make_lookup
+from archgen.views.picture_shapes import Arrow, Box, Graph
 from tests.architectures import robot
 
 VIEW = make_lookup(robot(1))

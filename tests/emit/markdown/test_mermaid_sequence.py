@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from archgen.emit.markdown.mermaid_chart import write_sequence_diagram
-from archgen.views.chart_shapes import Lifeline, SequenceChart, SequenceMessage
+from archgen.views.picture_shapes import Lifeline, SequenceChart, SequenceMessage
 
 
 def test_no_text_of_the_model_is_a_word_of_mermaid() -> None:

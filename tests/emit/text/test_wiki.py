@@ -17,8 +17,7 @@ from archgen.emit.text.template_filters import (
     draw_mermaid_sequence,
     safe_commonmark,
 )
-from archgen.views.chart_shapes import Lifeline, SequenceChart, SequenceMessage
-from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
+from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph, Lifeline, SequenceChart, SequenceMessage
 from archgen.views.shapes import Column, Facts, Figure, Markdown, Page, Paragraph, Section, Table, Text, shape_to_plain
 from tests.running import ROOT, archgen_here
 

@@ -8,11 +8,10 @@ import pytest
 
 from archgen.model.selector_evaluation import evaluate_selector
 from archgen.timing.analysis import EventPace
-from archgen.views.chart_shapes import Chart
 from archgen.views.drawing_set import make_drawings
-from archgen.views.graph_shapes import Graph
 from archgen.views.graphs import make_all_graphs
 from archgen.views.lookup import DocumentScope, make_lookup
+from archgen.views.picture_shapes import Chart, Graph
 from archgen.views.timing import timing_lookup as timed_module
 from archgen.views.timing import value_format
 from archgen.views.timing.timing_lookup import analyse_with_chains

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from typing import get_args
 
 from archgen.views.changes.change_wording import CHANGE_SIGNS
-from archgen.views.graph_shapes import Arrow, Box, Cluster, ElementChange, Graph
 from archgen.views.inline_text import count_noun
+from archgen.views.picture_shapes import Arrow, Box, Cluster, ElementChange, Graph
 
 
 @dataclass(frozen=True, slots=True)

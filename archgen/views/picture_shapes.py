@@ -1,7 +1,4 @@
-"""The shape Graph with its boxes, arrows and clusters: a picture without places; emitters lay it out.
-
-Class and field names are a public interface: templates read them (docs/backends.md), so they must not change.
-"""
+"""The shapes of pictures without places, which emitters lay out: Graph, Chart, and SequenceChart."""
 
 from __future__ import annotations
 
@@ -9,6 +6,105 @@ import dataclasses
 from typing import Literal
 
 from archgen.frozen import dataclass
+
+MessageStyle = Literal["data", "service", "action", "physical", "broken", "inner"]
+
+
+@dataclass(frozen=True, slots=True)
+class Lifeline:
+    """Who takes part: a box with a line below it. `colour` is an index into the palette of group hues, None for no hue."""
+
+    title: str
+    kind: Literal["actor", "component", "composed", "unknown"] = "component"
+    colour: int | None = None
+    ref: str | None = None
+    tooltip: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class SequenceMessage:
+    """A step: an arrow from one lifeline to another, by their positions; both the same for what happens inside.
+
+    `text` stands above the arrow behind `number`, the lines of `detail` in small type below the text.
+    """
+
+    number: int
+    tail: int
+    head: int
+    text: str = ""
+    detail: str = ""
+    style: MessageStyle = "data"
+    ref: str | None = None
+    tooltip: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class SequenceChart:
+    """A sequence of steps; `id` and `title` are as in Graph."""
+
+    id: str
+    title: str
+    lifelines: tuple[Lifeline, ...]
+    messages: tuple[SequenceMessage, ...]
+    legend: tuple[str, ...] = ()
+    """Which styles of messages the legend explains."""
+    notes: tuple[str, ...] = ()
+    alt: str = ""
+
+
+SegmentKind = Literal["sampling", "response", "link", "load", "other_load", "met", "missed", "unproven", "open", "best"]
+
+
+@dataclass(frozen=True, slots=True)
+class BarSegment:
+    """A piece of a bar, its length in the chart's unit; None is unknown, drawn hatched with a question mark.
+
+    `label` is drawn inside only where there is room, so `tooltip` repeats it.
+    """
+
+    length: float | None
+    kind: SegmentKind
+    label: str = ""
+    tooltip: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class ChartBar:
+    """A row of a chart: a title, a bar that begins at `start`, and its value as text at the right.
+
+    `mark` is a tick on the bar's scale. `is_outside`: counted in the sum although it lies outside the selected part;
+    its text is grey.
+    """
+
+    title: str
+    segments: tuple[BarSegment, ...]
+    value: str = ""
+    start: float = 0.0
+    mark: float | None = None
+    strong: bool = False
+    ref: str | None = None
+    is_outside: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Chart:
+    """Bars along one scale: terms of a sum below each other against a limit, or shares of a whole.
+
+    `id` and `title` are as in Graph. `limit` (position, text) is a line across all bars.
+    """
+
+    id: str
+    title: str
+    unit: str
+    bars: tuple[ChartBar, ...]
+    limit: tuple[float, str] | None = None
+    conclusion: str = ""
+    """What follows from the picture, as a sentence above it."""
+    legend: tuple[str, ...] = ()
+    """Which kinds of segment (and `mark`, `unknown`) the legend explains, each as `kind` or `kind: words`."""
+    notes: tuple[str, ...] = ()
+    alt: str = ""
+
 
 ElementChange = Literal["added", "removed", "changed", "renamed"]
 """What happened to an element of a picture that shows two versions; its text and its line style show it."""
@@ -172,3 +268,7 @@ class Graph:
     asked: int = 0
     # By keyword and without a default: a new picture must say what it shows.
     kind: GraphKind = dataclasses.field(kw_only=True)
+
+
+Drawing = Graph | Chart | SequenceChart
+"""What a Figure may show."""
