@@ -268,7 +268,7 @@ def _format_term(term: ChainTerm) -> str:
     return ", ".join(phrases) or "no time"
 
 
-def _stale_input(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
+def stale_input(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
     """What an element reads at an input may be older than the input's `freshness` allows."""
     for read_age in find_read_ages(analysis):
         if read_age.state == "broken":
@@ -312,5 +312,5 @@ RULES = (
         Severity.WARNING,
         (RuleOption("margin", 0, 0, 99, "The share of the deadline that must stay free."),),
     ),
-    (_stale_input, Severity.WARNING),
+    (stale_input, Severity.WARNING),
 )

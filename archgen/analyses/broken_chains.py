@@ -28,7 +28,7 @@ _MAX_VISITS = 300_000
 """Components that are visited in one run to find what lies between: in a project of usual size for every step."""
 
 
-def _broken_step(architecture: Architecture) -> Iterator[Diagnostic]:
+def broken_step(architecture: Architecture) -> Iterator[Diagnostic]:
     """A step of a use case runs along no connection."""
     if not any(use_case.steps for use_case in architecture.use_cases.values()):
         return
@@ -257,5 +257,5 @@ def _components_of_waypoint(architecture: Architecture, waypoint: Waypoint) -> s
 
 RULES = (
     (broken_chain, Severity.WARNING),
-    (_broken_step, Severity.WARNING),
+    (broken_step, Severity.WARNING),
 )

@@ -125,7 +125,7 @@ def _brings_component_data(architecture: Architecture, component: Component, con
     return connection.target != component.id
 
 
-def _unread_input(architecture: Architecture) -> Iterator[Diagnostic]:
+def unread_input(architecture: Architecture) -> Iterator[Diagnostic]:
     """A composed component has an input that nothing inside reads."""
     for shell in architecture.shells.values():
         for port in shell.inputs.values():
@@ -139,7 +139,7 @@ def _unread_input(architecture: Architecture) -> Iterator[Diagnostic]:
                 )
 
 
-def _unfed_output(architecture: Architecture) -> Iterator[Diagnostic]:
+def unfed_output(architecture: Architecture) -> Iterator[Diagnostic]:
     """A composed component has an output that nothing inside feeds."""
     for shell in architecture.shells.values():
         for port in shell.outputs.values():
@@ -157,6 +157,6 @@ def _unfed_output(architecture: Architecture) -> Iterator[Diagnostic]:
 
 RULES = (
     (role_mismatch, Severity.WARNING),
-    (_unread_input, Severity.WARNING),
-    (_unfed_output, Severity.WARNING),
+    (unread_input, Severity.WARNING),
+    (unfed_output, Severity.WARNING),
 )

@@ -177,7 +177,7 @@ def _has_open_reference(component: Component) -> bool:
     )
 
 
-def _repeated_source(architecture: Architecture) -> Iterator[Diagnostic]:
+def repeated_source(architecture: Architecture) -> Iterator[Diagnostic]:
     """An input names the same source twice."""
     for port in architecture.inputs.values():
         first_connections: dict[str, Connection] = {}
@@ -194,7 +194,7 @@ def _repeated_source(architecture: Architecture) -> Iterator[Diagnostic]:
                 )
 
 
-def _mixed_source(architecture: Architecture) -> Iterator[Diagnostic]:
+def mixed_source(architecture: Architecture) -> Iterator[Diagnostic]:
     """An input comes from a component and from outside of the system at once."""
     for port in architecture.inputs.values():
         if port.connections and port.external is not None:
@@ -212,6 +212,6 @@ RULES = (
     (unfed_input, Severity.WARNING),
     (empty_reference, Severity.WARNING),
     (unread_output, Severity.WARNING),
-    (_repeated_source, Severity.WARNING),
-    (_mixed_source, Severity.WARNING),
+    (repeated_source, Severity.WARNING),
+    (mixed_source, Severity.WARNING),
 )

@@ -90,7 +90,7 @@ def _is_loadable(node: Node) -> bool:
 HostPair = tuple[str, str]
 
 
-def _unlinked_hosts(architecture: Architecture) -> Iterator[Diagnostic]:
+def unlinked_hosts(architecture: Architecture) -> Iterator[Diagnostic]:
     """Nodes on two hosts exchange messages, and no link joins these hosts."""
     # A host that a link names wrongly, or a file that could not be read, may hold what is missing.
     if architecture.partial or any(link.unresolved for link in architecture.links.values()):
@@ -146,5 +146,5 @@ def _count_topics(topics: list[str]) -> str:
 RULES = (
     (half_written, Severity.WARNING),
     (uncomposable_node, Severity.WARNING),
-    (_unlinked_hosts, Severity.WARNING),
+    (unlinked_hosts, Severity.WARNING),
 )

@@ -42,7 +42,7 @@ def _list_written_selectors(architecture: Architecture) -> Iterator[WrittenSelec
                 yield WrittenSelector(f"the policy `{policy.id}`", policy.id, text, span)
 
 
-def _wrong_selector(architecture: Architecture) -> Iterator[Diagnostic]:
+def wrong_selector(architecture: Architecture) -> Iterator[Diagnostic]:
     """A selector in a view or policy cannot be read, or names what is not there."""
     # One evaluator for all selectors: its look-ups (paths, graphs) are made once, when first needed.
     evaluator = SelectorEvaluator(architecture)
@@ -62,7 +62,7 @@ def _wrong_selector(architecture: Architecture) -> Iterator[Diagnostic]:
             )
 
 
-def _empty_view(architecture: Architecture) -> Iterator[Diagnostic]:
+def empty_view(architecture: Architecture) -> Iterator[Diagnostic]:
     """A view shows nothing, though all that its selector names is there."""
     evaluator = SelectorEvaluator(architecture)
     for view in architecture.views.values():
@@ -257,6 +257,6 @@ RULES = (
     (forbidden_flow, Severity.ERROR),
     (refused_source, Severity.ERROR),
     (unneeded_exception, Severity.NOTE),
-    (_wrong_selector, Severity.ERROR),
-    (_empty_view, Severity.WARNING),
+    (wrong_selector, Severity.ERROR),
+    (empty_view, Severity.WARNING),
 )

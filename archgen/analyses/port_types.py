@@ -193,7 +193,7 @@ def _message_of_type(architecture: Architecture, type_name: str) -> str | None:
     return (mapped.message if mapped else None) or full_message_name(type_name)
 
 
-def _unlisted_medium(architecture: Architecture) -> Iterator[Diagnostic]:
+def unlisted_medium(architecture: Architecture) -> Iterator[Diagnostic]:
     """The word for a medium is none that archgen knows, and stands in one place of the project only."""
     places = _find_places(architecture)
     for word, spans in places.items():
@@ -224,7 +224,7 @@ def _find_places(architecture: Architecture) -> Mapping[str, Mapping[Span, str]]
     return places
 
 
-def _unused_ros_setting(architecture: Architecture) -> Iterator[Diagnostic]:
+def unused_ros_setting(architecture: Architecture) -> Iterator[Diagnostic]:
     """Something is written that only ROS has, at a port or a program that is no ROS."""
     for node in architecture.nodes.values():
         for key, place, reason in (*_list_port_settings(architecture, node), *_list_program_settings(node)):
@@ -276,6 +276,6 @@ def _list_program_settings(node: Node) -> Iterator[tuple[str, Span, str]]:
 RULES = (
     (type_mismatch, Severity.ERROR),
     (medium_mismatch, Severity.WARNING),
-    (_unlisted_medium, Severity.NOTE),
-    (_unused_ros_setting, Severity.WARNING),
+    (unlisted_medium, Severity.NOTE),
+    (unused_ros_setting, Severity.WARNING),
 )

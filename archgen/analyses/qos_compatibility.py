@@ -56,7 +56,7 @@ class _KnownNames:
                 self.by_alias.setdefault((alias, use), name)
 
 
-def _ineffective_override(architecture: Architecture) -> Iterator[Diagnostic]:
+def ineffective_override(architecture: Architecture) -> Iterator[Diagnostic]:
     """A parameter that is to override the quality of service does nothing, or ends the node as it starts."""
     if is_ros_1(architecture.distro):
         return
@@ -263,7 +263,7 @@ _TAKEN_TURNS = frozenset({"/tf", "/tf_static", "/diagnostics", "/cmd_vel"})
 _MAX_SHOWN = 3
 
 
-def _shared_memory(architecture: Architecture) -> Iterator[Diagnostic]:
+def shared_memory(architecture: Architecture) -> Iterator[Diagnostic]:
     """A subscription keeps fewer messages than there are publishers on its topic: they push out one another's."""
     if is_ros_1(architecture.distro):
         return
@@ -306,6 +306,6 @@ def _judge_queue(architecture: Architecture, topic: Topic, reader: Endpoint) -> 
 
 RULES = (
     (incompatible_qos, Severity.ERROR),
-    (_ineffective_override, Severity.WARNING),
-    (_shared_memory, Severity.NOTE),
+    (ineffective_override, Severity.WARNING),
+    (shared_memory, Severity.NOTE),
 )

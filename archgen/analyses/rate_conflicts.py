@@ -165,7 +165,7 @@ def _report_overflow(edge: EdgeFit, target: Activity, depths: tuple[int, Fractio
     )
 
 
-def _endless_trigger(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
+def endless_trigger(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
     """Elements fire one another in a ring: an event that enters it circulates for ever."""
     for ring in analysis.endless:
         members = [analysis.system.activities[name] for name in ring]
@@ -189,7 +189,7 @@ def _endless_trigger(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic
         )
 
 
-def _deadlocked_trigger(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
+def deadlocked_trigger(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
     """Elements wait for all of several inputs, one of which never comes: they never run."""
     arriving_keys = _find_arriving_keys(analysis)
     for ring in analysis.deadlocked:
@@ -246,6 +246,6 @@ RULES = (
         Severity.WARNING,
         (RuleOption("margin", 0, 0, 1000, "The share of what can come that must fit in besides."),),
     ),
-    (_endless_trigger, Severity.ERROR),
-    (_deadlocked_trigger, Severity.ERROR),
+    (endless_trigger, Severity.ERROR),
+    (deadlocked_trigger, Severity.ERROR),
 )

@@ -171,7 +171,7 @@ def _suggest_justification(architecture: Architecture, component: Component) -> 
 _MAX_LISTED = 5
 
 
-def _circular_requirement(architecture: Architecture) -> Iterator[Diagnostic]:
+def circular_requirement(architecture: Architecture) -> Iterator[Diagnostic]:
     """Requirements are part of one another in a circle."""
     requirements = architecture.requirements
     judged_ids: set[str] = set()
@@ -216,7 +216,7 @@ def _diagnose_circle(requirements: Mapping[str, Requirement], circle: list[str])
     )
 
 
-def _unverified_requirement(architecture: Architecture) -> Iterator[Diagnostic]:
+def unverified_requirement(architecture: Architecture) -> Iterator[Diagnostic]:
     """Nothing shows that a requirement is met."""
     if architecture.partial:
         return
@@ -240,6 +240,6 @@ RULES = (
     (unknown_requirement, Severity.ERROR),
     (uncovered_requirement, Severity.WARNING),
     (unjustified_component, Severity.WARNING),
-    (_circular_requirement, Severity.ERROR),
-    (_unverified_requirement, Severity.OFF),
+    (circular_requirement, Severity.ERROR),
+    (unverified_requirement, Severity.OFF),
 )

@@ -159,7 +159,7 @@ def _suggest_definition_file(message: str) -> str:
     return f'add its definition, for instance as `{file}` with `ros: {{interfaces: ["msgs/**/*.{kind}"]}}`'
 
 
-def _action_as_message(architecture: Architecture) -> Iterator[Diagnostic]:
+def action_as_message(architecture: Architecture) -> Iterator[Diagnostic]:
     """The message that describes an action is used as if it were sent on a topic."""
     interfaces = architecture.interfaces
     for message, span, element in _mentions_with_status(architecture, "known"):
@@ -201,7 +201,7 @@ _ROS_2_QOS_KEYS = ("reliability", "history", "deadline", "lifespan", "liveliness
 """`depth` is the queue size of ROS 1, and `durability: transient_local` its latched topic: both may stand there."""
 
 
-def _other_ros_generation(architecture: Architecture) -> Iterator[Diagnostic]:
+def other_ros_generation(architecture: Architecture) -> Iterator[Diagnostic]:
     """A node uses what only the other generation of ROS has."""
     distro = guess_distro(architecture.distro)
     if distro not in KNOWN_DISTROS and distro not in PAST_DISTROS:
@@ -289,9 +289,9 @@ def _message_span(endpoint: Endpoint, architecture: Architecture) -> Span:
 
 RULES = (
     (unknown_distro, Severity.ERROR),
-    (_other_ros_generation, Severity.WARNING),
+    (other_ros_generation, Severity.WARNING),
     (unknown_message, Severity.ERROR),
     (unchecked_message, Severity.NOTE),
-    (_action_as_message, Severity.WARNING),
+    (action_as_message, Severity.WARNING),
     (topic_type_conflict, Severity.ERROR),
 )

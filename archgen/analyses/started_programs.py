@@ -125,7 +125,7 @@ _SHELLS = frozenset({"sh", "bash", "dash", "zsh", "ksh", "fish", "cmd", "powersh
 _SHELL_OPTIONS = ("-c", "-lc", "-ic", "/c", "-Command")
 
 
-def _idle_start(architecture: Architecture) -> Iterator[Diagnostic]:
+def idle_start(architecture: Architecture) -> Iterator[Diagnostic]:
     """A key of `start` has no effect where it stands."""
     for node in architecture.nodes.values():
         if node.command and (node.executable or node.plugin):
@@ -173,7 +173,7 @@ def _list_idle_keys(node: Node, start: StartUp) -> Iterator[tuple[str, str, str]
                 yield key, "it is no lifecycle node", "write `kind: lifecycle`, or leave it out"
 
 
-def _endless_once(architecture: Architecture) -> Iterator[Diagnostic]:
+def endless_once(architecture: Architecture) -> Iterator[Diagnostic]:
     """What runs `once` never comes to its end."""
     for node in architecture.nodes.values():
         reason = _find_endless_reason(node) if node.start and node.start.once else None
@@ -205,7 +205,7 @@ def _describe_endless_timing(timing: Timing) -> str | None:
     return _WAITING_BEHAVIOURS.get(timing.behaviour or "")
 
 
-def _indirect_command(architecture: Architecture) -> Iterator[Diagnostic]:
+def indirect_command(architecture: Architecture) -> Iterator[Diagnostic]:
     """A command asks for another user's rights, or hands a line to a shell."""
     for node in architecture.nodes.values():
         program = node.command[0].replace("\\", "/").rpartition("/")[2].removesuffix(".exe") if node.command else ""
@@ -229,7 +229,7 @@ RULES = (
     (shared_port, Severity.WARNING),
     (silent_node, Severity.WARNING),
     (unstarted_program, Severity.WARNING),
-    (_idle_start, Severity.WARNING),
-    (_endless_once, Severity.WARNING),
-    (_indirect_command, Severity.WARNING),
+    (idle_start, Severity.WARNING),
+    (endless_once, Severity.WARNING),
+    (indirect_command, Severity.WARNING),
 )

@@ -88,7 +88,7 @@ _SELF_ACTIVATED = {
 }
 
 
-def _idle_timing(architecture: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
+def idle_timing(architecture: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
     """A key of timing has no effect where it stands."""
     has_calls = any(timing.calls for node in architecture.nodes.values() for timing in node.timing.values())
     uses = _port_uses(architecture) if has_calls else {}
@@ -232,7 +232,7 @@ def _find_idle_wholes(architecture: Architecture) -> Iterator[Diagnostic]:
             )
 
 
-def _absent_core(architecture: Architecture) -> Iterator[Diagnostic]:
+def absent_core(architecture: Architecture) -> Iterator[Diagnostic]:
     """An element is pinned to a core that its host does not have."""
     # One `timing` may stand for several components of a node: its faults are reported once.
     reported_spans: set[Span] = set()
@@ -272,10 +272,10 @@ def _report_absent_cores(
     )
 
 
-TIMING_RULES = ((_idle_timing, Severity.WARNING),)
+TIMING_RULES = ((idle_timing, Severity.WARNING),)
 
 
-def _idle_executor(architecture: Architecture) -> Iterator[Diagnostic]:
+def idle_executor(architecture: Architecture) -> Iterator[Diagnostic]:
     """A key of a node that says how its callbacks run has no effect where it stands."""
     for node in architecture.nodes.values():
         container = architecture.containers.get(node.container or "")
@@ -310,7 +310,7 @@ def _find_idle_groups(node: Node) -> Iterator[Diagnostic]:
     )
 
 
-def _remote_resource(architecture: Architecture) -> Iterator[Diagnostic]:
+def remote_resource(architecture: Architecture) -> Iterator[Diagnostic]:
     """An element uses a resource of another computer."""
     # One `timing` may stand for several components of a node: its faults are reported once.
     reported_spans: set[Span] = set()
@@ -341,7 +341,7 @@ RULES = (
         Severity.NOTE,
         (RuleOption("limit", 100, 1, 1000, "The share of the period by which an activation may come late."),),
     ),
-    (_absent_core, Severity.WARNING),
-    (_idle_executor, Severity.WARNING),
-    (_remote_resource, Severity.WARNING),
+    (absent_core, Severity.WARNING),
+    (idle_executor, Severity.WARNING),
+    (remote_resource, Severity.WARNING),
 )
