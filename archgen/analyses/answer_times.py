@@ -2,32 +2,26 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from typing import NamedTuple
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.rule_options import RuleOption, format_percentage
-from archgen.diagnostics.source_span import NO_SPAN
-from archgen.timing.chains.chain_bounds import find_unmet_chains
+from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component, PerformanceIndicator
+from archgen.model.deployment import Host
+from archgen.timing.analysis import Analysis, ChainTerm, ServiceLoad
+from archgen.timing.chains.chain_bounds import LateChain, find_unmet_chains
 from archgen.timing.chains.read_ages import ReadAge, find_read_ages
 from archgen.timing.chains.unfound_bounds import find_overloaded_hosts, find_unfound_places
-from archgen.timing.chains.whole_bounds import bound_wholes, list_limits
+from archgen.timing.chains.whole_bounds import WholeBound, WholeLimit, bound_wholes, list_limits
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.figure_wording import format_duration, join_first_names
 from archgen.timing.figures.value_arithmetic import is_boundless, is_known_bound, is_unfound
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-    from fractions import Fraction
-
-    from archgen.diagnostics.source_span import Span
-    from archgen.model.architecture import Architecture
-    from archgen.model.component import Component, PerformanceIndicator
-    from archgen.model.deployment import Host
-    from archgen.timing.analysis import Analysis, ChainTerm, ServiceLoad
-    from archgen.timing.chains.chain_bounds import LateChain
-    from archgen.timing.chains.whole_bounds import WholeBound, WholeLimit
-    from archgen.timing.system.timing_system import Activity
+from archgen.timing.system.timing_system import Activity
 
 
 def slow_component(architecture: Architecture, analysis: Analysis, *, margin: Fraction) -> Iterator[Diagnostic]:

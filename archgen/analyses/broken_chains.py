@@ -3,24 +3,19 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Collection, Iterator, Mapping
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.suggestions import find_closest
 from archgen.model import flow_graph
-from archgen.model.flow_graph import build_component_graph
+from archgen.model.architecture import Architecture, Chain, UseCase, Waypoint
+from archgen.model.component import Input
+from archgen.model.flow_graph import FlowGraph, build_component_graph
 from archgen.model.graph_search import find_reachable
 from archgen.model.step_connections import StepConnections
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator, Mapping
-
-    from archgen.model.architecture import Architecture, Chain, UseCase, Waypoint
-    from archgen.model.component import Input
-    from archgen.model.flow_graph import FlowGraph
-    from archgen.model.use_case_steps import Step, StepEnd
+from archgen.model.use_case_steps import Step, StepEnd
 
 _MAX_BETWEEN = 3
 """So many components between two are named where a step leaves them out."""

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.frozen import dataclass
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component, Connection
 from archgen.model.port_media import is_physical
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from archgen.model.architecture import Architecture
-    from archgen.model.component import Component, Connection
 
 
 @dataclass(frozen=True, slots=True)

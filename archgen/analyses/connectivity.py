@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity, diagnose_repetition
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component, Connection, Output
 from archgen.model.library_ports import is_offered_by_library, waits_for_calls
 from archgen.model.port_media import is_physical
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from archgen.model.architecture import Architecture
-    from archgen.model.component import Component, Connection, Output
 
 
 def find_linked_components(architecture: Architecture) -> frozenset[str]:
@@ -44,7 +40,9 @@ def disconnected_component(architecture: Architecture) -> Iterator[Diagnostic]:
     for component in architecture.components.values():
         if component.id in linked or _has_open_reference(component) or waits_for_calls(architecture, component):
             continue
-        if _has_external_port(component, shared_outputs):
+        if any(i.external for i in component.inputs.values()) or any(
+            o.external or o.id in shared_outputs for o in component.outputs.values()
+        ):
             continue
         if not architecture.suspected_ids.isdisjoint(
             (component.group, component.id, *(o.id for o in component.outputs.values()))
@@ -157,12 +155,6 @@ def _target_components(architecture: Architecture, connection: Connection) -> It
     if connection.kind == "component":
         return (architecture.components[connection.target],)
     return ()
-
-
-def _has_external_port(component: Component, shared_outputs: set[str]) -> bool:
-    return any(i.external for i in component.inputs.values()) or any(
-        o.external or o.id in shared_outputs for o in component.outputs.values()
-    )
 
 
 def _list_shared_outputs(architecture: Architecture) -> set[str]:

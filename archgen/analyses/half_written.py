@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Iterator, Mapping
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN
+from archgen.model.architecture import Architecture
+from archgen.model.node import Node, Topic
 from archgen.model.ros_distro import is_ros_1
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from archgen.model.architecture import Architecture
-    from archgen.model.node import Node, Topic
 
 _KEY_MEANINGS = {"plugin": "the class in `plugin`", "container": "the container that loads it in `container`"}
 

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Collection, Iterator
+from typing import NamedTuple
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics.source_span import Span
+from archgen.model.architecture import Architecture, Policy, SourceDemand
+from archgen.model.component import Connection, Input, Output
 from archgen.model.selector_evaluation import SelectorEvaluator
 from archgen.model.selector_parser import SelectorProblem
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator
-
-    from archgen.diagnostics.source_span import Span
-    from archgen.model.architecture import Architecture, Policy, SourceDemand
-    from archgen.model.component import Connection, Input, Output
 
 
 class WrittenSelector(NamedTuple):

@@ -3,21 +3,16 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.diagnostics.source_span import NO_SPAN
+from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.diagnostics.suggestions import did_you_mean
+from archgen.model.architecture import Architecture
 from archgen.model.component import Connection, Input, Output
 from archgen.model.message_types import flow_of, full_message_name
+from archgen.model.node import Node
 from archgen.model.port_media import MEDIUM_NAMES, MEMORY, is_physical, name_medium, uses_ros
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from archgen.diagnostics.source_span import Span
-    from archgen.model.architecture import Architecture
-    from archgen.model.node import Node
 
 
 def is_expected_type(architecture: Architecture, expected_type: str, output: Output) -> bool:

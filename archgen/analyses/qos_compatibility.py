@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Iterator
+from fractions import Fraction
+from typing import NamedTuple
 
 from archgen.derivation.wire.qos_overrides import (
     END_WORDS,
@@ -18,16 +20,11 @@ from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.diagnostics.suggestions import did_you_mean
+from archgen.model.architecture import Architecture
+from archgen.model.node import Endpoint, Qos, Topic, UseKind
 from archgen.model.parameter import format_parameter
+from archgen.model.quantity import Quantity
 from archgen.model.ros_distro import is_ros_1
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from fractions import Fraction
-
-    from archgen.model.architecture import Architecture
-    from archgen.model.node import Endpoint, Qos, Topic, UseKind
-    from archgen.model.quantity import Quantity
 
 _GUESS_BUDGET = 1_000_000
 """Names that topics are compared with, in all."""

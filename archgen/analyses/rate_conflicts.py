@@ -4,26 +4,21 @@ from __future__ import annotations
 
 import math
 from collections import Counter, defaultdict
-from typing import TYPE_CHECKING
+from collections.abc import Collection, Iterator
+from fractions import Fraction
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.rule_options import RuleOption
-from archgen.diagnostics.source_span import NO_SPAN
+from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component
+from archgen.timing.analysis import Analysis, EdgeFit
 from archgen.timing.figures.figure_wording import format_number, format_rate
 from archgen.timing.figures.tick_unit import NS_PER_SECOND, written_period
+from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.rates.edge_fit import fires_each_time
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator
-    from fractions import Fraction
-
-    from archgen.diagnostics.source_span import Span
-    from archgen.model.architecture import Architecture
-    from archgen.model.component import Component
-    from archgen.timing.analysis import Analysis, EdgeFit
-    from archgen.timing.figures.timing_values import TimingValue
-    from archgen.timing.system.timing_system import Activity
+from archgen.timing.system.timing_system import Activity
 
 
 def period_conflict(architecture: Architecture, analysis: Analysis, *, tolerance: Fraction) -> Iterator[Diagnostic]:
@@ -37,7 +32,7 @@ def period_conflict(architecture: Architecture, analysis: Analysis, *, tolerance
         yield Diagnostic(
             "period-conflict",
             f"`{name}` states {format_rate(stated_rate)}, but what fires it gives {_format_bounded_rate(derived.rate)}",
-            _stated_rate_span(activity),
+            activity.places.get("rate", activity.places.get("period", activity.at)),
             labels=(Label(reason.at, "it is fired here"),) if reason and reason.at != NO_SPAN else (),
             help="leave the rate out, or correct it; `behaviour: periodic` if a timer decides",
             element=name,
@@ -76,10 +71,6 @@ def _format_bounded_rate(value: TimingValue) -> str:
     """Format a rate (Hz) with the side on which it bounds: "at most 10 Hz"."""
     text = format_rate(value.value) if value.value is not None else "nothing known"
     return text if value.side == "exact" else f"{value.side} {text}"
-
-
-def _stated_rate_span(activity: Activity) -> Span:
-    return activity.places.get("rate", activity.places.get("period", activity.at))
 
 
 def _compare_component_rate(

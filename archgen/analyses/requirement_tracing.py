@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from itertools import dropwhile
-from typing import TYPE_CHECKING
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean, find_closest
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component
+from archgen.model.requirement import Requirement
 from archgen.model.requirement_tree import add_wholes, index_parts
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from archgen.diagnostics.source_span import Span
-    from archgen.model.architecture import Architecture
-    from archgen.model.component import Component
-    from archgen.model.requirement import Requirement
 
 
 def unknown_requirement(architecture: Architecture) -> Iterator[Diagnostic]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
@@ -13,11 +13,8 @@ from archgen.model.architecture import Architecture
 from archgen.model.component import Input, Output
 from archgen.model.known_interfaces import KNOWN_DISTROS, Interfaces, InterfaceStatus, guess_distro
 from archgen.model.message_types import flow_of
-from archgen.model.node import Endpoint, Qos
+from archgen.model.node import Endpoint, Node, Qos
 from archgen.model.ros_distro import PAST_DISTROS, is_ros_1
-
-if TYPE_CHECKING:
-    from archgen.model.node import Node
 
 _FLOW_NOUNS = {"topic": "message", "service": "service", "action": "action"}
 

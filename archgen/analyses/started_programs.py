@@ -3,21 +3,16 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 from archgen.bringup.start_plan import describes_start
 from archgen.derivation.wire.running_state import ANY_NODE, RunningStates
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.model.start_up import NO_START, SIGN_KEYS
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from archgen.diagnostics.source_span import Span
-    from archgen.model.architecture import Architecture
-    from archgen.model.declared_timing import Timing
-    from archgen.model.node import Endpoint, Node
-    from archgen.model.start_up import StartUp
+from archgen.diagnostics.source_span import Span
+from archgen.model.architecture import Architecture
+from archgen.model.declared_timing import Timing
+from archgen.model.node import Endpoint, Node
+from archgen.model.start_up import NO_START, SIGN_KEYS, StartUp
 
 
 def shared_port(architecture: Architecture) -> Iterator[Diagnostic]:

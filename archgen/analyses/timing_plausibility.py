@@ -3,25 +3,21 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
+from fractions import Fraction
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.rule_options import RuleOption, format_percentage
+from archgen.diagnostics.source_span import Span
+from archgen.model.architecture import Architecture
+from archgen.model.declared_timing import Timing
+from archgen.model.deployment import Host
+from archgen.model.node import Node
 from archgen.model.port_media import is_physical
+from archgen.model.quantity import Quantity
+from archgen.timing.analysis import Analysis
 from archgen.timing.chains.whole_bounds import LIMIT_KEYS
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-    from fractions import Fraction
-
-    from archgen.diagnostics.source_span import Span
-    from archgen.model.architecture import Architecture
-    from archgen.model.declared_timing import Timing
-    from archgen.model.deployment import Host
-    from archgen.model.node import Node
-    from archgen.model.quantity import Quantity
-    from archgen.timing.analysis import Analysis
 
 _NS_PER_SECOND = 10**9
 

@@ -4,20 +4,15 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
+from collections.abc import Iterator, Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.diagnostics.source_span import NO_SPAN
+from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.model.architecture import Architecture
 from archgen.model.message_types import flow_of
+from archgen.model.node import Endpoint, FlowKind, PortUse
 from archgen.model.port_media import is_physical
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from archgen.diagnostics.source_span import Span
-    from archgen.model.architecture import Architecture
-    from archgen.model.node import Endpoint, FlowKind, PortUse
 
 _STANDARD_SERVICES = re.compile(
     r".*/((describe|list|get|set)_parameters|get_parameter_types|set_parameters_atomically|get_type_description"

@@ -198,7 +198,7 @@ def list_changed_keys(
 ) -> Iterator[KeyChange]:
     """Yield each changed key with its old and new value as plain data; all changes of `qos` are combined into one."""
     qos_changes: list[KeyChange] = []
-    for key in _sorted_keys(old_element.values, new_element.values):
+    for key in sorted(old_element.values.keys() | new_element.values.keys()):
         old_value, new_value = old_element.values.get(key), new_element.values.get(key)
         if old_value == new_value or is_consequence(key, old_element, new_element, before, after):
             continue
@@ -213,7 +213,3 @@ def list_changed_keys(
             yield key, to_plain_data(old_value), to_plain_data(new_value)
     if qos_changes:
         yield "qos", {key: value for key, value, _ in qos_changes}, {key: value for key, _, value in qos_changes}
-
-
-def _sorted_keys(old_values: Mapping[str, object], new_values: Mapping[str, object]) -> list[str]:
-    return sorted(old_values.keys() | new_values.keys())

@@ -69,7 +69,7 @@ def describe_key_change(change: Change) -> str:
         else _deprecation_phrase(change) or _port_phrase(change, spec.verb)
     ):
         return f"{subject} {port_phrase}"
-    if spec.verb and _has_verb_form(key, before, after):
+    if spec.verb and (key == "container" or (before is not None and after is not None)):
         return f"{subject} {_verb_phrase(spec.verb, before, after)}"
     if key == "topic" and (".serves." in change.element_id or ".calls." in change.element_id):
         # What is called a topic in the files is the name of a service or action here.
@@ -135,10 +135,6 @@ def _deprecation_phrase(change: Change) -> str:
 
 def _until_phrase(last_day: object) -> str:
     return "without a day" if last_day == NO_DAY else f"until {format_value(last_day)}"
-
-
-def _has_verb_form(key: str, before: object, after: object) -> bool:
-    return key == "container" or (before is not None and after is not None)
 
 
 def _verb_phrase(verb: str, before: object, after: object) -> str:

@@ -55,7 +55,7 @@ def propose_texts(file: str, text: str, path: tuple[str, ...], element: NewEleme
         msg = f"{file} cannot be parsed: `archgen check` says where"
         raise CannotInsertError(msg)
     # YAML takes a lone carriage return for a line break and editors mostly do not: line numbers would not fit.
-    if _has_bare_returns(text):
+    if re.search(r"\r(?!\n)", text) is not None:
         msg = f"{file} holds line breaks that editors and parsers see differently"
         raise CannotInsertError(msg)
     parsed = _ParsedText(tuple(_LINE_PATTERN.findall(text)), document.root)
@@ -67,11 +67,6 @@ def propose_texts(file: str, text: str, path: tuple[str, ...], element: NewEleme
         yield _insert_in_braces(parsed, holder, element.without_empty_keys().nested_below(missing_keys))
     else:
         yield from _insert_in_block(parsed, holder, element.nested_below(missing_keys))
-
-
-def _has_bare_returns(text: str) -> bool:
-    """Return whether a text has line breaks that are a carriage return only."""
-    return re.search(r"\r(?!\n)", text) is not None
 
 
 def _find_holder(parsed: _ParsedText, path: tuple[str, ...]) -> tuple[MappingNode, tuple[str, ...]]:

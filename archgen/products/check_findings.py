@@ -7,22 +7,16 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Hashable, Iterable
+from collections.abc import Hashable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from archgen import git, pipeline, project
-from archgen.diagnostics.diagnostic import Diagnostic, Severity, settle_diagnostics
+from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity, settle_diagnostics
 from archgen.diagnostics.finding_identity import BaselineEntry, IdRenamer, identify_finding, match_findings
 from archgen.pipeline import CheckedProject, VersionCache, index_all_rules
 from archgen.project import baseline_reading as reading
 from archgen.syntax import yaml_writer
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from archgen.diagnostics.diagnostic import Rule
 
 BASELINE_FILE = "archgen-baseline.yaml"
 """The baseline of a project, unless another file is named."""

@@ -83,13 +83,8 @@ def join_lines(items: Iterable[Inlines]) -> Inlines:
     for index, run in enumerate(items):
         # A break belongs to the run that follows it, so each item needs at least one run of text.
         first, *other_parts = run
-        result += [_with_line_break(first) if index else first, *other_parts]
+        result += [replace(first, line_break=True) if index else first, *other_parts]
     return tuple(result)
-
-
-def _with_line_break(part: Text) -> Text:
-    """Return the run with a line break before it."""
-    return replace(part, line_break=True)
 
 
 def group_link(architecture: Architecture, group_id: str) -> Text:

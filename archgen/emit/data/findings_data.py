@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import posixpath
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Iterator
+from typing import Any
 
-from archgen.diagnostics.diagnostic import Severity, count_by_severity
+from archgen.diagnostics.diagnostic import Diagnostic, Severity, count_by_severity
 from archgen.diagnostics.safe_text import format_json, make_visible
+from archgen.diagnostics.source_span import Span
 from archgen.findings.variant_findings import phrase_absence
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from archgen.diagnostics.diagnostic import Diagnostic
-    from archgen.diagnostics.source_span import Span
 
 VERSION = 1
 

@@ -109,7 +109,7 @@ def create_writer(
 ) -> DocxWriter:
     """Return the writer of a report in a template, whose text is in a language (of two letters; empty for the template's)."""
     document = template.document
-    own_styles = _read_own_styles()
+    own_styles = parse_xml(resources.resource_path("backends", "report", "template", "word", "styles.xml").read_bytes())
     styles = match_styles(_find_styles(document, own_styles), own_styles)
     if language:
         _write_language(styles.root, language)
@@ -162,11 +162,6 @@ def _find_last_id(elements: Iterable[etree._Element]) -> int:
 _UNWANTED_SETTINGS = ("updateFields", "attachedTemplate", "mailMerge", "documentProtection", "writeProtection")
 """Settings that make Word ask a question, fetch something, or lock the report."""
 _UNWANTED_RELATIONS = ("/attachedTemplate", "/mailMergeSource", "/mailMergeHeaderSource")
-
-
-def _read_own_styles() -> etree._Element:
-    """Return the styles of archgen's own template."""
-    return parse_xml(resources.resource_path("backends", "report", "template", "word", "styles.xml").read_bytes())
 
 
 def _find_styles(document: Document, own_styles: etree._Element) -> etree._Element:

@@ -72,7 +72,7 @@ def _check_edit(entry: PatternEntry, bound: Iterable[str], hidden: set[str]) -> 
     for part, span in _list_parts(entry):
         if _holds_anything(part):
             yield _diagnose_rule("`$_` stands for anything, and cannot be written", span, "give it a name in `find`")
-        for name in _list_own_variables(part):
+        for name in list_variables(part):
             if name in hidden:
                 message = f"`${name}` is bound in `unless` only: where the rule writes, there is none"
                 yield _diagnose_rule(message, span, "bind it in `find`")
@@ -100,10 +100,6 @@ def _holds_anything(part: Pattern) -> bool:
     if isinstance(part, Anything):
         return part.is_named
     return isinstance(part, TextPattern) and any(isinstance(each, Variable) and each.name == "_" for each in part.parts)
-
-
-def _list_own_variables(part: Pattern) -> Iterator[str]:
-    return list_variables(part)
 
 
 def _check_names(names: Iterable[str], bound: Iterable[str], span: Span, help_line: str) -> Iterator[Diagnostic]:
@@ -146,16 +142,12 @@ def _check_contradictions(rule: RewriteRule) -> Iterator[Diagnostic]:
 
 
 def _list_leaves(path: tuple[object, ...], entry: PatternEntry) -> Iterator[tuple[tuple[object, ...], Pattern, Span]]:
-    here = (*path, _name_key(entry.key))
+    here = (*path, (str(entry.key.text) if isinstance(entry.key, Constant) else entry.key))
     if isinstance(entry.value, MappingPattern):
         for inner in entry.value.entries:
             yield from _list_leaves(here, inner)
     elif not isinstance(entry.value, ListPattern):
         yield here, entry.value, entry.span
-
-
-def _name_key(key: Pattern) -> object:
-    return str(key.text) if isinstance(key, Constant) else key
 
 
 def _list_view_variables(pattern: ViewPattern) -> Iterator[str]:

@@ -197,7 +197,7 @@ def draw_nodes(lookup: Lookup, graph_id: str, title: str, node_ids: Collection[s
         graph_id,
         title,
         "two-step",
-        tuple(replace(_node_box(lookup, node), cluster=home_frames[node.id]) for node in chosen_nodes),
+        tuple(replace(element_boxes.node_box(lookup, node), cluster=home_frames[node.id]) for node in chosen_nodes),
         arrows,
         frames,
         direction=lookup.architecture.layout.direction,
@@ -207,10 +207,6 @@ def draw_nodes(lookup: Lookup, graph_id: str, title: str, node_ids: Collection[s
         kind="ros",
     )
     return fold_graph(add_legend_keys(graph))
-
-
-def _node_box(lookup: Lookup, node: Node) -> Box:
-    return element_boxes.node_box(lookup, node)
 
 
 def find_home_frame(lookup: Lookup, node: Node) -> str:

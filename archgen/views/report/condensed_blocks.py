@@ -67,7 +67,7 @@ def condense_component(lookup: Lookup, component: Component, blocks: Iterable[Bl
                 rows.append(("Performance", inline_text.join_lines(_phrase_row(block, row) for row in block.rows)))
             case Bullets():
                 rows.append((pending_title, inline_text.join_lines(block.items)))
-            case Paragraph() if _is_title(block):
+            case Paragraph() if len(block.inlines) == 1 and block.inlines[0].strong:
                 pending_title = block.inlines[0].text
             case Paragraph() if (row := _read_fact(block)) is not None:
                 rows.append(row)
@@ -75,11 +75,6 @@ def condense_component(lookup: Lookup, component: Component, blocks: Iterable[Bl
                 texts.append(block)
     facts = [Facts(tuple(rows))] if rows else []
     return (*texts, *facts, *figures, *_make_port_tables(lookup, component), *last_tables)
-
-
-def _is_title(paragraph: Paragraph) -> bool:
-    """Whether a paragraph is nothing but the title of the list that follows."""
-    return len(paragraph.inlines) == 1 and paragraph.inlines[0].strong
 
 
 def _read_fact(paragraph: Paragraph) -> FactRow | None:
