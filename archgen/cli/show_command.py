@@ -14,7 +14,7 @@ from archgen.diagnostics.safe_text import measure_width
 from archgen.diagnostics.text_columns import find_width, wrap_line
 
 if TYPE_CHECKING:
-    from archgen.views.elements.card_parts import ElementCard
+    from archgen.views.elements.annotation_facts import ElementCard
 
 
 _TEXT_WIDTH = 96

@@ -145,7 +145,7 @@ def print_sensitivity(request: TimingRequest, chain_id: str) -> None:
 
 def print_budget(request: TimingRequest, chain_id: str) -> None:
     """Print how long what a chain rests on may take until it misses its deadline (`--budget`)."""
-    from archgen.emit.terminal import budget_text
+    from archgen.emit.terminal import chain_text
     from archgen.emit.terminal.chain_gaps import describe_gaps
     from archgen.link.timing_overrides import apply_overrides
     from archgen.timing.search.chain_budgets import MAX_TRIES, UnknownBudgetError, find_chain_budget
@@ -163,10 +163,10 @@ def print_budget(request: TimingRequest, chain_id: str) -> None:
             + ("" if result.deadline else f"; write `deadline` at `chains: {chain_id}`")
         )
     if request.as_json:
-        _print_json(budget_text.budget_to_json(result, budget))
+        _print_json(chain_text.budget_to_json(result, budget))
     else:
         titles = {partner.id: partner.title for partner in architecture.partners.values()}
-        _print_lines(budget_text.format_budget(result, budget, titles, find_width(sys.stdout)))
+        _print_lines(chain_text.format_budget(result, budget, titles, find_width(sys.stdout)))
 
 
 def _search_beyond(

@@ -23,12 +23,12 @@ from archgen.products import report_cache
 from archgen.products.output_options import OutputOptions
 from archgen.project import ProjectNotFoundError
 from archgen.views import drawing_set
-from archgen.views.agreement.signature_record import SignedTag
-from archgen.views.chart_shapes import Drawing
+from archgen.views.agreement.agreement_content import SignedTag
 from archgen.views.lookup import DocumentScope, Lookup, add_timing, make_lookup
 from archgen.views.pages.report_outline import DetailLevel, DocumentEdition
 from archgen.views.pages.variant_chapter import VariantDifference
-from archgen.views.tables import project_growth, statistics_tables
+from archgen.views.picture_shapes import Drawing
+from archgen.views.tables import statistics_tables
 from archgen.views.timing.timing_lookup import complete_with_chains
 
 _SHORT_HASH_LENGTH = 10
@@ -91,7 +91,7 @@ def make_views(
     all_drawings = drawing_set.make_drawings(
         lookup, options.selection, options.level or "implementation", undrawn_kinds=undrawn_kinds, depth=options.depth
     )
-    all_drawings |= {chart.id: chart for chart in project_growth.make_growth_charts(project_history)}
+    all_drawings |= {chart.id: chart for chart in statistics_tables.make_growth_charts(project_history)}
     if options.changes:
         from archgen.views.changes.site_changes import mark_drawings
 
@@ -113,7 +113,7 @@ def _find_differences(checked_project: CheckedProject) -> Mapping[str, VariantDi
     """Return what is different in each variant; nothing is loaded for a project without any."""
     if not checked_project.variants:
         return {}
-    from archgen.products.variant_differences import find_variant_differences
+    from archgen.products.variant_breaks import find_variant_differences
 
     return find_variant_differences(checked_project)
 

@@ -11,27 +11,27 @@ from collections.abc import Sequence
 from archgen.compare.edits import Edit
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.emit.markdown.comment_sentences import (
+from archgen.emit.markdown.inert_text import (
     ElementNames,
+    escape_inert,
+    make_code_cell,
     shorten_sentence_name,
     write_code,
     write_sentence,
     write_title,
 )
-from archgen.emit.markdown.inert_text import escape_inert, make_code_cell
 from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE, LimitedComment
 from archgen.emit.markdown.mermaid_chart import write_flowchart
 from archgen.model.variant import BASE_NAME
 from archgen.views.changes import comparison_document
 from archgen.views.changes.breaking_items import BreakingChange
-from archgen.views.changes.chain_rows import ChainRow
 from archgen.views.changes.change_wording import CHANGE_SIGNS, ChangeGroup
 from archgen.views.changes.comparison_document import ComparisonDocument, FindingGroup, NamedVersion
-from archgen.views.changes.figure_lines import FigureLine
-from archgen.views.graph_shapes import Graph
+from archgen.views.changes.figure_lines import ChainRow, FigureLine
 from archgen.views.graphs.changes import SMALL_BUDGET
-from archgen.views.graphs.changes.group_folding import fits_budget
+from archgen.views.graphs.changes.picture_folding import fits_budget
 from archgen.views.inline_text import count_noun
+from archgen.views.picture_shapes import Graph
 
 _SHOWN_PARTNERS = 12
 _MAX_OPEN_ITEMS, _MAX_OPEN_TOTAL = 8, 24
