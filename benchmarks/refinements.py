@@ -68,12 +68,6 @@ REFINEMENTS = (
         "if True or len(ways) != 1 or",
     ),
     Refinement(
-        "the time to the step before, and the response of the last",
-        "load.core_responses:CoreSolver._find_delay",
-        "candidates.append(before + response)",
-        "pass",
-    ),
-    Refinement(
         "a response is no longer than its longest way",
         "load.core_responses:CoreSolver.solve",
         "if response.value is not None and longest < response.value:",
@@ -122,18 +116,6 @@ REFINEMENTS = (
         "load.idle_backlogs:choose_largest_lanes",
         "if any(len(lane) > 1 for lane in lanes):",
         "if True:",
-    ),
-    Refinement(
-        "full threads left out",
-        "load.shared_core_responses:SharedCoreSolver._open_rest_solver",
-        "if full_ids else None",
-        "if False else None",
-    ),
-    Refinement(
-        "of them: the thread that is nearly full",
-        "load.full_threads:CoreShares.choose_full_units",
-        "return [unit] if",
-        "return [unit] if False and",
     ),
     Refinement(
         "a run as a whole, not step by step",
@@ -193,12 +175,6 @@ REFINEMENTS = (
         )
         for order in ("non_preemptive", "fifo", "edf", "ros2_executor")
     ),
-    Refinement(
-        "ways through a queue",
-        "load.ordered_cores:OrderedCore.limit",
-        "delay = min(delay, before + bound)",
-        "pass",
-    ),
     # What is stored.
     Refinement(
         "own jobs before an activation that comes too soon (storing, one core)",
@@ -242,12 +218,6 @@ REFINEMENTS = (
         "load.resource_waits:find_use_time",
         'if order == "fifo" else None',
         "if False else None",
-    ),
-    Refinement(
-        "uses by what arrives, where they come in turn",
-        "load.resource_waits:find_use_time",
-        "return by_arrivals if in_turn is None else min(in_turn, by_arrivals)",
-        "return by_arrivals if in_turn is None else in_turn",
     ),
     # Event models.
     Refinement(

@@ -29,21 +29,10 @@ class OrderedCore:
     def limit(
         self, responses: dict[str, WorstResponse], busy_period: int, budget: SearchBudget
     ) -> dict[str, QueueBound]:
-        """Limit responses, and the delays of ways, to what the order makes of them; return the bounds that it gives."""
+        """Limit responses to what the order makes of them; return the bounds that it gives."""
         bounds = self.queue.bound_responses(self.find_activation_model, busy_period, budget)
-        limited_delays: dict[tuple[str, ...], int | None] = {}
-        for name in self.inner_triggers.order:
-            bound = bounds[name].response if name in bounds else None
-            responses[name] = responses[name].limit_to(bound, self.queue.order)
-            ways: list[EntryWay] = []
-            for way in self.ways_to[name]:
-                before = limited_delays.get((*map(str, way.entry), *way.steps[:-1])) if len(way.steps) > 1 else 0
-                delay = way.delay
-                if delay is not None and before is not None and bound is not None:
-                    delay = min(delay, before + bound)
-                limited_delays[(*map(str, way.entry), *way.steps)] = delay
-                ways.append(way._replace(delay=delay))
-            self.ways_to[name] = tuple(ways)
+        for name, bound in bounds.items():
+            responses[name] = responses[name].limit_to(bound.response, self.queue.order)
         return bounds
 
     def find_activation_model(self, name: str) -> EventStreams | UnknownCause:
