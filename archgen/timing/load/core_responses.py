@@ -170,10 +170,10 @@ class CoreSolver:
 
     def _limit_to_order(self, responses: dict[str, WorstResponse], ways_to: dict[str, tuple[EntryWay, ...]]) -> None:
         """Limit responses and delays to what an order that is written makes of them."""
-        busy_periods = [bound.busy_period for bound in self.bounds.values()]
-        if self.core.queue is not None and None not in busy_periods:
+        queue, busy_periods = self.core.queue, [bound.busy_period for bound in self.bounds.values()]
+        if queue is not None and (queue.works_in_rounds or None not in busy_periods):
             longest = max((each or 0 for each in busy_periods), default=0)
-            ordered_core = OrderedCore(self.core.queue, self.core.inner_triggers, self.find_model, ways_to)
+            ordered_core = OrderedCore(queue, self.core.inner_triggers, self.find_model, ways_to)
             self.queue_bounds = ordered_core.limit(responses, longest, self.budget)
 
     def _note_way(self, key: WayKey, window: LevelWindow) -> None:

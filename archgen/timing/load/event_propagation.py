@@ -108,6 +108,10 @@ class _Propagation(StepUpdates):
                 state.storing_waits |= limit_responses(
                     CoreResponses({}, {}, waits), self._limits_of(step)
                 ).storing_waits
+            if queue is not None and queue.works_in_rounds:
+                for name in names:
+                    wait, response = state.storing_waits[name], state.responses[name].value
+                    state.storing_waits[name] = queue.limit_storing_wait(state.system, name, wait, response)
         for name in sorted(readers.difference(self.resources_of)):
             if state.system.activities[name].uses:
                 own_core = ProcessingResource(name, None, 1, ((name,),))

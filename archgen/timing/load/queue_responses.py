@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import field
 from typing import Literal
 
@@ -18,11 +18,20 @@ from archgen.timing.load.queue_orders import (
     bound_edf,
     bound_fifo,
     bound_non_preemptive,
-    bound_round,
+    bound_rounds,
+    work_of_round,
 )
+from archgen.timing.load.thread_work import WorstResponse
 from archgen.timing.system.core_placement import ProcessingResource
-from archgen.timing.system.thread_pools import count_entities, find_crowded_pools, find_pool, is_reentrant
-from archgen.timing.system.timing_system import Activity, TimingSystem, samples_inputs
+from archgen.timing.system.thread_pools import (
+    count_entities,
+    find_crowded_pools,
+    find_pool,
+    is_reentrant,
+    list_waiting_arcs,
+    may_skip_ticks,
+)
+from archgen.timing.system.timing_system import Activity, Arc, TimingSystem, is_sampled, samples_inputs
 
 QueueOrder = Literal["non_preemptive", "fifo", "ros2_executor", "edf"]
 """The orders that say more of a queue than that it is worked off."""
@@ -34,8 +43,6 @@ _QUEUE_ORDERS: Mapping[SchedulingOrder | None, QueueOrder] = {
 }
 QUEUE_TIERS = frozenset(_QUEUE_ORDERS.values())
 """The tiers of responses that such an order bounds."""
-_RANKS = {"periodic": 0, "event": 1, "on_demand": 2}
-"""The place of what fires an activity in a round of rclcpp's executor."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,10 +59,18 @@ class CoreQueue:
         """Whether a message that comes before an activation is stored before that begins."""
         return self.order == "fifo" and not self.is_core
 
+    @property
+    def works_in_rounds(self) -> bool:
+        """Whether there is a bound at any load: each callback works once in a round, ticks are skipped, queues are full."""
+        return self.order == "ros2_executor"
+
     def bound_responses(
         self, model_of: Callable[[str], EventStreams | UnknownCause], busy_period: int, budget: SearchBudget
     ) -> dict[str, QueueBound]:
         """Return the bounds that the order gives, for the event models of all that waits; none where one is unknown."""
+        if self.works_in_rounds:
+            rounds = {task.name: self.bound_rounds(task, model_of(task.name), budget) for task in self.tasks}
+            return {name: bound for name, bound in rounds.items() if bound is not None}
         tasks: list[QueuedTask] = []
         for task in self.tasks:
             model = model_of(task.name)
@@ -75,11 +90,48 @@ class CoreQueue:
                 bounds[task.name] = bound
         return bounds
 
+    def bound_rounds(
+        self, task: QueuedTask, model: EventStreams | UnknownCause, budget: SearchBudget
+    ) -> QueueBound | None:
+        """Return the bound of the rounds of an executor, whatever else it does; None where the events are not known."""
+        if isinstance(model, UnknownCause) and not task.is_timer:
+            return None
+        try:
+            return bound_rounds(
+                task._replace(streams=() if isinstance(model, UnknownCause) else model), self.tasks, budget
+            )
+        except DivergedError:
+            return None
+
+    def brings_one_a_round(self, arc: Arc, arcs: Iterable[Arc]) -> bool:
+        """Whether a subscription or service gets one message in a round at most: `arc` alone of some arcs leads to it."""
+        entities = [(each.role, each.input, each.topic) for each in arcs]
+        return entities.count((arc.role, arc.input, arc.topic)) == 1 and any(
+            task.name == arc.source and task.entities == 1 for task in self.tasks
+        )
+
+    def limit_storing_wait(
+        self, system: TimingSystem, name: str, wait: WorstResponse, response: int | None
+    ) -> WorstResponse:
+        """Return how long a message that an activity only stores may wait in rounds, until a job or a tick does not read it.
+
+        Something as new is stored after a round for each message that its queue keeps, and the one under way. A timer
+        whose tick waits skips the next ones: from when the job begins that misses the message, it takes a period.
+        """
+        activity = system.activities[name]
+        bounds = [] if wait.value is None else [wait.value]
+        if may_skip_ticks(system, activity, response):
+            bounds = [each + response - (activity.wcet or 0) for each in bounds] if response is not None else []
+        arcs = [arc for arc in system.arcs_into.get(name, ()) if is_sampled(activity, arc)]
+        depths = [1 if self.brings_one_a_round(arc, arcs) else arc.depth for arc in arcs]
+        known_depths = [depth for depth in depths if depth is not None]
+        if len(known_depths) == len(depths):
+            bounds.append((max(known_depths, default=0) + 1) * work_of_round(self.tasks))
+        return WorstResponse(min(bounds), wait.tier) if bounds else wait
+
     def _bound_response(
         self, task: QueuedTask, tasks: Sequence[QueuedTask], busy_period: int, budget: SearchBudget
     ) -> QueueBound | None:
-        if self.order == "ros2_executor":
-            return bound_round(task, tasks, busy_period, budget)
         if self.order == "fifo":
             bound: QueueBound | None = bound_fifo(tasks, busy_period, budget)
             if not self.is_core:
@@ -144,6 +196,7 @@ def _build_task(system: TimingSystem, activity: Activity, priorities: Mapping[st
         (),
         priorities.get(activity.id),
         activity.deadline if activity.deadline is not None else activity.period,
-        _RANKS.get(activity.behaviour or "", 2),
         max(count_entities(system, activity), 1),
+        min((arc.depth for arc in list_waiting_arcs(system, activity) if arc.depth is not None), default=None),
+        activity.behaviour == "periodic",
     )
