@@ -56,10 +56,10 @@ def write_published(sensors: float, fusion: float, actuator: float) -> str:
 @pytest.mark.parametrize(
     ("periods", "bounds"),
     [
-        ((90, 0, 0), ["2840", "1170"]),
-        ((105, 0, 52.5), ["8005/2", "4095/2"]),
-        ((105, 52.5, 0), ["4095/2", "4095/2"]),
-        ((120, 60, 60), ["3120", "3120"]),
+        ((90, 0, 0), ["2810", "1170"]),
+        ((105, 0, 52.5), ["7885/2", "4035/2"]),
+        ((105, 52.5, 0), ["4035/2", "4035/2"]),
+        ((120, 60, 60), ["3060", "3060"]),
     ],
 )
 def test_published_overload(periods: tuple[float, float, float], bounds: list[str]) -> None:

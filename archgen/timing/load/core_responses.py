@@ -41,6 +41,7 @@ from archgen.timing.load.thread_work import (
     ThreadWork,
     WorstResponse,
 )
+from archgen.timing.system.thread_pools import may_skip_ticks
 from archgen.timing.system.timing_system import samples_inputs
 
 
@@ -194,6 +195,10 @@ class CoreSolver:
         busy_period = self.find_wait_for_turn(level)
         if busy_period is None:
             return WorstResponse(None, "host", cause if cause != UnknownCause() else DIVERGED_CAUSE)
+        activity = self.core.system.activities[name]
+        if may_skip_ticks(self.core.system, activity, busy_period):
+            # It is stored within the busy period, and the job before that does not read it has ended then.
+            return WorstResponse(busy_period - (activity.wcet or 0), "host")
         origin = EventOrigin("activity", name)
         if not self._enters(name) or self._is_idle(name) or not demand.level.volumes.get(origin):
             return WorstResponse(busy_period, "host")

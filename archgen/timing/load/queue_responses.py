@@ -29,7 +29,6 @@ from archgen.timing.system.thread_pools import (
     find_pool,
     is_reentrant,
     list_waiting_arcs,
-    may_skip_ticks,
 )
 from archgen.timing.system.timing_system import Activity, Arc, TimingSystem, is_sampled, samples_inputs
 
@@ -110,24 +109,20 @@ class CoreQueue:
             task.name == arc.source and task.entities == 1 for task in self.tasks
         )
 
-    def limit_storing_wait(
-        self, system: TimingSystem, name: str, wait: WorstResponse, response: int | None
-    ) -> WorstResponse:
-        """Return how long a message that an activity only stores may wait in rounds, until a job or a tick does not read it.
+    def limit_storing_wait(self, system: TimingSystem, name: str, wait: WorstResponse) -> WorstResponse:
+        """Return how long a message that an activity only stores may wait in rounds, until a job begins that does not read it.
 
-        Something as new is stored after a round for each message that its queue keeps, and the one under way. A timer
-        whose tick waits skips the next ones: from when the job begins that misses the message, it takes a period.
+        Something as new is stored after a round for each message that its queue keeps, and the one under way; that job
+        takes its time before.
         """
         activity = system.activities[name]
-        bounds = [] if wait.value is None else [wait.value]
-        if may_skip_ticks(system, activity, response):
-            bounds = [each + response - (activity.wcet or 0) for each in bounds] if response is not None else []
         arcs = [arc for arc in system.arcs_into.get(name, ()) if is_sampled(activity, arc)]
         depths = [1 if self.brings_one_a_round(arc, arcs) else arc.depth for arc in arcs]
         known_depths = [depth for depth in depths if depth is not None]
-        if len(known_depths) == len(depths):
-            bounds.append((max(known_depths, default=0) + 1) * work_of_round(self.tasks))
-        return WorstResponse(min(bounds), wait.tier) if bounds else wait
+        if len(known_depths) < len(depths):
+            return wait
+        in_rounds = (max(known_depths, default=0) + 1) * work_of_round(self.tasks) - (activity.wcet or 0)
+        return WorstResponse(in_rounds if wait.value is None else min(wait.value, in_rounds), wait.tier)
 
     def _bound_response(
         self, task: QueuedTask, tasks: Sequence[QueuedTask], busy_period: int, budget: SearchBudget
