@@ -29,10 +29,11 @@ from archgen.timing.chains.chain_bounds import bound_all_chains  # noqa: E402
 from archgen.timing.run_analysis import analyse_architecture, analyse_system  # noqa: E402
 from archgen.timing.system.system_builder import build_system  # noqa: E402
 from tests.timing.exceeded import bounded  # noqa: E402
+from tests.timing.random_pairs import list_pairs, random_pair_text  # noqa: E402
 from tests.timing.random_styles import random_style_text  # noqa: E402
 from tests.timing.random_systems import architecture, random_text  # noqa: E402
 from tests.timing.random_threads import random_threads_text  # noqa: E402
-from tests.timing.random_uses import random_crowded_system, random_use_system  # noqa: E402
+from tests.timing.random_uses import random_use_system  # noqa: E402
 
 Bounds = dict[tuple[str, str], float]
 """Bounds in ns, by system and what they are of."""
@@ -328,9 +329,10 @@ def list_systems(last: int) -> dict[str, Callable[[], Bounds]]:
             name = f"{kind} {seed}"
             systems[name] = partial(_bound_model, name, architecture(make(seed)))
         systems[f"loaded {seed}"] = partial(_bound_loaded, f"loaded {seed}", architecture(random_style_text(seed)))
-        for kind, make_system in (("uses", random_use_system), ("crowded", random_crowded_system)):
-            name = f"{kind} {seed}"
-            systems[name] = partial(lambda key, of: _list_bounds(key, analyse_system(of)), name, make_system(seed))
+        name = f"uses {seed}"
+        systems[name] = partial(lambda key, of: _list_bounds(key, analyse_system(of)), name, random_use_system(seed))
+        pair = list_pairs()[seed % len(list_pairs())]
+        systems[f"pairs {seed}"] = partial(_bound_model, f"pairs {seed}", architecture(random_pair_text(pair, seed)))
     return systems
 
 

@@ -11,7 +11,7 @@ from archgen.timing.run_analysis import analyse_architecture
 from tests.timing.exceeded import exceeded
 from tests.timing.printed import show_ms
 from tests.timing.random_systems import architecture
-from tests.timing.sketches import analyse_sketch
+from tests.timing.sketches import analyse_sketch, sketch
 
 REST = "hosts: {pc: {cores: 1}}\ncontainers: {box: {threads: 1, host: pc, scheduling: ros2_executor}}"
 
@@ -126,3 +126,43 @@ def hold_executors(seeds: range) -> int:
 
 def test_no_simulation_exceeds_a_bound_of_an_overloaded_executor() -> None:
     assert hold_executors(range(40)) > 400
+
+
+OVER = {
+    "a +box": "period: 10 ms, wcet: 8 ms, bcet: 8 ms",
+    "b +box": "behaviour: event, trigger: any, wcet: 6 ms, bcet: 6 ms",
+}
+
+
+def test_a_run_takes_a_round_for_each_step_and_one_more() -> None:
+    """S is 14: 28 for the timer, which starts 10 + 28 - 8 after its last start at the latest, and 42 to the end of `b`."""
+    analysis = analyse_sketch(OVER, "a>b", f"{REST}\nchains: {{c: {{through: [g.a, g.b]}}}}")
+    assert [show_ms(analysis.responses[name].worst) for name in "ab"] == ["28", "28"]
+    assert show_ms(analysis.runs["b"].worst) == "42"
+    assert [reason.text for reason in analysis.paces["a"].reasons] == [
+        "every 10 ms, as written",
+        "skips ticks: the rate is not kept",
+    ]
+    assert (analysis.paces["a"].rate.side, analysis.hosts["pc"].verdict) == ("at most", "overload")
+
+
+def test_a_queue_of_one_message_has_no_bound() -> None:
+    """`a` works again before `b` in the next round, and overwrites what was meant for it."""
+    text = sketch(OVER, "a>b", REST).replace("implements: b,", "implements: b, subscribes: {a: {qos: {depth: 1}}},")
+    responses = analyse_architecture(architecture(text)).responses
+    assert (show_ms(responses["a"].worst), responses["b"].worst.value) == ("28", None)
+
+
+def test_two_writers_of_a_topic_send_more_than_a_round_takes() -> None:
+    """Of two messages in each round one is taken: the queue fills up, whatever its depth."""
+    nodes = {**OVER, "c +box": "period: 10 ms, wcet: 2 ms"}
+    text = sketch(nodes, "a>b c>b", REST).replace("b: {inputs: {a: a.out, c: c.out}", "b: {inputs: {a: [a.out, c.out]}")
+    text = text.replace("implements: a,", "implements: a, publishes: {out: /t},").replace(
+        "implements: c,", "implements: c, publishes: {out: /t},"
+    )
+    assert analyse_architecture(architecture(text)).responses["b"].worst.value is None
+
+
+def test_several_threads_or_another_order_have_no_rounds() -> None:
+    for other in (REST.replace("threads: 1", "threads: 2"), REST.replace("ros2_executor", "fifo")):
+        assert analyse_sketch(OVER, "a>b", other).responses["a"].worst.value is None
