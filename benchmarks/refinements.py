@@ -298,21 +298,11 @@ def without(refinement: Refinement) -> Iterator[None]:
     )
     exec(changed, {**function.__globals__}, namespace)  # noqa: S102 - it is the checkout's own text, with one line changed
     code, replaced = function.__code__, namespace[function.__name__]
-    _forget_searches()
     function.__code__ = replaced.__code__  # type: ignore[attr-defined]  # a function of that name
     try:
         yield
     finally:
         function.__code__ = code
-        _forget_searches()
-
-
-def _forget_searches() -> None:
-    """Empty the caches of results that a refinement may be in."""
-    lone_work = import_module("archgen.timing.load.lone_work")
-    for found in vars(lone_work).values():
-        if hasattr(found, "cache_clear"):
-            found.cache_clear()
 
 
 def list_systems(last: int) -> dict[str, Callable[[], Bounds]]:
@@ -381,8 +371,8 @@ def bound_systems(systems: dict[str, Callable[[], Bounds]]) -> tuple[Bounds, dic
             if event == "call" and frame.f_code in codes:
                 called.add(frame.f_code)
 
-        _forget_searches()
-        sys.setprofile(note_call)
+            sys.setprofile(note_call)
+
         try:
             bounds |= bound_system()
         finally:

@@ -15,7 +15,6 @@ from archgen.model.graph_search import find_strong_components
 from archgen.timing.figures.timing_values import UnknownCause, sum_ratios
 from archgen.timing.load.core_responses import CoreResponses
 from archgen.timing.load.load_system import build_load_system, list_written_priorities
-from archgen.timing.load.lone_work import find_lone_wait
 from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.load.step_updates import StepUpdates
@@ -114,13 +113,13 @@ class _Propagation(StepUpdates):
                     wait = state.storing_waits[name]
                     state.storing_waits[name] = queue.limit_storing_wait(state.system, name, wait)
         for name in sorted(readers.difference(self.resources_of)):
+            own_core, budget = ProcessingResource(name, None, 1, ((name,),)), self.budget_of[name]
             if state.system.activities[name].uses:
-                own_core = ProcessingResource(name, None, 1, ((name,),))
-                stores = find_waiting_stores(state, own_core, self.waiting_ids, (name,), self.budget_of[name])
+                stores = find_waiting_stores(state, own_core, self.waiting_ids, (name,), budget)
                 state.storing_waits[name] = self._limit_response(name, stores[name])
             else:
-                budget = self.budget_of[name]
-                state.storing_waits[name] = find_lone_wait(state.system, name, state.event_models, budget)
+                waits = find_core_waits(state.system, own_core, state.event_models, (name,), budget)
+                state.storing_waits[name] = waits[name]
         self._add_skipped_ticks(readers)
 
     def _add_skipped_ticks(self, readers: Iterable[str]) -> None:
