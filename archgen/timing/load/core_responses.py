@@ -31,8 +31,8 @@ from archgen.timing.load.event_streams import EventStreams, settles_at_full_load
 from archgen.timing.load.inner_core import InnerCore, urgency_of
 from archgen.timing.load.inner_triggers import FiringArc
 from archgen.timing.load.level_cascades import EventOrigin, LevelCascades
-from archgen.timing.load.ordered_cores import OrderedCore
 from archgen.timing.load.queue_orders import QueueBound
+from archgen.timing.load.queue_responses import OrderedCore
 from archgen.timing.load.run_ways import EntryWay, Priority
 from archgen.timing.load.storing_waits import hold_before_activation
 from archgen.timing.load.thread_work import (

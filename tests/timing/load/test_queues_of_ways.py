@@ -11,9 +11,8 @@ from archgen.timing.load.busy_windows import SearchBudget
 from archgen.timing.load.event_streams import EventStream, EventStreams
 from archgen.timing.load.inner_triggers import InnerTriggers
 from archgen.timing.load.level_cascades import EventOrigin
-from archgen.timing.load.ordered_cores import OrderedCore
 from archgen.timing.load.queue_orders import QueuedTask
-from archgen.timing.load.queue_responses import CoreQueue
+from archgen.timing.load.queue_responses import CoreQueue, OrderedCore
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.thread_work import WorstResponse
 
