@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import field
 from math import lcm
 from typing import Literal
 
 from archgen.frozen import dataclass
+from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis
+from archgen.timing.chains.element_index import ElementIndex, MeasuredBasis
 from archgen.timing.chains.path_search import CostGraph, Hop
 from archgen.timing.chains.step_delays import StepDelays
 from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue
@@ -35,6 +37,9 @@ class CostNetwork:
     by_runs: bool = False
     _graphs: dict[PathAim, tuple[CostGraph, list[int]]] = field(default_factory=dict)
     _other_views: list[CostNetwork] = field(default_factory=list)
+    _indices: list[ElementIndex] = field(default_factory=list)
+    _bases: list[MeasuredBasis] = field(default_factory=list)
+    _arcs_of_output: dict[str, list[int]] = field(default_factory=dict)
 
     @classmethod
     def of_analysis(cls, analysis: Analysis) -> CostNetwork:
@@ -54,6 +59,25 @@ class CostNetwork:
     def arcs(self) -> tuple[Arc, ...]:
         """Return the system's arcs; `Hop.arc` is an index into them."""
         return self.steps.analysis.system.arcs
+
+    def index_elements(self, architecture: Architecture) -> ElementIndex:
+        """Return what the elements of chains stand for in the architecture that was analysed."""
+        if not self._indices:
+            self._indices.append(ElementIndex(self.steps.analysis.system, architecture))
+        return self._indices[0]
+
+    def find_measured_basis(self) -> MeasuredBasis:
+        """Return the measured execution times on which the figures of chains rest."""
+        if not self._bases:
+            self._bases.append(MeasuredBasis(self.steps.analysis))
+        return self._bases[0]
+
+    def list_arcs(self, output: str) -> Sequence[int]:
+        """Return the arcs (as indices) by which data leaves by an output."""
+        if not self._arcs_of_output:
+            for arc_index, arc in enumerate(self.arcs):
+                self._arcs_of_output.setdefault(arc.output, []).append(arc_index)
+        return self._arcs_of_output.get(output, ())
 
     def cost_graph(self, aim: PathAim) -> tuple[CostGraph, list[int]]:
         """Return the graph with the costs of an aim, and what each vertex costs as a start."""

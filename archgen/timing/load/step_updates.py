@@ -119,7 +119,10 @@ class StepUpdates(PropagationSteps):
         queue: CoreQueue, models: EventModels, responses: Mapping[str, WorstResponse], budget: SearchBudget
     ) -> dict[str, QueueBound]:
         """Return what the order of a queue makes of the responses in any order."""
-        busy_period = max((each.value or 0 for each in responses.values() if each.tier != "declared"), default=0)
+        values = [each.value for each in responses.values() if each.tier != "declared"]
+        if None in values and not queue.works_in_rounds:
+            return {}
+        busy_period = max((value or 0 for value in values), default=0)
         return queue.bound_responses(models.__getitem__, busy_period, budget)
 
     def _limits_of(self, step: str) -> dict[str, HostLimit]:
