@@ -263,7 +263,7 @@ def command(  # noqa: PLR0913 - the options of the verb, each by its name
     whose variants are compared, left out the working tree.
     """
     from archgen.compare.breaking_changes import keep_breaking_only
-    from archgen.forge.pull_request import find_request_authors
+    from archgen.forge.reviewed_request import find_request_authors
     from archgen.products import compared_versions, repository_comparison
 
     if unpushed:

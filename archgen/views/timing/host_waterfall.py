@@ -42,9 +42,7 @@ def make_slack_waterfall(lookup: Lookup, timing_lookup: TimingLookup) -> Waterfa
     if not results:
         return None
     scale = min(_MAX_SCALE, max(Fraction(1), *(share for _, share in results)))
-    ticks = tuple(
-        (float(Fraction(tick, 100) / scale), f"{tick} %") for tick in _SLACK_TICKS if tick <= scale * 100
-    )
+    ticks = tuple((float(Fraction(tick, 100) / scale), f"{tick} %") for tick in _SLACK_TICKS if tick <= scale * 100)
     steps = tuple(_make_step(lookup, result, share, scale) for result, share in results)
     is_cut = any(share > scale for _, share in results)
     return Waterfall(
@@ -71,9 +69,7 @@ def _make_step(lookup: Lookup, result: ChainResult, share: Fraction, scale: Frac
     )
     percent = f"{value_format.display_number(share * 100, 1)} %"
     words = f"{'' if result.bound.complete else '>= '}{percent} · {words}"
-    return WaterfallStep(
-        title, chain_status.chain_chip(result), tuple(_make_slack_pieces(result, scale)), words
-    )
+    return WaterfallStep(title, chain_status.chain_chip(result), tuple(_make_slack_pieces(result, scale)), words)
 
 
 def _make_slack_pieces(result: ChainResult, scale: Fraction) -> Iterator[WaterfallPiece]:
