@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
+from archgen.diagnostics.diagnostic import sort_gravest_first
 
 if TYPE_CHECKING:
     from archgen.compare import Comparison
@@ -114,7 +115,6 @@ def _write_svg(comparison: Comparison, _old_version: ProjectVersion, _new_versio
 
 def _write_github(comparison: Comparison, _old_version: ProjectVersion, new_version: ProjectVersion) -> str:
     from archgen.cli.finding_documents import folder_in_repository
-    from archgen.diagnostics.diagnostic import sort_gravest_first
     from archgen.emit.data.findings_data import format_github_commands
     from archgen.products.merge_breaks import find_breaks
 
@@ -263,7 +263,7 @@ def command(  # noqa: PLR0913 - the options of the verb, each by its name
     whose variants are compared, left out the working tree.
     """
     from archgen.compare.breaking_changes import keep_breaking_only
-    from archgen.forge.pull_request import find_request_authors
+    from archgen.forge.reviewed_request import find_request_authors
     from archgen.products import compared_versions, repository_comparison
 
     if unpushed:

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, element_adding, shared_options
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.source_span import NO_SPAN
 
 if TYPE_CHECKING:
     from archgen.pipeline import CheckedProject
@@ -120,9 +122,7 @@ def _find_type_body(
     """Return what a component type has, with what it is made from and generic names bound. Raise UsageError."""
     from archgen.compose import list_type_entries
     from archgen.compose.type_table import TypeTable
-    from archgen.diagnostics.diagnostic import Diagnostic
     from archgen.diagnostics.safe_text import make_visible
-    from archgen.diagnostics.source_span import NO_SPAN
     from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
     diagnostics: list[Diagnostic] = []

@@ -154,7 +154,7 @@ def _write_unjudged(target: Path, reason: str) -> None:
 def _find_merge_target(project: Path | None, base: str | None) -> str | None:
     """Return the revision that the change is merged into, or None. What cannot be found is wrong usage."""
     from archgen import git
-    from archgen.forge.pull_request import find_reviewed_request
+    from archgen.forge.reviewed_request import find_reviewed_request
     from archgen.products.reviewed_change import find_merge_target
 
     try:
@@ -171,7 +171,7 @@ def _compare_change(
     What cannot be compared is wrong usage.
     """
     from archgen import git
-    from archgen.forge.pull_request import find_request_authors, find_reviewed_request
+    from archgen.forge.reviewed_request import find_request_authors, find_reviewed_request
     from archgen.products.reviewed_change import compare_change
     from archgen.project import NotAtRevisionError
     from archgen.project.project_tracking import UnclearMoveError

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 import click
 
+from archgen.diagnostics.safe_text import format_json, make_visible
 from archgen.diagnostics.text_columns import find_width, wrap_line
 from archgen.frozen import dataclass
 
@@ -204,20 +205,14 @@ def _find_chain(chain_results: dict[str, ChainResult], chain_id: str) -> ChainRe
 
 def raise_usage_error(text: str) -> NoReturn:
     """Raise the error for wrong usage with a text that may hold anything."""
-    from archgen.diagnostics.safe_text import make_visible
-
     raise click.UsageError(make_visible(text))
 
 
 def _print_json(document: object) -> None:
-    from archgen.diagnostics.safe_text import format_json
-
     click.echo(format_json(document), nl=False)
 
 
 def _print_lines(lines: Iterable[str]) -> None:
-    from archgen.diagnostics.safe_text import make_visible
-
     width = find_width(sys.stdout)
     for line in lines:
         click.echo("\n".join(wrap_line(make_visible(line), width)))

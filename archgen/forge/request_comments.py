@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.safe_text import format_json
-from archgen.emit.markdown.inert_text import write_code, write_sentence, write_title
+from archgen.emit.markdown.comment_sentences import write_code, write_sentence, write_title
 from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE, LimitedComment
 from archgen.forge.comment_post import CommentOutcome, put_comment
 from archgen.forge.forge_api import ForgeError, run_within

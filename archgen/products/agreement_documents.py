@@ -25,9 +25,9 @@ from archgen.timing.chains.measured_comparison import Observation
 from archgen.timing.search.chain_budgets import MAX_SHARE_TRIES, SharedBudget, UnknownBudgetError, share_chain_budget
 from archgen.timing.search.change_trials import ChangeTrials
 from archgen.views import inline_text
-from archgen.views.agreement.agreement_content import SignedTag
 from archgen.views.agreement.general_sections import BudgetFinder
 from archgen.views.agreement.partner_agreement import PartnerAgreement, make_agreement
+from archgen.views.agreement.signature_record import SignedTag
 from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import Graph
 from archgen.views.shapes import Paragraph, Section

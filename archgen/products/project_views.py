@@ -23,7 +23,7 @@ from archgen.products import report_cache
 from archgen.products.output_options import OutputOptions
 from archgen.project import ProjectNotFoundError
 from archgen.views import drawing_set
-from archgen.views.agreement.agreement_content import SignedTag
+from archgen.views.agreement.signature_record import SignedTag
 from archgen.views.lookup import DocumentScope, Lookup, add_timing, make_lookup
 from archgen.views.pages.report_outline import DetailLevel, DocumentEdition
 from archgen.views.pages.variant_chapter import VariantDifference
@@ -113,7 +113,7 @@ def _find_differences(checked_project: CheckedProject) -> Mapping[str, VariantDi
     """Return what is different in each variant; nothing is loaded for a project without any."""
     if not checked_project.variants:
         return {}
-    from archgen.products.variant_breaks import find_variant_differences
+    from archgen.products.variant_differences import find_variant_differences
 
     return find_variant_differences(checked_project)
 

@@ -7,14 +7,9 @@ from dataclasses import replace
 
 from archgen.compare import Change, Comparison
 from archgen.compare.breaking_changes import sort_breaks_first
-from archgen.compare.change_listing import list_changes
 from archgen.compare.comparison import PartnerBreak
 from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Severity, phrase_severity_counts
-from archgen.model.variant import BASE_NAME
-from archgen.pipeline import CheckedProject, keep_variant_findings, stand_in_variants
-from archgen.products.comparison_input import make_comparison_input
-from archgen.views.pages.variant_chapter import VariantDifference
+from archgen.diagnostics.diagnostic import Severity
 
 _ChangeIdentity = tuple[str, str, str, str | None, str | None, str]
 
@@ -97,18 +92,3 @@ def _tell_variant_change(change: Change, losses: tuple[tuple[PartnerBreak, tuple
 
 def _phrase_variants(names: tuple[str, ...]) -> str:
     return f"in the variant{'s' if len(names) > 1 else ''} {join_words([f'`{name}`' for name in names])}"
-
-
-def find_variant_differences(checked_project: CheckedProject) -> dict[str, VariantDifference]:
-    """Return what is different in each variant, by its id; nothing for a project without variants."""
-    if not checked_project.variants:
-        return {}
-    base = make_comparison_input(stand_in_variants(checked_project, [BASE_NAME]))
-    differences: dict[str, VariantDifference] = {}
-    for name, variant in checked_project.variants.items():
-        # Not a whole comparison: nobody asks what a variant breaks, and the bounds of its chains take most of the time.
-        sentences = tuple(change.text for change in list_changes(base, make_comparison_input(variant)))
-        holding_findings = keep_variant_findings(checked_project, [name]).findings
-        findings = ", ".join(phrase_severity_counts(holding_findings)) or "none"
-        differences[name] = VariantDifference(sentences, findings)
-    return differences

@@ -15,7 +15,7 @@ from archgen.products.output_options import OutputOptions
 from archgen.timing.analysis import Analysis
 from archgen.timing.run_analysis import analyse_architecture
 from archgen.views.changes.site_changes import SiteChanges
-from archgen.views.drawing_set import DrawingsOnDemand
+from archgen.views.drawings_on_demand import DrawingsOnDemand
 from archgen.views.lookup import Lookup
 from archgen.views.pages.report_outline import DocumentEdition
 from archgen.views.tables import statistics_tables

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.forge.pull_request import find_request_authors, find_reviewed_request
+from archgen.forge.reviewed_request import find_request_authors, find_reviewed_request
 from archgen.products.reviewed_change import ReviewedRequest
 
 MERGE = {"GITHUB_REF": "refs/pull/7/merge", "GITHUB_BASE_REF": "main", "GITHUB_SHA": "m1"}

@@ -13,7 +13,7 @@ from archgen.pipeline import CheckedProject, check_project
 from archgen.products import project_views
 from archgen.products.output_options import OutputOptions
 from archgen.views.agreement.exchange_tables import gather_exchanges
-from archgen.views.drawing_set import DrawingsOnDemand
+from archgen.views.drawings_on_demand import DrawingsOnDemand
 from archgen.views.pages import partner_pages, site_pages
 from archgen.views.pages.report_outline import DetailLevel
 from archgen.views.pages.single_page import make_page_at

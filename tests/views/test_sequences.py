@@ -10,7 +10,7 @@ from archgen import pipeline
 from archgen.products import project_views
 from archgen.products.output_options import OutputOptions
 from archgen.views import drawing_set
-from archgen.views.drawing_set import DrawingsOnDemand
+from archgen.views.drawings_on_demand import DrawingsOnDemand
 from archgen.views.elements.functional_level import list_component_facts
 from archgen.views.lookup import Lookup
 from archgen.views.pages import report_outline, site_pages

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from archgen import pipeline
-from archgen.products.variant_breaks import find_variant_differences
+from archgen.products.variant_differences import find_variant_differences
 from archgen.views.pages.variant_chapter import make_variant_sections, make_variant_table
 from archgen.views.shapes import Bullets, Facts, Markdown, Paragraph
 

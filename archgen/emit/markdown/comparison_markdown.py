@@ -11,15 +11,14 @@ from collections.abc import Sequence
 from archgen.compare.edits import Edit
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.emit.markdown.inert_text import (
+from archgen.emit.markdown.comment_sentences import (
     ElementNames,
-    escape_inert,
-    make_code_cell,
     shorten_sentence_name,
     write_code,
     write_sentence,
     write_title,
 )
+from archgen.emit.markdown.inert_text import escape_inert, make_code_cell
 from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE, LimitedComment
 from archgen.emit.markdown.mermaid_chart import write_flowchart
 from archgen.model.variant import BASE_NAME

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from archgen.model.architecture import Partner
 from archgen.views import inline_text
-from archgen.views.agreement.agreement_content import AgreementContent, write_signature_table
+from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.agreement_summary import (
     change_mark,
     write_change_log,
@@ -25,6 +25,7 @@ from archgen.views.agreement.general_sections import (
 )
 from archgen.views.agreement.interface_sections import SectionWriter
 from archgen.views.agreement.setting_section import list_changed_settings, write_setting_section
+from archgen.views.agreement.signature_record import write_signature_table
 from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.shapes import (
     Block,

@@ -7,9 +7,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from archgen.model.partner_interfaces import PartnerInterface
 from archgen.views import inline_text
 from archgen.views.agreement.agreement_content import AgreementContent
+from archgen.views.agreement.interface_record import InterfaceRecord
 from archgen.views.agreement.interface_terms import InterfaceTerms
 from archgen.views.agreement.promise_rows import RATE, join_figures
-from archgen.views.agreement.term_changes import NAME_KIND, AgreementChanges, InterfaceRecord, write_signed_kind
+from archgen.views.agreement.term_changes import NAME_KIND, AgreementChanges, write_signed_kind
 from archgen.views.element_references import message_link
 from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.shapes import Column, Inlines, Paragraph, Section, Table, Text, drop_empty_columns

@@ -13,25 +13,11 @@ from archgen.compare.comparison import ChangeKind
 from archgen.compare.matched_ids import MatchedIds
 from archgen.frozen import dataclass
 from archgen.model.agreed_terms import RULES
-from archgen.model.partner_interfaces import PartnerPair
-from archgen.views.agreement.interface_terms import InterfaceTerms
+from archgen.views.agreement.interface_record import InterfaceKey, InterfaceRecord
 from archgen.views.agreement.plain_terms import PlainTerm
 from archgen.views.agreement.promise_rows import SOURCE_PHRASE, is_weaker
 from archgen.views.changes.change_wording import CHANGE_SIGNS, choose_mark
 from archgen.views.shapes import Text
-
-InterfaceKey = tuple[str, PartnerPair]
-"""What identifies an interface: what flows, and between whom, by the ids of the later revision."""
-
-
-@dataclass(frozen=True, slots=True)
-class InterfaceRecord:
-    """An interface of one revision with its terms as plain text. `key` has the ids of the later revision."""
-
-    terms: InterfaceTerms
-    key: InterfaceKey
-    plain_terms: Mapping[str, PlainTerm]
-
 
 NAME_KIND = "name"
 """The kind of the term that a renamed interface has its old and new id in."""

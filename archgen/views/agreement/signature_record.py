@@ -1,0 +1,76 @@
+"""What was signed before: the tags that record signatures, and the versions that the interfaces had at the last of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import field
+
+from archgen.frozen import dataclass
+from archgen.model.agreed_terms import RULES
+from archgen.views import inline_text
+from archgen.views.agreement.interface_record import InterfaceKey, InterfaceRecord
+from archgen.views.shapes import Column, Inlines, Table, Text
+
+
+@dataclass(frozen=True, slots=True)
+class SignedTag:
+    """A tag that records a signature: its name, the day and the words of whoever set it, and the commit it stands at."""
+
+    name: str
+    date: str
+    tagger: str
+    subject: str
+    commit: str
+
+
+@dataclass(frozen=True, slots=True)
+class SignatureRecord:
+    """The tags, newest first, and what stood in the last signed agreement.
+
+    `revision` is empty where nothing was signed, or what was signed could not be read; `versions` are by the ids of now.
+    """
+
+    tags: tuple[SignedTag, ...] = ()
+    revision: str = ""
+    versions: Mapping[InterfaceKey, str] = field(default_factory=dict)
+    rules: int = RULES
+    """By which rules these were told."""
+
+    def describe_version(self, record: InterfaceRecord) -> str:
+        """Return the version of an interface with what was signed of it: `3fa9c1, as signed at v2 (1a2b3c4)`."""
+        version = record.terms.version
+        if not self.revision:
+            return version
+        signed_version = self.versions.get(record.key)
+        if signed_version is None:
+            return f"{version}, new since what was signed at {self.revision}"
+        if signed_version == record.terms.find_version(self.rules):
+            former = f" ({signed_version} by the rules of then)" if signed_version != version else ""
+            return f"{version}, as signed at {self.revision}{former}"
+        return f"{version}, changed since {self.revision}, where it was {signed_version}"
+
+
+def write_signature_table(tags: tuple[SignedTag, ...]) -> Table:
+    """List the signatures that the repository records, newest first."""
+    columns = (
+        Column("Recorded as", 1.4),
+        Column("On", 0.6),
+        Column("By", 0.8),
+        Column("Commit", 0.6),
+        Column("Words", 1.4),
+    )
+    rows = tuple(
+        (
+            inline_text.to_inlines(Text(tag.name, code=True)),
+            _text_cell(tag.date),
+            _text_cell(tag.tagger),
+            inline_text.to_inlines(Text(tag.commit, code=True)),
+            _text_cell(tag.subject),
+        )
+        for tag in tags
+    )
+    return Table("table:signed", "What was signed before", columns, rows, numbered=False)
+
+
+def _text_cell(text: str) -> Inlines:
+    return inline_text.to_inlines(text) if text else ()
