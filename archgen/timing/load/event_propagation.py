@@ -68,6 +68,8 @@ def _restrict_state(load_state: PropagationState, system: TimingSystem, triggers
         diverged=load_state.diverged & system.activities.keys(),
         storing_waits=keep_written(load_state.storing_waits),
         ways_to=keep_written(load_state.ways_to),
+        transaction_ways=keep_written(load_state.transaction_ways),
+        transaction_arcs=keep_written(load_state.transaction_arcs),
         run_arcs=keep_written(load_state.run_arcs),
         leaving_models={},
         load_state=load_state,
@@ -79,7 +81,9 @@ class _Propagation(StepUpdates):
 
     def run_to_fixed_point(self) -> PropagationState:
         """Take the strong components of the dependencies in order, and iterate only those that are loops."""
-        all_steps = [*self.state.triggers.order, *self.whole_hosts, *self.resources, *self.joined_resources]
+        all_steps = [
+            *self.state.triggers.order, *self.whole_hosts, *self.transactions, *self.resources, *self.joined_resources
+        ]
         for steps in find_strong_components(all_steps, self.successors.__getitem__):
             # The strong components come in the order of dependency: what is outside of loops is found once, in one
             # pass.
@@ -118,8 +122,21 @@ class _Propagation(StepUpdates):
                 state.storing_waits[name] = find_lone_wait(state.system, name, state.event_models, budget)
 
     def _iterate_steps(self, steps: tuple[str, ...]) -> None:
-        """Repeat until nothing changes. Started from the execution times, it approaches the truth from below."""
+        """Repeat until nothing changes; where that has no end, with what the ways over hosts say of all that leaves them."""
         self._start_from_below(steps)
+        if self._settle_steps(steps):
+            return
+        bounded_ids = {name for step in steps if step in self.transactions for name in self.transactions[step].place_of}
+        if any(name in self.state.transaction_ways for name in bounded_ids):
+            self.state.settled_ids |= bounded_ids
+            for step in steps:
+                self.way_delays.pop(step, None)
+            if self._settle_steps(steps):
+                return
+        self._give_up_steps(steps)
+
+    def _settle_steps(self, steps: tuple[str, ...]) -> bool:
+        """Repeat, and return whether it came to rest. Started from the execution times, it approaches the truth from below."""
         pending = set(steps)
         for _ in range(_MAX_SWEEPS):
             for step in steps:
@@ -128,12 +145,11 @@ class _Propagation(StepUpdates):
                     if self._update_step(step):
                         pending.update(self.successors[step])
                         if self._has_run_away(step):
-                            self._give_up_steps(steps)
-                            return
+                            return False
             pending.intersection_update(steps)
             if not pending:
-                return
-        self._give_up_steps(steps)
+                return True
+        return False
 
     def _has_run_away(self, step: str) -> bool:
         """Whether a response has grown so long that it is of no use to anybody, if it ends at all."""
@@ -159,7 +175,7 @@ class _Propagation(StepUpdates):
     def _activity_ids(self, steps: tuple[str, ...]) -> Iterator[str]:
         """Yield the activities whose figures some steps find."""
         for step in steps:
-            if step not in self.whole_hosts and step not in self.joined_resources:
+            if step not in self.whole_hosts and step not in self.joined_resources and step not in self.transactions:
                 yield from self.resources[step].members if step in self.resources else (step,)
 
     def _give_up_steps(self, steps: tuple[str, ...]) -> None:
@@ -173,5 +189,7 @@ class _Propagation(StepUpdates):
         for step in steps:
             for name in self.host_limits.pop(step, ()):
                 state.host_ways_to.pop(name, None)
+            for name in self.transactions[step].place_of if step in self.transactions else ():
+                state.transaction_ways.pop(name, None)
             if step in state.system.activities and not has_own_rate(state.system.activities[step]):
                 state.event_models[step] = DIVERGED_CAUSE
