@@ -20,8 +20,8 @@ from typing import NamedTuple
 
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.busy_cores import divide_among_cores
-from archgen.timing.load.busy_windows import DivergedError, SearchBudget
-from archgen.timing.load.event_streams import EventStreams, earliest_arrivals, max_arrivals
+from archgen.timing.load.busy_windows import ActivityWork, DivergedError, GrowingLoad, SearchBudget
+from archgen.timing.load.event_streams import EventStreams, delay_streams, earliest_arrivals, max_arrivals
 from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.shared_cores import WayKey
 from archgen.timing.load.transactions import Place, PlaceJob, Transactions
@@ -56,34 +56,61 @@ class JobTerm(NamedTuple):
         return number if self.limit is None else min(number, self.limit)
 
 
+class TermSum:
+    """The work of some terms in a window; those of one period and lead are looked at together."""
+
+    def __init__(self, terms: Sequence[JobTerm]) -> None:
+        """Put the terms together."""
+        self.terms = terms
+        self._endless_work = sum(ENDLESS for term in terms if term.is_endless)
+        load, self._counted_terms = GrowingLoad(), list[tuple[int, JobTerm]]()
+        for term in terms:
+            is_plain = term.limit is None and not any(stream.distance for stream in term.streams)
+            if term.is_endless:
+                continue
+            if is_plain:
+                load.add_work([ActivityWork(term.job.cost or 0, delay_streams(term.streams, term.lead))])
+            else:
+                self._counted_terms.append((term.job.cost or 0, term))
+        self._plain_within, plain_count, _, _ = load.demand_function()
+        self.term_count = plain_count + 4 * len(self._counted_terms)
+
+    def within(self, window: int) -> int:
+        """Return all that is to be done in a window."""
+        work = self._endless_work + self._plain_within(window)
+        for cost, term in self._counted_terms:
+            work += cost * term.count(window)
+        return work
+
+
 class PlaceWork(NamedTuple):
-    """What holds up a way at a place: `own_terms` in full, and the time for which `lanes` keep all its cores busy.
+    """What holds up a way at a place: `own_sums` in full, and the time for which `lanes` keep all its cores busy.
 
     A lane works on one core at a time: a thread, or one event of a transaction that does not fork (`event_works`). Of
-    `uncut_terms` several may run at once. Where all began as a core was idle, `full_lanes` have what may have been pending
+    `uncut_sums` several may run at once. Where all began as a core was idle, `full_lanes` have what may have been pending
     besides: in fewer threads than there are cores.
     """
 
     place: Place
-    own_terms: tuple[JobTerm, ...]
-    lanes: tuple[tuple[JobTerm, ...], ...] = ()
+    own_sums: tuple[TermSum, ...]
+    lanes: tuple[TermSum, ...] = ()
     event_works: tuple[int, ...] = ()
-    uncut_terms: tuple[JobTerm, ...] = ()
-    full_lanes: tuple[tuple[JobTerm, ...], ...] = ()
+    uncut_sums: tuple[TermSum, ...] = ()
+    full_lanes: tuple[TermSum, ...] = ()
 
     def sum_within(self, window: int) -> int:
         """Return the longest time for which it holds up the way, in a window."""
-        return _sum_terms(self.own_terms, window) + self.find_block(window)
+        return sum([each.within(window) for each in self.own_sums]) + self.find_block(window)
 
     def find_block(self, window: int) -> int:
         """Return the longest time for which all cores are busy beside it."""
-        if not (self.lanes or self.event_works or self.uncut_terms):
+        if not (self.lanes or self.event_works or self.uncut_sums):
             return 0
-        core_count, uncut_work = self.place.core_count, _sum_terms(self.uncut_terms, window)
-        lane_works = [_sum_terms(lane, window) for lane in self.lanes]
+        core_count, uncut_work = self.place.core_count, sum([each.within(window) for each in self.uncut_sums])
+        lane_works = [lane.within(window) for lane in self.lanes]
         if not self.full_lanes:
             return divide_among_cores([*lane_works, *self.event_works], uncut_work, core_count)
-        full_works = [_sum_terms(lane, window) for lane in self.full_lanes]
+        full_works = [lane.within(window) for lane in self.full_lanes]
         pending_works = sorted((full - work for full, work in zip(full_works, lane_works, strict=True)), reverse=True)
         pending_work = uncut_work + sum(pending_works[: core_count - 1])
         return min(
@@ -94,11 +121,15 @@ class PlaceWork(NamedTuple):
     @property
     def term_count(self) -> int:
         """Return what one look at it costs."""
-        return 1 + len(self.own_terms) + len(self.uncut_terms) + sum(map(len, (*self.lanes, *self.full_lanes)))
+        return 1 + sum([each.term_count for each in (*self.own_sums, *self.lanes, *self.uncut_sums, *self.full_lanes)])
 
 
-def _sum_terms(terms: Iterable[JobTerm], window: int) -> int:
-    return sum([ENDLESS if term.is_endless else (term.job.cost or 0) * term.count(window) for term in terms])
+class _SplitWork(NamedTuple):
+    """The work of other transactions at a place: what counts in full, that of each other thread, and what is not cut."""
+
+    own_sum: TermSum
+    lanes: Mapping[ThreadUnit, TermSum]
+    uncut_sum: TermSum
 
 
 class WayWindow(NamedTuple):
@@ -151,7 +182,22 @@ class TransactionWindows:
         streams = [each for model in self._models.values() if not isinstance(model, UnknownCause) for each in model]
         self._longest = max((_MAX_WAITING_EVENTS * (each.period + each.jitter) for each in streams), default=0)
         self._longest += max((each for each in own_times.values() if each < ENDLESS), default=0)
+        # What takes no time meets what comes as it ends.
+        self._margin = int(not all(transactions.costs[name] for name in transactions.ways_to))
         self._last_windows: dict[WayKey, int] = {}
+        self._jobs_of_origin: dict[tuple[str, EventOrigin], list[PlaceJob]] = {}
+        for step, place in transactions.places.items():
+            for job in place.jobs:
+                if job.key is not None:
+                    self._jobs_of_origin.setdefault((step, job.origin), []).append(job)
+        self._forget_works()
+
+    def _forget_works(self) -> None:
+        """Forget what follows from the delays."""
+        # Within a sweep they are those of its begin: the last sweep, in which nothing grows, finds that all hold at once.
+        self._foreign_works: dict[tuple[str, int | None, EventOrigin, frozenset[ThreadUnit]], _SplitWork] = {}
+        self._busy_works: dict[tuple[str, int | None, bool, frozenset[ThreadUnit]], PlaceWork] = {}
+        self._met_events: dict[tuple[WayKey, WayKey], frozenset[int]] = {}
 
     def _find_own_time(self, path: Sequence[WayKey]) -> int:
         way, costs = self.transactions.way_of(path[-1]), [self.transactions.costs[name] for name, _ in path]
@@ -173,6 +219,7 @@ class TransactionWindows:
         """Sweep until nothing grows; return what still does where the end is not reached."""
         grown_keys: list[WayKey] = []
         for _ in range(_MAX_SWEEPS):
+            self._forget_works()
             grown_keys = [key for key in self.transactions.paths if self._raise_delay(key)]
             if not grown_keys:
                 break
@@ -189,7 +236,7 @@ class TransactionWindows:
         for number in (last, *(each for each in range(len(openers)) if each != last)):
             window = openers[number]()
             if window is not None:
-                found = self._find_delay(window, delay)
+                found = self._find_delay(window, delay, least)
                 if found <= delay:
                     self._last_windows[key] = number
                     return False
@@ -214,20 +261,21 @@ class TransactionWindows:
         ]
         return [partial(self._open_busy_window, path), *(partial(self._open_window, path, first) for first in starts)]
 
-    def _find_delay(self, window: WayWindow, enough: int = 0) -> int:
-        """Return the delay that a window gives, or `enough` where it is no more."""
+    def _find_delay(self, window: WayWindow, enough: int, limit: int) -> int:
+        """Return the delay that a window gives, `enough` where it is no more, something above the limit where it is above."""
         base = window.lead + (0 if window.before is None else self.delays[window.before])
-        return min(base + self.find_length(window, enough - base), ENDLESS)
+        return min(base + self.find_length(window, enough - base, limit - base), ENDLESS)
 
-    def find_length(self, window: WayWindow, enough: int = 0) -> int:
-        """Return the least time in which a window's work is done, or `enough` where that is no less."""
+    def find_length(self, window: WayWindow, enough: int = 0, limit: int = ENDLESS) -> int:
+        """Return the least time in which a window's work is done; `enough`, or more than a limit, where that is known."""
         term_count = sum(work.term_count for work in window.works)
         length, tick = max(window.own_work + window.link_time, 1), window.closing_tick
         if enough >= length:
             self._spend(term_count)
             if window.sum_within(enough + tick) <= enough + tick:
                 return enough
-        while length <= self._longest:
+        limit = min(limit, self._longest)
+        while length <= limit:
             self._spend(term_count)
             needed = window.sum_within(length)
             if needed <= length:
@@ -252,73 +300,77 @@ class TransactionWindows:
         """Return what may hold up some steps of a way at the place that they visit."""
         own_units = self._list_own_units(place, visits)
         origin, level = self.transactions.way_of(path[-1]).entry, place.find_level(self._list_units(visits))
+        others = self._split_others(place, level, origin, own_units)
         own_terms: list[JobTerm] = []
-        lanes: dict[ThreadUnit, list[JobTerm]] = {}
-        uncut_terms: list[JobTerm] = []
         beside_jobs: list[PlaceJob] = []
-        for job in place.jobs:
-            is_in_full = place.core_count == 1 or job.unit in own_units
+        for job in self._jobs_of_origin.get((place.step, origin), ()):
             if job.unit not in own_units and not place.counts_at(job.unit, level):
                 continue
-            if job.key is None or job.origin != origin:
-                term = self._build_term(place, job)
-                is_cut = job.unit not in place.reentrant_units
-                terms = lanes.setdefault(job.unit, []) if is_cut and not is_in_full else uncut_terms
-                (own_terms if is_in_full else terms).append(term)
-            elif not is_in_full:
+            if place.core_count > 1 and job.unit not in own_units:
                 beside_jobs.append(job)
-            else:
-                met_visits = [
-                    key for key in visits if place.core_count == 1 or job.unit in self._list_own_units(place, [key])
-                ]
-                if numbers := self._list_met_events(job, met_visits, path):
-                    own_terms.append(self._build_term(place, job)._replace(limit=len(numbers)))
-        work = PlaceWork(place, tuple(own_terms))
-        if place.core_count == 1:
-            return work
-        event_works = self._add_own_events(place, beside_jobs, visits, path, lanes, uncut_terms)
-        if event_works is None:
-            return work
-        return work._replace(
-            lanes=tuple(map(tuple, lanes.values())), event_works=event_works, uncut_terms=tuple(uncut_terms)
-        )
+                continue
+            met_visits = [key for key in visits if place.core_count == 1 or job.unit in self._list_own_units(place, [key])]
+            event_ids = {each for key in met_visits for each in self._list_met_events(job, key, path)}
+            if event_ids:
+                own_terms.append(self._build_term(place, job)._replace(limit=len(event_ids)))
+        work = PlaceWork(place, (others.own_sum, TermSum(own_terms)) if own_terms else (others.own_sum,))
+        return work if place.core_count == 1 else self._add_beside(work, others, beside_jobs, visits, path)
+
+    def _split_others(
+        self, place: Place, level: int | None, origin: EventOrigin, own_units: frozenset[ThreadUnit]
+    ) -> _SplitWork:
+        """Return the work of all other transactions at a place: in some threads, and of each other one."""
+        key = (place.step, level, origin, own_units if place.core_count > 1 else frozenset())
+        if key not in self._foreign_works:
+            own_terms: list[JobTerm] = []
+            uncut_terms: list[JobTerm] = []
+            lanes: dict[ThreadUnit, list[JobTerm]] = {}
+            for job in place.jobs:
+                if (job.key is None or job.origin != origin) and (
+                    job.unit in own_units or place.counts_at(job.unit, level)
+                ):
+                    is_in_full = place.core_count == 1 or job.unit in own_units
+                    is_cut = job.unit not in place.reentrant_units
+                    beside_terms = lanes.setdefault(job.unit, []) if is_cut and not is_in_full else uncut_terms
+                    (own_terms if is_in_full else beside_terms).append(self._build_term(place, job))
+            self._foreign_works[key] = _SplitWork(
+                TermSum(own_terms), {unit: TermSum(terms) for unit, terms in lanes.items()}, TermSum(uncut_terms)
+            )
+        return self._foreign_works[key]
 
     def _list_units(self, keys: Iterable[WayKey]) -> list[ThreadUnit]:
         return [self.transactions.unit_of[name] for name, _ in keys]
 
-    def _list_own_units(self, place: Place, keys: Iterable[WayKey]) -> set[ThreadUnit]:
+    def _list_own_units(self, place: Place, keys: Iterable[WayKey]) -> frozenset[ThreadUnit]:
         """Return the threads that some steps may wait for: their own, and those of their crowded container."""
-        return {other for unit in self._list_units(keys) for other in place.crowd_of.get(unit, (unit,))}
+        return frozenset(other for unit in self._list_units(keys) for other in place.crowd_of.get(unit, (unit,)))
 
-    def _add_own_events(
-        self,
-        place: Place,
-        jobs: Sequence[PlaceJob],
-        visits: Sequence[WayKey],
-        path: tuple[WayKey, ...],
-        lanes: dict[ThreadUnit, list[JobTerm]],
-        uncut_terms: list[JobTerm],
-    ) -> tuple[int, ...] | None:
-        """Add the transaction's own other events to what is beside a way, and return the work of those that are lanes.
+    def _add_beside(
+        self, work: PlaceWork, others: _SplitWork, jobs: Sequence[PlaceJob], visits: Sequence[WayKey], path: tuple[WayKey, ...]
+    ) -> PlaceWork:
+        """Return the work at a place with the time for which all its cores are busy beside a way, if that can be.
 
-        Where the transaction forks, each thread is a lane. None where fewer lanes than cores meet any visit.
+        Where the transaction does not fork, each of its other events is a lane, else each thread. A visit that fewer lanes
+        meet than there are cores is not held up by them.
         """
-        is_forked = self.transactions.way_of(path[-1]).entry in self.transactions.forked_origins
+        place, is_forked = work.place, self.transactions.way_of(path[-1]).entry in self.transactions.forked_origins
         met_events: dict[PlaceJob, set[int]] = {job: set() for job in jobs}
         is_blocked = False
         for key in visits:
-            met_at = {job: numbers for job in jobs if (numbers := self._list_met_events(job, [key], path))}
+            met_at = {job: event_ids for job in jobs if (event_ids := self._list_met_events(job, key, path))}
             own_lanes = {job.unit for job in met_at} if is_forked else {each for ids in met_at.values() for each in ids}
-            is_uncut = uncut_terms or any(job.unit in place.reentrant_units for job in met_at)
-            if is_uncut or len({*lanes, *own_lanes}) >= place.core_count:
+            is_uncut = others.uncut_sum.terms or any(job.unit in place.reentrant_units for job in met_at)
+            if is_uncut or len({*others.lanes, *own_lanes}) >= place.core_count:
                 is_blocked = True
-                for job, numbers in met_at.items():
-                    met_events[job].update(numbers)
+                for job, event_ids in met_at.items():
+                    met_events[job] |= event_ids
+        if not is_blocked:
+            return work
         event_works: dict[int, int] = {}
+        uncut_terms: list[JobTerm] = []
+        lanes: dict[ThreadUnit, list[JobTerm]] = {}
         for job, event_ids in met_events.items():
             term = self._build_term(place, job)._replace(limit=len(event_ids))
-            if not event_ids:
-                continue
             if job.unit in place.reentrant_units:
                 uncut_terms.append(term)
             elif is_forked or term.is_endless:
@@ -326,7 +378,14 @@ class TransactionWindows:
             else:
                 for each in sorted(event_ids):
                     event_works[each] = event_works.get(each, 0) + (job.cost or 0)
-        return tuple(event_works.values()) if is_blocked else None
+        return work._replace(
+            lanes=(
+                *(lane for unit, lane in others.lanes.items() if unit not in lanes),
+                *(TermSum([*(others.lanes[unit].terms if unit in others.lanes else ()), *lanes[unit]]) for unit in lanes),
+            ),
+            event_works=tuple(event_works.values()),
+            uncut_sums=tuple(each for each in (others.uncut_sum, TermSum(uncut_terms)) if each.terms),
+        )
 
     def _build_term(self, place: Place, job: PlaceJob) -> JobTerm:
         """Return the work of a job in a window in which the place need not have been idle at first."""
@@ -342,34 +401,35 @@ class TransactionWindows:
             return JobTerm(job, (), ENDLESS)
         return JobTerm(job, model, max(latest - self.transactions.way_of(key).best_before, 0))
 
-    def _list_met_events(self, job: PlaceJob, visits: Sequence[WayKey], path: tuple[WayKey, ...]) -> list[int]:
-        """Return by number the events (0: the way's own, 1: the next one) whose job may be there during some visits."""
-        model, own_end = self._models[job.origin], self.delays[job.key] if job.key else 0
-        if isinstance(model, UnknownCause) or job.key is None or not visits:
-            return []
-        if own_end >= ENDLESS:
-            return [1]
-        own_begin, job_path = self.transactions.way_of(job.key).best_before, self.transactions.paths[job.key]
-        # What takes no time meets what comes as it ends.
-        margin = int(not all(self.transactions.costs[name] for name, _ in path))
-        times = [(self.transactions.way_of(key).best_before - margin, self.delays[key] + margin) for key in visits]
-        begin, end = min(since for since, _ in times), max(until for _, until in times)
-        is_timed = len(model) == 1 and model[0][3:] == (1, 1) and job.origin.key in self.transactions.periodic_ids
-        met: list[int] = []
+    def _list_met_events(self, job: PlaceJob, visit: WayKey, path: tuple[WayKey, ...]) -> frozenset[int]:
+        """Return by number the events (0: the way's own, 1: the next one) whose job may be there during a visit."""
+        if job.key is None:
+            return frozenset()
+        known = self._met_events.get((job.key, visit))
+        if known is None:
+            known = self._met_events[job.key, visit] = frozenset(self._find_met_events(job, job.key, visit))
         # Steps of the way come one after the other, and what is behind it begins when it has ended.
+        job_path = self.transactions.paths[job.key]
         is_on_way = job_path == path[: len(job_path)] or path == job_path[: len(path)]
-        if not is_on_way and any(own_begin < until and own_end > since for since, until in times):
-            met.append(0)
+        return known - {0} if is_on_way else known
+
+    def _find_met_events(self, job: PlaceJob, key: WayKey, visit: WayKey) -> Iterator[int]:
+        model, own_end = self._models[job.origin], self.delays[key]
+        if isinstance(model, UnknownCause) or own_end >= ENDLESS or self.delays[visit] >= ENDLESS:
+            yield 1
+            return
+        own_begin = self.transactions.way_of(key).best_before
+        begin, end = self.transactions.way_of(visit).best_before - self._margin, self.delays[visit] + self._margin
+        is_timed = len(model) == 1 and model[0][3:] == (1, 1) and job.origin.key in self.transactions.periodic_ids
         for number, apart in enumerate(earliest_arrivals(model)):
             if number and apart + own_begin >= end and own_end - apart <= begin:
-                break
+                return
             self._spend(1)
             latest = number * model[0].period + model[0].jitter if is_timed else ENDLESS
-            if number and any(apart + own_begin < until and latest + own_end > since for since, until in times):
-                met.append(number)
-            if number and any(own_end - apart > since and own_begin - latest < until for since, until in times):
-                met.append(-number)
-        return met
+            if apart + own_begin < end and (latest if number else 0) + own_end > begin:
+                yield number
+            if number and own_end - apart > begin and own_begin - latest < end:
+                yield -number
 
     def _open_busy_window(self, path: tuple[WayKey, ...]) -> WayWindow | None:
         """Return the busy window of the place of the last step: all that has come there since nothing waited."""
@@ -397,7 +457,10 @@ class TransactionWindows:
 
     def _find_busy_work(self, place: Place, key: WayKey, level: int | None, *, is_whole_run: bool) -> PlaceWork:
         """Return what comes at a place, for the last step of a way, since nothing waited there in its threads."""
-        own_units = self._list_own_units(place, [key])
+        own_units = self._list_own_units(place, [key]) if place.core_count > 1 else frozenset()
+        known = self._busy_works.get((place.step, level, is_whole_run, own_units))
+        if known is not None:
+            return known
         own_terms: list[JobTerm] = []
         uncut_terms: list[JobTerm] = []
         lanes: dict[ThreadUnit, list[JobTerm]] = {}
@@ -415,14 +478,15 @@ class TransactionWindows:
             else:
                 lanes.setdefault(job.unit, []).append(term)
                 full_lanes.setdefault(job.unit, []).append(full_term)
-        return PlaceWork(
+        work = self._busy_works[place.step, level, is_whole_run, own_units] = PlaceWork(
             place,
-            tuple(own_terms),
-            tuple(map(tuple, lanes.values())),
+            (TermSum(own_terms),),
+            tuple(map(TermSum, lanes.values())),
             (),
-            tuple(uncut_terms),
-            tuple(map(tuple, full_lanes.values())),
+            (TermSum(uncut_terms),) if uncut_terms else (),
+            tuple(map(TermSum, full_lanes.values())),
         )
+        return work
 
     def _build_entry(self, job: PlaceJob, key: WayKey, is_whole_run: bool) -> JobTerm:
         """Return the work of a job that comes with its activation, or with that of the first step of its run."""
