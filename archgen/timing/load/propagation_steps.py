@@ -110,6 +110,7 @@ class PropagationSteps:
             for name in joined.processor.members:
                 self.joined_steps_of.setdefault(name, []).append(step)
         self.successors = self._find_successors()
+        self.group_budgets = group_budgets
         self.budget_of = group_budgets.assign_budgets(state.system, self.successors)
 
     def _prepare_inner_cores(self) -> None:
@@ -184,6 +185,8 @@ class PropagationSteps:
         for step, transactions in self.transactions.items():
             # What has a core of its own is found with its event model.
             successors[step] += transactions.places
+            for place in transactions.places:
+                successors[place].append(step)
             entry_ids = [name for name in transactions.inner_triggers.order if name in transactions.inner_triggers.entry_ids]
             for name in (*entry_ids, *transactions.inner_triggers.outer_sources, *transactions.list_foreign_ids()):
                 successors[name].append(step)

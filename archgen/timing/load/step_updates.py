@@ -26,10 +26,6 @@ from archgen.timing.system.core_placement import (
 )
 
 
-_TRANSACTION_TERMS = 400_000
-"""Terms that one look at all ways of transactions may take."""
-
-
 class StepUpdates(PropagationSteps):
     """Finds the figures of single steps anew."""
 
@@ -195,8 +191,11 @@ class StepUpdates(PropagationSteps):
                 origin, transactions.entering_arcs[int(origin.key)] if origin.kind == "arc" else None
             ),
             self._find_foreign_model,
-            self.way_delays.get(step, {}),
-            self.budget_of[step].open_part(_TRANSACTION_TERMS),
+            (
+                self.way_delays.get(step, {}),
+                {} if self.state.settled_ids.intersection(transactions.place_of) else self.state.responses,
+            ),
+            self.group_budgets.open_transactions(step, len(transactions.paths)),
         )
 
     def _find_foreign_model(self, step: str, name: str) -> EventStreams | UnknownCause:

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.busy_cores import divide_among_cores
@@ -24,6 +24,7 @@ from archgen.timing.load.busy_windows import ActivityWork, DivergedError, Growin
 from archgen.timing.load.event_streams import EventStreams, delay_streams, earliest_arrivals, max_arrivals
 from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.shared_cores import WayKey
+from archgen.timing.load.thread_work import WorstResponse
 from archgen.timing.load.transactions import Place, PlaceJob, Transactions
 from archgen.timing.system.core_sets import ThreadUnit
 
@@ -31,10 +32,16 @@ ENDLESS = 1 << 60
 """Longer than any time that is a bound, in ticks."""
 _MAX_SWEEPS = 60
 """Sweeps over all ways before those that still grow are given up."""
-_MAX_WAITING_EVENTS = 50
+_PATIENT_SWEEPS = 8
+"""Sweeps after which what still grows goes ahead."""
+_MAX_WAITING_EVENTS = 20
 """Events of one origin that may come within a delay, before it is said to have run away."""
 _MAX_SPLIT_STEPS = 20
 """Steps of a way up to which a window is looked for behind each of them, and not only where another place begins."""
+
+
+_WorkBegin = Literal["late", "step", "run"]
+"""Since when work may be there: as late as it may be; its activation; that of the first of its steps at the place."""
 
 
 class JobTerm(NamedTuple):
@@ -124,14 +131,6 @@ class PlaceWork(NamedTuple):
         return 1 + sum([each.term_count for each in (*self.own_sums, *self.lanes, *self.uncut_sums, *self.full_lanes)])
 
 
-class _SplitWork(NamedTuple):
-    """The work of other transactions at a place: what counts in full, that of each other thread, and what is not cut."""
-
-    own_sum: TermSum
-    lanes: Mapping[ThreadUnit, TermSum]
-    uncut_sum: TermSum
-
-
 class WayWindow(NamedTuple):
     """What bounds a way: the way `before` that has ended (none: from the event on), `lead` after it, and a window.
 
@@ -163,17 +162,19 @@ class TransactionWindows:
         transactions: Transactions,
         model_of: Callable[[EventOrigin], EventStreams | UnknownCause],
         foreign_model_of: Callable[[str, str], EventStreams | UnknownCause],
-        delays: Mapping[WayKey, int],
+        known_bounds: tuple[Mapping[WayKey, int], Mapping[str, WorstResponse]],
         budget: SearchBudget,
     ) -> None:
-        """Begin with some delays: those of a time when less came."""
+        """Begin with the delays of a time when less came. The other bounds are of responses, found place by place."""
+        delays, self._responses = known_bounds
         self.transactions, self._budget, self._spend = transactions, budget, budget.start_search()
         origins = dict.fromkeys(transactions.way_of(key).entry for key in transactions.paths)
         self._models = {origin: model_of(origin) for origin in origins}
         self._foreign_models = {
             (step, job.name): foreign_model_of(step, job.name)
             for step, place in transactions.places.items()
-            for job in place.jobs
+            for jobs in place.jobs_of.values()
+            for job in jobs
             if job.key is None
         }
         own_times = {key: self._find_own_time(path) for key, path in transactions.paths.items()}
@@ -184,19 +185,18 @@ class TransactionWindows:
         self._longest += max((each for each in own_times.values() if each < ENDLESS), default=0)
         # What takes no time meets what comes as it ends.
         self._margin = int(not all(transactions.costs[name] for name in transactions.ways_to))
+        self._is_ahead = False
         self._last_windows: dict[WayKey, int] = {}
         self._jobs_of_origin: dict[tuple[str, EventOrigin], list[PlaceJob]] = {}
         for step, place in transactions.places.items():
-            for job in place.jobs:
-                if job.key is not None:
-                    self._jobs_of_origin.setdefault((step, job.origin), []).append(job)
+            for job in (job for jobs in place.jobs_of.values() for job in jobs if job.key is not None):
+                self._jobs_of_origin.setdefault((step, job.origin), []).append(job)
         self._forget_works()
 
     def _forget_works(self) -> None:
         """Forget what follows from the delays."""
         # Within a sweep they are those of its begin: the last sweep, in which nothing grows, finds that all hold at once.
-        self._foreign_works: dict[tuple[str, int | None, EventOrigin, frozenset[ThreadUnit]], _SplitWork] = {}
-        self._busy_works: dict[tuple[str, int | None, bool, frozenset[ThreadUnit]], PlaceWork] = {}
+        self._sums: dict[tuple[str, tuple[ThreadUnit, ...], EventOrigin | None, _WorkBegin], TermSum] = {}
         self._met_events: dict[tuple[WayKey, WayKey], frozenset[int]] = {}
 
     def _find_own_time(self, path: Sequence[WayKey]) -> int:
@@ -214,18 +214,43 @@ class TransactionWindows:
                 self.delays.update(dict.fromkeys(grown_keys, ENDLESS))
         except DivergedError:
             self.delays = dict.fromkeys(self.delays, ENDLESS)
+            return
+        if self._is_ahead:
+            self._lower_delays()
 
     def _repeat_sweeps(self) -> list[WayKey]:
         """Sweep until nothing grows; return what still does where the end is not reached."""
         grown_keys: list[WayKey] = []
-        for _ in range(_MAX_SWEEPS):
+        for sweep in range(_MAX_SWEEPS):
             self._forget_works()
-            grown_keys = [key for key in self.transactions.paths if self._raise_delay(key)]
+            # What goes on growing goes ahead, further and further: so all come to rest, or run away, in a few sweeps.
+            ahead = (1 << sweep // _PATIENT_SWEEPS) - 1
+            grown_keys = [key for key in self.transactions.paths if self._raise_delay(key, ahead)]
             if not grown_keys:
                 break
+            self._is_ahead = self._is_ahead or ahead > 0
         return grown_keys
 
-    def _raise_delay(self, key: WayKey) -> bool:
+    def _lower_delays(self) -> None:
+        """Take back what went too far: where no window of any delay gives more, the least ones of all give no more either."""
+        safe_delays = dict(self.delays)
+        try:
+            for _ in range(_PATIENT_SWEEPS):
+                self._forget_works()
+                lowered = False
+                for key, path in self.transactions.paths.items():
+                    if self._models[self.transactions.way_of(key).entry]:
+                        windows = filter(None, (open_window() for open_window in self._list_openers(path)))
+                        least = min((self._find_delay(window, 0, self.delays[key]) for window in windows), default=ENDLESS)
+                        lowered = lowered or least < self.delays[key]
+                        self.delays[key] = min(least, self.delays[key])
+                safe_delays = dict(self.delays)
+                if not lowered:
+                    return
+        except DivergedError:
+            self.delays = safe_delays
+
+    def _raise_delay(self, key: WayKey, ahead: int) -> bool:
         """Let a delay be no less than the least of its windows, and return whether it grew."""
         delay, least = self.delays[key], ENDLESS
         # What never comes is not late.
@@ -241,6 +266,7 @@ class TransactionWindows:
                     self._last_windows[key] = number
                     return False
                 least = min(least, found)
+        least += (least - delay) * ahead
         self.delays[key] = least if least <= self._longest else ENDLESS
         return True
 
@@ -259,7 +285,18 @@ class TransactionWindows:
             for first in range(last, -1, -1)
             if first in {0, last} or last < _MAX_SPLIT_STEPS or places[first] != places[first - 1]
         ]
-        return [partial(self._open_busy_window, path), *(partial(self._open_window, path, first) for first in starts)]
+        return [
+            partial(self._open_response, path),
+            partial(self._open_busy_window, path),
+            *(partial(self._open_window, path, first) for first in starts),
+        ]
+
+    def _open_response(self, path: tuple[WayKey, ...]) -> WayWindow | None:
+        """Return the response of the last step, as it was found from its own place."""
+        response, before = self._responses.get(path[-1][0]), path[-2] if len(path) > 1 else None
+        if response is None or response.value is None or (before is not None and self.delays[before] >= ENDLESS):
+            return None
+        return WayWindow(before, self._find_link_time(path, len(path) - 1) + response.value, path[-1:], 0, 0, (), 0)
 
     def _find_delay(self, window: WayWindow, enough: int, limit: int) -> int:
         """Return the delay that a window gives, `enough` where it is no more, something above the limit where it is above."""
@@ -288,7 +325,7 @@ class TransactionWindows:
         transactions, before = self.transactions, path[first - 1] if first else None
         if before is not None and self.delays[before] >= ENDLESS:
             return None
-        link_time = transactions.way_of(path[-1]).link_time - (transactions.way_of(before).link_time if before else 0)
+        link_time = self._find_link_time(path, first)
         steps_at: dict[str, list[WayKey]] = {}
         for key in path[first:]:
             steps_at.setdefault(transactions.place_of[key[0]], []).append(key)
@@ -296,110 +333,121 @@ class TransactionWindows:
         costs = [transactions.costs[name] or 0 for name, _ in path[first:]]
         return WayWindow(before, 0, path[first:], sum(costs), link_time, works, int(not costs[-1]))
 
+    def _find_link_time(self, path: Sequence[WayKey], first: int) -> int:
+        """Return how long the links of a way take from the step before the given one on."""
+        link_time = self.transactions.way_of(path[-1]).link_time
+        return link_time - (self.transactions.way_of(path[first - 1]).link_time if first else 0)
+
     def _find_work(self, place: Place, visits: Sequence[WayKey], path: tuple[WayKey, ...]) -> PlaceWork:
         """Return what may hold up some steps of a way at the place that they visit."""
-        own_units = self._list_own_units(place, visits)
-        origin, level = self.transactions.way_of(path[-1]).entry, place.find_level(self._list_units(visits))
-        others = self._split_others(place, level, origin, own_units)
+        origin, own_units = self.transactions.way_of(path[-1]).entry, self._list_own_units(place, visits)
+        level_units = place.list_units(place.find_level(self._list_units(visits)))
+        full_units = level_units if place.core_count == 1 else own_units
+        work = PlaceWork(place, (self._sum_jobs(place, full_units, origin, "late"),))
         own_terms: list[JobTerm] = []
         beside_jobs: list[PlaceJob] = []
         for job in self._jobs_of_origin.get((place.step, origin), ()):
-            if job.unit not in own_units and not place.counts_at(job.unit, level):
-                continue
-            if place.core_count > 1 and job.unit not in own_units:
+            if job.unit in full_units:
+                met_visits = (
+                    key for key in visits if place.core_count == 1 or job.unit in self._list_own_units(place, [key])
+                )
+                event_ids = {each for key in met_visits for each in self._list_met_events(job, key, path)}
+                if event_ids:
+                    own_terms.append(self._build_term(place, job, "late")._replace(limit=len(event_ids)))
+            elif job.unit in level_units:
                 beside_jobs.append(job)
-                continue
-            met_visits = [key for key in visits if place.core_count == 1 or job.unit in self._list_own_units(place, [key])]
-            event_ids = {each for key in met_visits for each in self._list_met_events(job, key, path)}
-            if event_ids:
-                own_terms.append(self._build_term(place, job)._replace(limit=len(event_ids)))
-        work = PlaceWork(place, (others.own_sum, TermSum(own_terms)) if own_terms else (others.own_sum,))
-        return work if place.core_count == 1 else self._add_beside(work, others, beside_jobs, visits, path)
+        if own_terms:
+            work = work._replace(own_sums=(*work.own_sums, TermSum(own_terms)))
+        other_units = [unit for unit in level_units if unit not in full_units]
+        return self._add_beside(work, other_units, beside_jobs, visits, path) if other_units else work
 
-    def _split_others(
-        self, place: Place, level: int | None, origin: EventOrigin, own_units: frozenset[ThreadUnit]
-    ) -> _SplitWork:
-        """Return the work of all other transactions at a place: in some threads, and of each other one."""
-        key = (place.step, level, origin, own_units if place.core_count > 1 else frozenset())
-        if key not in self._foreign_works:
-            own_terms: list[JobTerm] = []
-            uncut_terms: list[JobTerm] = []
-            lanes: dict[ThreadUnit, list[JobTerm]] = {}
-            for job in place.jobs:
-                if (job.key is None or job.origin != origin) and (
-                    job.unit in own_units or place.counts_at(job.unit, level)
-                ):
-                    is_in_full = place.core_count == 1 or job.unit in own_units
-                    is_cut = job.unit not in place.reentrant_units
-                    beside_terms = lanes.setdefault(job.unit, []) if is_cut and not is_in_full else uncut_terms
-                    (own_terms if is_in_full else beside_terms).append(self._build_term(place, job))
-            self._foreign_works[key] = _SplitWork(
-                TermSum(own_terms), {unit: TermSum(terms) for unit, terms in lanes.items()}, TermSum(uncut_terms)
-            )
-        return self._foreign_works[key]
+    def _sum_jobs(
+        self, place: Place, units: tuple[ThreadUnit, ...], origin: EventOrigin | None, begin: _WorkBegin
+    ) -> TermSum:
+        """Return the work of some threads at a place, without that of a transaction."""
+        key = (place.step, units, origin, begin)
+        if key not in self._sums:
+            jobs = (job for unit in units for job in place.jobs_of[unit] if job.key is None or job.origin != origin)
+            self._sums[key] = TermSum([self._build_term(place, job, begin) for job in jobs])
+        return self._sums[key]
 
     def _list_units(self, keys: Iterable[WayKey]) -> list[ThreadUnit]:
         return [self.transactions.unit_of[name] for name, _ in keys]
 
-    def _list_own_units(self, place: Place, keys: Iterable[WayKey]) -> frozenset[ThreadUnit]:
+    def _list_own_units(self, place: Place, keys: Iterable[WayKey]) -> tuple[ThreadUnit, ...]:
         """Return the threads that some steps may wait for: their own, and those of their crowded container."""
-        return frozenset(other for unit in self._list_units(keys) for other in place.crowd_of.get(unit, (unit,)))
+        return tuple(
+            dict.fromkeys(other for unit in self._list_units(keys) for other in place.crowd_of.get(unit, (unit,)))
+        )
 
     def _add_beside(
-        self, work: PlaceWork, others: _SplitWork, jobs: Sequence[PlaceJob], visits: Sequence[WayKey], path: tuple[WayKey, ...]
+        self,
+        work: PlaceWork,
+        units: Sequence[ThreadUnit],
+        jobs: Sequence[PlaceJob],
+        visits: Sequence[WayKey],
+        path: tuple[WayKey, ...],
     ) -> PlaceWork:
         """Return the work at a place with the time for which all its cores are busy beside a way, if that can be.
 
         Where the transaction does not fork, each of its other events is a lane, else each thread. A visit that fewer lanes
         meet than there are cores is not held up by them.
         """
-        place, is_forked = work.place, self.transactions.way_of(path[-1]).entry in self.transactions.forked_origins
+        place, origin = work.place, self.transactions.way_of(path[-1]).entry
+        is_forked = origin in self.transactions.forked_origins
+        sums = {unit: each for unit in units if (each := self._sum_jobs(place, (unit,), origin, "late")).terms}
+        is_uncut = not place.reentrant_units.isdisjoint(sums)
         met_events: dict[PlaceJob, set[int]] = {job: set() for job in jobs}
         is_blocked = False
         for key in visits:
             met_at = {job: event_ids for job in jobs if (event_ids := self._list_met_events(job, key, path))}
             own_lanes = {job.unit for job in met_at} if is_forked else {each for ids in met_at.values() for each in ids}
-            is_uncut = others.uncut_sum.terms or any(job.unit in place.reentrant_units for job in met_at)
-            if is_uncut or len({*others.lanes, *own_lanes}) >= place.core_count:
+            if (
+                is_uncut
+                or any(job.unit in place.reentrant_units for job in met_at)
+                or len({*sums, *own_lanes}) >= place.core_count
+            ):
                 is_blocked = True
                 for job, event_ids in met_at.items():
                     met_events[job] |= event_ids
         if not is_blocked:
             return work
         event_works: dict[int, int] = {}
-        uncut_terms: list[JobTerm] = []
-        lanes: dict[ThreadUnit, list[JobTerm]] = {}
+        own_terms: dict[ThreadUnit, list[JobTerm]] = {}
         for job, event_ids in met_events.items():
-            term = self._build_term(place, job)._replace(limit=len(event_ids))
-            if job.unit in place.reentrant_units:
-                uncut_terms.append(term)
-            elif is_forked or term.is_endless:
-                lanes.setdefault(job.unit, []).append(term)
+            term = self._build_term(place, job, "late")._replace(limit=len(event_ids))
+            if is_forked or term.is_endless or job.unit in place.reentrant_units:
+                own_terms.setdefault(job.unit, []).append(term)
             else:
                 for each in sorted(event_ids):
                     event_works[each] = event_works.get(each, 0) + (job.cost or 0)
+        sums |= {
+            unit: TermSum([*(sums[unit].terms if unit in sums else ()), *terms]) for unit, terms in own_terms.items()
+        }
         return work._replace(
-            lanes=(
-                *(lane for unit, lane in others.lanes.items() if unit not in lanes),
-                *(TermSum([*(others.lanes[unit].terms if unit in others.lanes else ()), *lanes[unit]]) for unit in lanes),
-            ),
+            lanes=tuple(each for unit, each in sums.items() if unit not in place.reentrant_units),
             event_works=tuple(event_works.values()),
-            uncut_sums=tuple(each for each in (others.uncut_sum, TermSum(uncut_terms)) if each.terms),
+            uncut_sums=tuple(each for unit, each in sums.items() if unit in place.reentrant_units),
         )
 
-    def _build_term(self, place: Place, job: PlaceJob) -> JobTerm:
-        """Return the work of a job in a window in which the place need not have been idle at first."""
-        if job.key is None:
-            model = self._foreign_models[place.step, job.name]
-            return JobTerm(job, (), ENDLESS) if isinstance(model, UnknownCause) else JobTerm(job, model, 0)
-        return self._build_late_term(job, self.delays[job.key], job.key)
+    def _build_term(self, place: Place, job: PlaceJob, begin: _WorkBegin) -> JobTerm:
+        """Return the work of a job in a window: what came up to its longest time before, or what comes in it alone.
 
-    def _build_late_term(self, job: PlaceJob, latest: int, key: WayKey) -> JobTerm:
-        """Return the work of a job of which nothing is left so long after its event; it begins with a step of its way."""
-        model = self._models[job.origin]
+        What may run on other cores too may have begun there. In its `run` a job comes with the first step of those that
+        follow one another at the place.
+        """
+        if job.key is None:
+            foreign_model = self._foreign_models[place.step, job.name]
+            is_known = not isinstance(foreign_model, UnknownCause)
+            return JobTerm(job, foreign_model if is_known else (), 0 if is_known else ENDLESS)
+        model, path = self._models[job.origin], self.transactions.paths[job.key]
+        first, latest = len(path) - 1, self.delays[job.key]
+        if begin != "late" and not job.is_foreign:
+            first = self._find_run_start(path) if begin == "run" else first
+            latest = self._find_link_time(path[: first + 1], first) + (self.delays[path[first - 1]] if first else 0)
         if isinstance(model, UnknownCause) or latest >= ENDLESS:
             return JobTerm(job, (), ENDLESS)
-        return JobTerm(job, model, max(latest - self.transactions.way_of(key).best_before, 0))
+        return JobTerm(job, model, max(latest - self.transactions.way_of(path[first]).best_before, 0))
 
     def _list_met_events(self, job: PlaceJob, visit: WayKey, path: tuple[WayKey, ...]) -> frozenset[int]:
         """Return by number the events (0: the way's own, 1: the next one) whose job may be there during a visit."""
@@ -434,66 +482,32 @@ class TransactionWindows:
     def _open_busy_window(self, path: tuple[WayKey, ...]) -> WayWindow | None:
         """Return the busy window of the place of the last step: all that has come there since nothing waited."""
         place = self.transactions.places[self.transactions.place_of[path[-1][0]]]
-        level = place.find_level(self._list_own_units(place, path[-1:]))
+        own_units, level = self._list_own_units(place, path[-1:]), place.find_level(self._list_units(path[-1:]))
         # In any order all steps that follow one another on one core are done in one busy window.
-        is_whole_run = place.core_count == 1 and level is None
-        first = self._find_run_start(path) if is_whole_run else len(path) - 1
+        begin: _WorkBegin = "run" if place.core_count == 1 and level is None else "step"
+        first = self._find_run_start(path) if begin == "run" else len(path) - 1
         before = path[first - 1] if first else None
         if before is not None and self.delays[before] >= ENDLESS:
             return None
-        way, way_before = self.transactions.way_of(path[first]), self.transactions.way_of(before) if before else None
-        lead = way.link_time - way_before.link_time if way_before else 0
-        tick = int(not self.transactions.costs[path[-1][0]])
-        work = self._find_busy_work(place, path[-1], level, is_whole_run=is_whole_run)
+        units = place.list_units(level)
+        full_units = units if place.core_count == 1 else own_units
+        work = PlaceWork(place, (self._sum_jobs(place, full_units, None, begin),))
+        others = [unit for unit in units if unit not in full_units]
+        if others:
+            lanes = [unit for unit in others if unit not in place.reentrant_units]
+            work = work._replace(
+                lanes=tuple(self._sum_jobs(place, (unit,), None, begin) for unit in lanes),
+                full_lanes=tuple(self._sum_jobs(place, (unit,), None, "late") for unit in lanes),
+                uncut_sums=tuple(
+                    self._sum_jobs(place, (unit,), None, "late") for unit in others if unit in place.reentrant_units
+                ),
+            )
+        lead, tick = self._find_link_time(path[: first + 1], first), int(not self.transactions.costs[path[-1][0]])
         return WayWindow(before, lead, path[first:], 0, 0, (work,), tick)
 
     def _find_run_start(self, path: Sequence[WayKey]) -> int:
         """Return the place in a way of the first of its last steps that follow one another at one place."""
-        places = [self.transactions.place_of[name] for name, _ in path]
-        first = len(places) - 1
-        while first and places[first - 1] == places[-1]:
+        first = len(path) - 1
+        while first and self.transactions.place_of[path[first - 1][0]] == self.transactions.place_of[path[-1][0]]:
             first -= 1
         return first
-
-    def _find_busy_work(self, place: Place, key: WayKey, level: int | None, *, is_whole_run: bool) -> PlaceWork:
-        """Return what comes at a place, for the last step of a way, since nothing waited there in its threads."""
-        own_units = self._list_own_units(place, [key]) if place.core_count > 1 else frozenset()
-        known = self._busy_works.get((place.step, level, is_whole_run, own_units))
-        if known is not None:
-            return known
-        own_terms: list[JobTerm] = []
-        uncut_terms: list[JobTerm] = []
-        lanes: dict[ThreadUnit, list[JobTerm]] = {}
-        full_lanes: dict[ThreadUnit, list[JobTerm]] = {}
-        for job in place.jobs:
-            if job.unit not in own_units and not place.counts_at(job.unit, level):
-                continue
-            full_term = self._build_term(place, job)
-            # What may have begun on other cores may have been pending here as well.
-            term = full_term if job.key is None or job.is_foreign else self._build_entry(job, job.key, is_whole_run)
-            if place.core_count == 1 or job.unit in own_units:
-                own_terms.append(term)
-            elif job.unit in place.reentrant_units:
-                uncut_terms.append(full_term)
-            else:
-                lanes.setdefault(job.unit, []).append(term)
-                full_lanes.setdefault(job.unit, []).append(full_term)
-        work = self._busy_works[place.step, level, is_whole_run, own_units] = PlaceWork(
-            place,
-            (TermSum(own_terms),),
-            tuple(map(TermSum, lanes.values())),
-            (),
-            (TermSum(uncut_terms),) if uncut_terms else (),
-            tuple(map(TermSum, full_lanes.values())),
-        )
-        return work
-
-    def _build_entry(self, job: PlaceJob, key: WayKey, is_whole_run: bool) -> JobTerm:
-        """Return the work of a job that comes with its activation, or with that of the first step of its run."""
-        path = self.transactions.paths[key]
-        first = self._find_run_start(path) if is_whole_run else len(path) - 1
-        if not first:
-            return self._build_late_term(job, 0, path[0])
-        before = path[first - 1]
-        link_time = self.transactions.way_of(path[first]).link_time - self.transactions.way_of(before).link_time
-        return self._build_late_term(job, self.delays[before] + link_time, path[first])

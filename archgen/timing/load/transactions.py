@@ -38,7 +38,7 @@ class Place:
 
     step: str
     core_count: int
-    jobs: tuple[PlaceJob, ...]
+    jobs_of: Mapping[ThreadUnit, tuple[PlaceJob, ...]]
     threads: Mapping[ThreadUnit, ThreadWork]
     crowd_of: Mapping[ThreadUnit, frozenset[ThreadUnit]]
     """All units of a thread's container where that has fewer threads than there are cores, and more to run."""
@@ -50,10 +50,10 @@ class Place:
         known_levels = [level for level in levels if level is not None]
         return min(known_levels) if len(known_levels) == len(levels) else None
 
-    def counts_at(self, unit: ThreadUnit, level: int | None) -> bool:
-        """Whether a thread comes in the way of what is as urgent as a level."""
-        highest = self.threads[unit].highest_priority
-        return level is None or (highest is not None and highest >= level)
+    def list_units(self, level: int | None) -> tuple[ThreadUnit, ...]:
+        """Return the threads that come in the way of what is as urgent as a level, None for all of them."""
+        highest = {unit: thread.highest_priority for unit, thread in self.threads.items()}
+        return tuple(unit for unit, each in highest.items() if level is None or (each is not None and each >= level))
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +80,7 @@ class Transactions:
     def list_foreign_ids(self) -> Iterator[str]:
         """Yield what works here and has no way of these transactions."""
         for place in self.places.values():
-            yield from (job.name for job in place.jobs if job.key is None)
+            yield from (job.name for jobs in place.jobs_of.values() for job in jobs if job.key is None)
 
 
 def find_transactions(
@@ -167,7 +167,7 @@ def _build_place(
     return Place(
         step,
         core_count,
-        tuple(_list_jobs(system, resource, inner_triggers, ways_to)),
+        {unit: tuple(_list_jobs(system, resource, unit, inner_triggers, ways_to)) for unit in units},
         {thread.unit: thread for thread in rank_threads(system, units, inner_triggers.silent_ids)},
         {
             unit: frozenset(other for other, other_pool in pool_of.items() if other_pool == pool)
@@ -180,16 +180,16 @@ def _build_place(
 def _list_jobs(
     system: TimingSystem,
     resource: ProcessingResource,
+    unit: ThreadUnit,
     inner_triggers: InnerTriggers,
     ways_to: Mapping[str, tuple[EntryWay, ...]],
 ) -> Iterator[PlaceJob]:
-    for unit in (*resource.units, *resource.foreign_units):
-        is_foreign = unit not in resource.units
-        for name in unit:
-            cost = system.activities[name].wcet
-            if cost == 0 or name in inner_triggers.silent_ids or system.activities[name].behaviour == "once":
-                continue
-            if name not in ways_to:
-                yield PlaceJob(name, None, EventOrigin("activity", name), unit, cost, is_foreign)
-            for number, way in enumerate(ways_to.get(name, ())):
-                yield PlaceJob(name, (name, number), way.entry, unit, cost, is_foreign)
+    is_foreign = unit not in resource.units
+    for name in unit:
+        cost = system.activities[name].wcet
+        if cost == 0 or name in inner_triggers.silent_ids or system.activities[name].behaviour == "once":
+            continue
+        if name not in ways_to:
+            yield PlaceJob(name, None, EventOrigin("activity", name), unit, cost, is_foreign)
+        for number, way in enumerate(ways_to.get(name, ())):
+            yield PlaceJob(name, (name, number), way.entry, unit, cost, is_foreign)
