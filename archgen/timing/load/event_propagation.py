@@ -7,16 +7,18 @@ point (K. Tindell, J. Clark 1994; compositional analysis as in pyCPA).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import TypeVar
 
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.figures.timing_values import UnknownCause, sum_ratios
 from archgen.timing.load.core_responses import CoreResponses
+from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.load_system import build_load_system, list_written_priorities
 from archgen.timing.load.lone_work import find_lone_wait
 from archgen.timing.load.propagation_state import PropagationState
+from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.load.step_updates import StepUpdates
 from archgen.timing.load.storing_waits import find_core_waits
@@ -122,18 +124,49 @@ class _Propagation(StepUpdates):
                 state.storing_waits[name] = find_lone_wait(state.system, name, state.event_models, budget)
 
     def _iterate_steps(self, steps: tuple[str, ...]) -> None:
-        """Repeat until nothing changes; where that has no end, with what the ways over hosts say of all that leaves them."""
-        self._start_from_below(steps)
-        if self._settle_steps(steps):
-            return
-        bounded_ids = {name for step in steps if step in self.transactions for name in self.transactions[step].place_of}
-        if any(name in self.state.transaction_ways for name in bounded_ids):
-            self.state.settled_ids |= bounded_ids
-            for step in steps:
-                self.way_delays.pop(step, None)
-            if self._settle_steps(steps):
+        """Repeat until nothing changes: place by place, and then with what the ways over hosts say of all that leaves them."""
+        is_at_rest = self._begin_anew(steps)
+        settled_ids = {name for step in steps if step in self.transactions for name in self.transactions[step].place_of}
+        if settled_ids:
+            place_responses = {name: self.state.responses[name] for name in settled_ids}
+            self._note_place_ways(sorted(settled_ids) if is_at_rest else ())
+            self.state.settled_ids |= settled_ids
+            if self._begin_anew(steps):
+                if is_at_rest:
+                    self._keep_smaller(place_responses)
                 return
-        self._give_up_steps(steps)
+            self.state.settled_ids -= settled_ids
+            is_at_rest = self._begin_anew(steps)
+        if not is_at_rest:
+            self._give_up_steps(steps)
+
+    def _begin_anew(self, steps: tuple[str, ...]) -> bool:
+        """Repeat from below until nothing changes, and return whether it came to rest."""
+        for step in steps:
+            self.state.event_models.pop(step, None)
+            self.seen_models.pop(step, None)
+            for name in self.transactions[step].place_of if step in self.transactions else ():
+                self.state.transaction_ways.pop(name, None)
+        for name in self._activity_ids(steps):
+            self.state.responses.pop(name, None)
+        self._start_from_below(steps)
+        return self._settle_steps(steps)
+
+    def _note_place_ways(self, names: Iterable[str]) -> None:
+        """Note how long events stay at most on the cores of each activity, as it was found from these alone."""
+        state = self.state
+        for name in names:
+            response = state.responses[name].value
+            entry = EntryWay(EventOrigin("activity", name), None, (name,), delay=response)
+            core_ways = (*state.ways_to.get(name, ()), *state.host_ways_to.get(name, ()), entry)
+            state.place_ways[name] = tuple(way for way in core_ways if way.delay is not None)
+
+    def _keep_smaller(self, place_responses: Mapping[str, WorstResponse]) -> None:
+        """Keep responses that were less place by place, as a search did not end."""
+        for name, response in place_responses.items():
+            new_value = self.state.responses[name].value
+            if response.value is not None and (new_value is None or response.value < new_value):
+                self.state.responses[name] = response
 
     def _settle_steps(self, steps: tuple[str, ...]) -> bool:
         """Repeat, and return whether it came to rest. Started from the execution times, it approaches the truth from below."""
@@ -189,7 +222,5 @@ class _Propagation(StepUpdates):
         for step in steps:
             for name in self.host_limits.pop(step, ()):
                 state.host_ways_to.pop(name, None)
-            for name in self.transactions[step].place_of if step in self.transactions else ():
-                state.transaction_ways.pop(name, None)
             if step in state.system.activities and not has_own_rate(state.system.activities[step]):
                 state.event_models[step] = DIVERGED_CAUSE

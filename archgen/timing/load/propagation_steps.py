@@ -13,7 +13,7 @@ from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.queue_responses import find_core_queue
 from archgen.timing.load.run_ways import find_run_arcs
 from archgen.timing.load.search_budgets import GroupBudgets
-from archgen.timing.load.shared_cores import WayKey, prepare_shared_cores
+from archgen.timing.load.shared_cores import prepare_shared_cores
 from archgen.timing.load.single_cores import SingleCores, find_single_cores
 from archgen.timing.load.transactions import find_transactions
 from archgen.timing.load.waiting_threads import model_roaming_work
@@ -84,7 +84,6 @@ class PropagationSteps:
         self.transaction_step_of = {
             name: step for step, each in self.transactions.items() for name in each.place_of
         }
-        self.way_delays: dict[str, dict[WayKey, int]] = {}
         for each in self.transactions.values():
             state.transaction_arcs.update(find_run_arcs(each.inner_triggers, each.ways_to))
         self.single_cores = self._find_single_cores()

@@ -18,8 +18,8 @@ from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.shared_core_responses import SharedCoreSolver, open_shared_solver
 from archgen.timing.load.single_cores import delay_by_response
 from archgen.timing.load.thread_work import EventModels, WorstResponse
-from archgen.timing.load.waiting_threads import find_waiting_responses
 from archgen.timing.load.transaction_windows import ENDLESS, TransactionWindows
+from archgen.timing.load.waiting_threads import find_waiting_responses
 from archgen.timing.load.whole_hosts import HostLimit, limit_responses, list_host_limits
 from archgen.timing.system.core_placement import (
     ProcessingResource,
@@ -167,35 +167,30 @@ class StepUpdates(PropagationSteps):
 
     def _update_transactions(self, step: str) -> bool:
         """Find how long the ways of transactions take, and return whether anything changed."""
+        state, transactions = self.state, self.transactions[step]
+        if state.settled_ids.isdisjoint(transactions.place_of):
+            return False
+        old_ways = {name: state.transaction_ways.pop(name, None) for name in transactions.ways_to}
         windows = self.open_windows(step)
         windows.solve()
-        changed = self.way_delays.get(step) != windows.delays
-        self.way_delays[step] = windows.delays
-        for name, ways in windows.transactions.ways_to.items():
+        for name, ways in transactions.ways_to.items():
             delays = [windows.delays[name, number] for number in range(len(ways))]
-            if max(delays) < ENDLESS and name not in windows.transactions.inner_triggers.silent_ids:
-                self.state.transaction_ways[name] = tuple(
+            if max(delays) < ENDLESS and name not in transactions.inner_triggers.silent_ids:
+                state.transaction_ways[name] = tuple(
                     way._replace(delay=delay) for way, delay in zip(ways, delays, strict=True)
                 )
-            else:
-                self.state.transaction_ways.pop(name, None)
-        return changed
+        return any(state.transaction_ways.get(name) != ways for name, ways in old_ways.items())
 
     def open_windows(self, step: str) -> TransactionWindows:
         """Return what finds how long the ways of transactions take."""
-        find_model = self._model_finder(step, {})
-        transactions = self.transactions[step]
+        find_model, transactions = self._model_finder(step, {}), self.transactions[step]
+
+        def find_entering(origin: EventOrigin) -> EventStreams | UnknownCause:
+            return find_model(origin, transactions.entering_arcs[int(origin.key)] if origin.kind == "arc" else None)
+
+        budget = self.group_budgets.open_transactions(step, len(transactions.paths))
         return TransactionWindows(
-            transactions,
-            lambda origin: find_model(
-                origin, transactions.entering_arcs[int(origin.key)] if origin.kind == "arc" else None
-            ),
-            self._find_foreign_model,
-            (
-                self.way_delays.get(step, {}),
-                {} if self.state.settled_ids.intersection(transactions.place_of) else self.state.responses,
-            ),
-            self.group_budgets.open_transactions(step, len(transactions.paths)),
+            transactions, find_entering, self._find_foreign_model, self.state.place_ways, budget
         )
 
     def _find_foreign_model(self, step: str, name: str) -> EventStreams | UnknownCause:

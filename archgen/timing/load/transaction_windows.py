@@ -23,8 +23,8 @@ from archgen.timing.load.busy_cores import divide_among_cores
 from archgen.timing.load.busy_windows import ActivityWork, DivergedError, GrowingLoad, SearchBudget
 from archgen.timing.load.event_streams import EventStreams, delay_streams, earliest_arrivals, max_arrivals
 from archgen.timing.load.level_cascades import EventOrigin
+from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.shared_cores import WayKey
-from archgen.timing.load.thread_work import WorstResponse
 from archgen.timing.load.transactions import Place, PlaceJob, Transactions
 from archgen.timing.system.core_sets import ThreadUnit
 
@@ -162,11 +162,11 @@ class TransactionWindows:
         transactions: Transactions,
         model_of: Callable[[EventOrigin], EventStreams | UnknownCause],
         foreign_model_of: Callable[[str, str], EventStreams | UnknownCause],
-        known_bounds: tuple[Mapping[WayKey, int], Mapping[str, WorstResponse]],
+        place_ways: Mapping[str, Sequence[EntryWay]],
         budget: SearchBudget,
     ) -> None:
-        """Begin with the delays of a time when less came. The other bounds are of responses, found place by place."""
-        delays, self._responses = known_bounds
+        """Begin with all own times. `place_ways` are the bounds of the last steps that were found place by place."""
+        self._place_ways = place_ways
         self.transactions, self._budget, self._spend = transactions, budget, budget.start_search()
         origins = dict.fromkeys(transactions.way_of(key).entry for key in transactions.paths)
         self._models = {origin: model_of(origin) for origin in origins}
@@ -177,12 +177,11 @@ class TransactionWindows:
             for job in jobs
             if job.key is None
         }
-        own_times = {key: self._find_own_time(path) for key, path in transactions.paths.items()}
         # Begun at nothing, with best cases above it, what is late by D - b would never come.
-        self.delays = {key: max(delays.get(key, 0), own_time) for key, own_time in own_times.items()}
+        self.delays = {key: self._find_own_time(path) for key, path in transactions.paths.items()}
         streams = [each for model in self._models.values() if not isinstance(model, UnknownCause) for each in model]
         self._longest = max((_MAX_WAITING_EVENTS * (each.period + each.jitter) for each in streams), default=0)
-        self._longest += max((each for each in own_times.values() if each < ENDLESS), default=0)
+        self._longest += max((each for each in self.delays.values() if each < ENDLESS), default=0)
         # What takes no time meets what comes as it ends.
         self._margin = int(not all(transactions.costs[name] for name in transactions.ways_to))
         self._is_ahead = False
@@ -286,17 +285,28 @@ class TransactionWindows:
             if first in {0, last} or last < _MAX_SPLIT_STEPS or places[first] != places[first - 1]
         ]
         return [
-            partial(self._open_response, path),
+            partial(self._open_place_way, path),
             partial(self._open_busy_window, path),
             *(partial(self._open_window, path, first) for first in starts),
         ]
 
-    def _open_response(self, path: tuple[WayKey, ...]) -> WayWindow | None:
-        """Return the response of the last step, as it was found from its own place."""
-        response, before = self._responses.get(path[-1][0]), path[-2] if len(path) > 1 else None
-        if response is None or response.value is None or (before is not None and self.delays[before] >= ENDLESS):
+    def _open_place_way(self, path: tuple[WayKey, ...]) -> WayWindow | None:
+        """Return what was found of the last steps from their own cores alone: that which gives least."""
+        names = tuple(name for name, _ in path)
+        longest: dict[int, int] = {}
+        for way in self._place_ways.get(names[-1], ()):
+            if names[-len(way.steps) :] == way.steps:
+                longest[len(way.steps)] = max(way.delay or 0, longest.get(len(way.steps), 0))
+        windows = [self._close_window(path, len(path) - count, delay) for count, delay in longest.items()]
+        known_windows = [window for window in windows if window is not None]
+        return min(known_windows, key=lambda window: self._find_delay(window, 0, ENDLESS), default=None)
+
+    def _close_window(self, path: tuple[WayKey, ...], first: int, delay: int) -> WayWindow | None:
+        """Return the window of the last steps of a way that are known to take no longer."""
+        before = path[first - 1] if first else None
+        if before is not None and self.delays[before] >= ENDLESS:
             return None
-        return WayWindow(before, self._find_link_time(path, len(path) - 1) + response.value, path[-1:], 0, 0, (), 0)
+        return WayWindow(before, self._find_link_time(path[: first + 1], first) + delay, path[first:], 0, 0, (), 0)
 
     def _find_delay(self, window: WayWindow, enough: int, limit: int) -> int:
         """Return the delay that a window gives, `enough` where it is no more, something above the limit where it is above."""
