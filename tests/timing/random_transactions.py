@@ -14,7 +14,7 @@ from itertools import count
 
 from tests.timing.sketches import sketch
 
-PERIODS = (10, 20, 25, 40, 50, 100)
+PERIODS = (20, 25, 40, 50, 100, 100, 200)
 """In ms."""
 ORDERS = ("first come", "last come", "ranks", "dice", "starving")
 
@@ -87,7 +87,7 @@ def _draw_transaction(
     dice: random.Random, name: str, hosts: dict[str, int], steps: dict[str, Step], *, pinned: bool
 ) -> None:
     period = dice.choice(PERIODS) * 1000
-    jitter = dice.choice((0, 0, period // 10, period // 2, period * 3 // 2))
+    jitter = dice.choice((0, 0, 0, period // 10, period // 2, period * 3 // 2))
     members: list[Step] = []
     for at in range(dice.randint(2, 9)):
         host = dice.choice(list(hosts))
@@ -136,14 +136,13 @@ def _find_rate(steps: dict[str, Step], step: Step) -> float:
 
 def _set_times(dice: random.Random, hosts: dict[str, int], steps: dict[str, Step]) -> float:
     """Draw execution times for a load of the fullest core, or host; return it."""
-    wanted, shares = dice.choice((0.1, 0.2, 0.3, 0.4, 0.5)), {name: dice.uniform(0.1, 1) for name in steps}
+    wanted, shares = dice.uniform(0.1, 0.55), {name: dice.uniform(0.1, 1) for name in steps}
     for step in steps.values():
         places = [
             (sum(shares[each.name] * (core in each.cores) for each in steps.values() if each.host == step.host), core)
             for core in step.cores
         ]
-        fill = max(places)[0] * len(hosts) / len(hosts)
-        step.worst = max(int(wanted * len(step.cores) * shares[step.name] / fill / _find_rate(steps, step) * 0.9), 10)
+        step.worst = max(int(wanted * len(step.cores) * shares[step.name] / max(places)[0] / _find_rate(steps, step)), 10)
         step.best = dice.choice((step.worst, step.worst // 2, 0))
     loads = []
     for host in hosts:

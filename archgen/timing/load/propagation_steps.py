@@ -15,6 +15,7 @@ from archgen.timing.load.run_ways import find_run_arcs
 from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.load.shared_cores import prepare_shared_cores
 from archgen.timing.load.single_cores import SingleCores, find_single_cores
+from archgen.timing.load.transaction_windows import TransactionWindows
 from archgen.timing.load.transactions import find_transactions
 from archgen.timing.load.waiting_threads import model_roaming_work
 from archgen.timing.load.whole_hosts import HostLimit, find_whole_hosts
@@ -86,6 +87,9 @@ class PropagationSteps:
         }
         for each in self.transactions.values():
             state.transaction_arcs.update(find_run_arcs(each.inner_triggers, each.ways_to))
+        self.solved_windows: dict[str, TransactionWindows] = {}
+        self.growing_ids: set[str] = set()
+        """Activities of which it is not known yet how long events stay on their cores: it grows with the ways over hosts."""
         self.single_cores = self._find_single_cores()
         # From below, as everything that is found by repetition.
         self.state.single_ends = {
@@ -155,7 +159,7 @@ class PropagationSteps:
 
     def _find_successors(self) -> dict[str, list[str]]:
         """Return the steps that must be looked at again when a step has changed."""
-        system, triggers = self.state.system, self.state.triggers
+        system = self.state.system
         successors: dict[str, list[str]] = {
             step: []
             for step in (

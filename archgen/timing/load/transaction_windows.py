@@ -192,6 +192,15 @@ class TransactionWindows:
                 self._jobs_of_origin.setdefault((step, job.origin), []).append(job)
         self._forget_works()
 
+    @property
+    def inputs(self) -> tuple[object, ...]:
+        """Return what the delays rest on."""
+        return self._models, self._foreign_models, self._place_ways
+
+    def begin_at(self, delays: Mapping[WayKey, int]) -> None:
+        """Begin with the delays of a time when less came."""
+        self.delays = {key: max(delay, delays[key]) for key, delay in self.delays.items()}
+
     def _forget_works(self) -> None:
         """Forget what follows from the delays."""
         # Within a sweep they are those of its begin: the last sweep, in which nothing grows, finds that all hold at once.
