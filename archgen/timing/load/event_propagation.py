@@ -7,13 +7,14 @@ point (K. Tindell, J. Clark 1994; compositional analysis as in pyCPA).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import TypeVar
 
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.figures.timing_values import UnknownCause, sum_ratios
 from archgen.timing.load.core_responses import CoreResponses
+from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.load_system import build_load_system, list_written_priorities
 from archgen.timing.load.lone_work import find_lone_wait
 from archgen.timing.load.propagation_state import PropagationState
@@ -132,51 +133,34 @@ class _Propagation(StepUpdates):
             self._give_up_steps(steps)
 
     def _settle_transactions(self, steps: tuple[str, ...], settled_ids: set[str], *, is_at_rest: bool) -> bool:
-        """Repeat with what the ways over hosts say of all that leaves them, and return whether that came to rest.
-
-        Where a place alone has no bound, all may come to rest together, or what the ways alone bound. Each that does so
-        is safe by itself: of them the smaller figures count.
-        """
+        """Repeat with what the ways over hosts say of all that leaves them, and return whether all came to rest."""
         state = self.state
-        found = [self._list_found(settled_ids)] if is_at_rest else []
-        state.place_ways |= {name: self.list_place_ways(name) if is_at_rest else () for name in settled_ids}
+        place_responses = {name: state.responses[name] for name in settled_ids} if is_at_rest else {}
+        state.place_ways |= {name: self._list_place_ways(name) if is_at_rest else () for name in settled_ids}
         state.settled_ids |= settled_ids
-        for growing_ids in ([] if self._are_bounded(settled_ids) and is_at_rest else [settled_ids]) + [set[str]()]:
-            self.growing_ids |= growing_ids
-            is_settled = self._begin_anew(steps)
-            self.growing_ids -= growing_ids
-            if is_settled:
-                found.append(self._list_found(settled_ids))
-                if self._are_bounded(settled_ids):
-                    break
-        if not is_settled:
+        if not self._begin_anew(steps):
             state.settled_ids -= settled_ids
-            is_settled = self._begin_anew(steps)
-        for responses, transaction_ways in found if is_settled else ():
-            for name, response in responses.items():
-                value = state.responses[name].value
-                if response.value is not None and (value is None or response.value < value):
-                    state.responses[name] = response
-            for name, ways in transaction_ways.items():
-                known_ways = state.transaction_ways.setdefault(name, ways)
-                state.transaction_ways[name] = tuple(map(min, known_ways, ways))
-        return is_settled
+            return self._begin_anew(steps)
+        for name, response in place_responses.items():
+            value = state.responses[name].value
+            # Where a search did not end now, what was found place by place is as safe.
+            if response.value is not None and (value is None or response.value < value):
+                state.responses[name] = response
+        return True
 
-    def _are_bounded(self, names: Iterable[str]) -> bool:
-        return all(self.state.responses[name].value is not None for name in names)
-
-    def _list_found(
-        self, names: Iterable[str]
-    ) -> tuple[dict[str, WorstResponse], dict[str, tuple[EntryWay, ...]]]:
-        ways = self.state.transaction_ways
-        return {name: self.state.responses[name] for name in names}, {name: ways[name] for name in names if name in ways}
+    def _list_place_ways(self, name: str) -> tuple[EntryWay, ...]:
+        """Return how long events stay on the cores of an activity at most, as it was found from these alone."""
+        state = self.state
+        entry = EntryWay(EventOrigin("activity", name), None, (name,), delay=state.responses[name].value)
+        core_ways = (*state.ways_to.get(name, ()), *state.host_ways_to.get(name, ()), entry)
+        return tuple(way for way in core_ways if way.delay is not None)
 
     def _begin_anew(self, steps: tuple[str, ...]) -> bool:
         """Repeat from below until nothing changes, and return whether it came to rest."""
         for step in steps:
             self.state.event_models.pop(step, None)
             self.seen_models.pop(step, None)
-            self.solved_windows.pop(step, None)
+            self.window_inputs.pop(step, None)
             for name in self.transactions[step].place_of if step in self.transactions else ():
                 self.state.transaction_ways.pop(name, None)
         for name in self._activity_ids(steps):

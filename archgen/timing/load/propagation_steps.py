@@ -15,7 +15,6 @@ from archgen.timing.load.run_ways import find_run_arcs
 from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.load.shared_cores import prepare_shared_cores
 from archgen.timing.load.single_cores import SingleCores, find_single_cores
-from archgen.timing.load.transaction_windows import TransactionWindows
 from archgen.timing.load.transactions import find_transactions
 from archgen.timing.load.waiting_threads import model_roaming_work
 from archgen.timing.load.whole_hosts import HostLimit, find_whole_hosts
@@ -87,9 +86,7 @@ class PropagationSteps:
         }
         for each in self.transactions.values():
             state.transaction_arcs.update(find_run_arcs(each.inner_triggers, each.ways_to))
-        self.solved_windows: dict[str, TransactionWindows] = {}
-        self.growing_ids: set[str] = set()
-        """Activities of which it is not known yet how long events stay on their cores: it grows with the ways over hosts."""
+        self.window_inputs: dict[str, tuple[object, object]] = {}
         self.single_cores = self._find_single_cores()
         # From below, as everything that is found by repetition.
         self.state.single_ends = {
@@ -190,11 +187,10 @@ class PropagationSteps:
             successors[step] += transactions.places
             for place in transactions.places:
                 successors[place].append(step)
-            entry_ids = [name for name in transactions.inner_triggers.order if name in transactions.inner_triggers.entry_ids]
-            for name in (*entry_ids, *transactions.inner_triggers.outer_sources, *transactions.list_foreign_ids()):
+            for name in sorted(transactions.inner_triggers.entry_ids):
                 successors[name].append(step)
-            for name in (*transactions.inner_triggers.outer_sources, *transactions.list_foreign_ids()):
-                for source_step in self._response_steps(name):
+            for name in transactions.outer_ids:
+                for source_step in (name, *self._response_steps(name)):
                     successors[source_step].append(step)
 
     def _add_resource_steps(self, successors: dict[str, list[str]]) -> None:

@@ -170,13 +170,12 @@ class StepUpdates(PropagationSteps):
         state, transactions = self.state, self.transactions[step]
         if state.settled_ids.isdisjoint(transactions.place_of):
             return False
-        windows, solved_windows = self.open_windows(step), self.solved_windows.get(step)
-        if solved_windows is not None and solved_windows.inputs == windows.inputs:
+        windows = self.open_windows(step)
+        inputs = (windows.models, windows.foreign_models)
+        if self.window_inputs.get(step) == inputs:
             return False
-        if solved_windows is not None and not self.growing_ids.isdisjoint(transactions.place_of):
-            windows.begin_at(solved_windows.delays)
+        self.window_inputs[step] = inputs
         windows.solve()
-        self.solved_windows[step] = windows
         old_ways = {name: state.transaction_ways.pop(name, None) for name in transactions.ways_to}
         for name, ways in transactions.ways_to.items():
             delays = [windows.delays[name, number] for number in range(len(ways))]
@@ -193,19 +192,8 @@ class StepUpdates(PropagationSteps):
         def find_entering(origin: EventOrigin) -> EventStreams | UnknownCause:
             return find_model(origin, transactions.entering_arcs[int(origin.key)] if origin.kind == "arc" else None)
 
-        place_ways = {
-            name: self.list_place_ways(name) if name in self.growing_ids else self.state.place_ways.get(name, ())
-            for name in transactions.place_of
-        }
         budget = self.group_budgets.open_transactions(step, len(transactions.paths))
-        return TransactionWindows(transactions, find_entering, self._find_foreign_model, place_ways, budget)
-
-    def list_place_ways(self, name: str) -> tuple[EntryWay, ...]:
-        """Return how long events stay on the cores of an activity at most, as it was found from these alone."""
-        state = self.state
-        entry = EntryWay(EventOrigin("activity", name), None, (name,), delay=state.responses[name].value)
-        core_ways = (*state.ways_to.get(name, ()), *state.host_ways_to.get(name, ()), entry)
-        return tuple(way for way in core_ways if way.delay is not None)
+        return TransactionWindows(transactions, find_entering, self._find_foreign_model, self.state.place_ways, budget)
 
     def _find_foreign_model(self, step: str, name: str) -> EventStreams | UnknownCause:
         """Return the event model of what works at a place from elsewhere, as it may have come up to its response ago."""
