@@ -58,7 +58,7 @@ def _bound_order(extreme_path: ExtremePath) -> tuple[bool, bool, Fraction, bool]
     Of equal ones that by runs: where a step elsewhere loses its bound, the terms of all others stay what they were.
     """
     view, _, bound = extreme_path
-    return is_boundless(bound), not is_known_bound(bound), bound.value or Fraction(0), not view.by_runs
+    return is_boundless(bound), not is_known_bound(bound), bound.value or Fraction(0), not view.runs
 
 
 def sum_path(network: CostNetwork, path: CostedPath, aim: PathAim) -> TimingValue:
