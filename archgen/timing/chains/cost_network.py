@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import field
 from math import lcm
 from typing import Literal
@@ -35,6 +35,7 @@ class CostNetwork:
     by_runs: bool = False
     _graphs: dict[PathAim, tuple[CostGraph, list[int]]] = field(default_factory=dict)
     _other_views: list[CostNetwork] = field(default_factory=list)
+    _arcs_by_ends: dict[tuple[str, str], list[int]] = field(default_factory=dict)
 
     @classmethod
     def of_analysis(cls, analysis: Analysis) -> CostNetwork:
@@ -54,6 +55,14 @@ class CostNetwork:
     def arcs(self) -> tuple[Arc, ...]:
         """Return the system's arcs; `Hop.arc` is an index into them."""
         return self.steps.analysis.system.arcs
+
+    def list_parallel(self, arc_index: int) -> Sequence[int]:
+        """Return the arcs that have the ends of an arc, itself among them."""
+        if not self._arcs_by_ends:
+            for index, each in enumerate(self.arcs):
+                self._arcs_by_ends.setdefault((each.source, each.target), []).append(index)
+        arc = self.arcs[arc_index]
+        return self._arcs_by_ends[arc.source, arc.target]
 
     def cost_graph(self, aim: PathAim) -> tuple[CostGraph, list[int]]:
         """Return the graph with the costs of an aim, and what each vertex costs as a start."""

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Container
 from archgen.model.port_media import is_physical
-from archgen.model.process_threads import find_container_threads
+from archgen.model.runtime_facts import count_node_threads, find_container_threads
 from archgen.timing.analysis import Reason
 from archgen.timing.figures.tick_unit import choose_tick_unit
 from archgen.timing.system import message_sizes
@@ -91,8 +91,7 @@ def _build_executors(architecture: Architecture) -> Iterator[Executor]:
         yield Executor(executor_id, threads, _find_container_host(architecture, container), container.scheduling)
     for node in architecture.nodes.values():
         if not node.container:
-            # What `rclcpp::spin(node)` is: one thread.
-            yield Executor(executor_key(node), node.threads or 1, node.host, node.scheduling)
+            yield Executor(executor_key(node), count_node_threads(node), node.host, node.scheduling)
 
 
 def _find_container_host(architecture: Architecture, container: Container) -> str | None:

@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-from archgen.timing.system.timing_system import Activity, Arc, TimingSystem
+from archgen.timing.system.timing_system import Activity, Arc, TimingSystem, name_queue
 
 
 class ThreadPool(NamedTuple):
@@ -57,7 +57,7 @@ def works_in_order(system: TimingSystem, activity: Activity) -> bool:
     if activity.executor not in system.executors or activity.behaviour == "periodic":
         return True
     # Whether there are several is all that is asked, and this is asked often.
-    entities = ((arc.role, arc.input, arc.topic) for arc in _list_waiting_arcs(system, activity))
+    entities = ((arc.role, arc.input, name_queue(activity, arc)) for arc in _list_waiting_arcs(system, activity))
     first_entity = next(entities, None)
     return all(entity == first_entity for entity in entities)
 
@@ -66,7 +66,7 @@ def count_entities(system: TimingSystem, activity: Activity) -> int:
     """Return how many callbacks of an activity wait for their turn: its clock, or each subscription and service."""
     if activity.behaviour == "periodic":
         return 1
-    return len({(arc.role, arc.input, arc.topic) for arc in _list_waiting_arcs(system, activity)})
+    return len({(arc.role, arc.input, name_queue(activity, arc)) for arc in _list_waiting_arcs(system, activity)})
 
 
 def _list_waiting_arcs(system: TimingSystem, activity: Activity) -> Iterator[Arc]:

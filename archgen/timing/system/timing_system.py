@@ -104,6 +104,8 @@ class Activity:
     """Activities of one group exclude one another; None is reentrant: any number of its own callbacks run at once."""
     storing: Mapping[str, StoringCallback] = field(default_factory=dict)
     """By input key: the callbacks of inputs that are only stored. They wait for their turn in the executor."""
+    separate_memories: frozenset[str] = frozenset()
+    """Keys of the inputs that keep the newest message of each source, and not only the last one of each topic."""
     uses: Mapping[str, ResourceUse] = field(default_factory=dict)
     """By resource: the time of each activation beside `wcet`, which is processor time alone."""
     freshness: Mapping[str, int] = field(default_factory=dict)
@@ -195,6 +197,42 @@ def group_arcs(pairs: Iterable[tuple[str, Arc]]) -> dict[str, tuple[Arc, ...]]:
     for name, arc in pairs:
         arcs_by_name[name].append(arc)
     return {name: tuple(arc_list) for name, arc_list in arcs_by_name.items()}
+
+
+def name_queue(reader: Activity, arc: Arc) -> str:
+    """Return a name that the arcs to an input share where one subscription gets what comes by them."""
+    return f"{arc.topic} from {arc.source}" if arc.input in reader.separate_memories else arc.topic
+
+
+def list_memory_rivals(system: TimingSystem, arc: Arc) -> tuple[Arc, ...]:
+    """Return the arcs of other sources whose messages take the place of an arc's: they come to one memory of its reader."""
+    reader = system.activities[arc.target]
+    if arc.role != "data" or arc.input in reader.separate_memories:
+        return ()
+    return tuple(
+        other
+        for other in system.arcs_into.get(arc.target, ())
+        if other is not arc
+        and (other.role, other.input, other.topic) == ("data", arc.input, arc.topic)
+        # What was sent once, at the start, takes the place of nothing later.
+        and system.activities[other.source].behaviour != "once"
+    )
+
+
+def is_taken_answer(arc: Arc) -> bool:
+    """Whether an arc brings answers to a callback that takes them, which the load of processors counts by itself."""
+    return arc.role == "data" and arc.flow != "topic"
+
+
+def find_request(system: TimingSystem, answer: Arc) -> Arc:
+    """Return the arc of the calls that an arc answers."""
+    # What takes an answer is called after its client, with a blank behind it.
+    client = answer.target.partition(" ")[0]
+    return next(
+        each
+        for each in system.arcs_into[answer.source]
+        if (each.role, each.source, each.topic) == ("request", client, answer.topic)
+    )
 
 
 def is_selective_arc(system: TimingSystem, arc: Arc) -> bool:
