@@ -10,6 +10,7 @@ from archgen.simulation.simulation_plan import (
     INACTIVE,
     MAX_UNIT_NS,
     ONCE,
+    OUTSIDE,
     PERIODIC,
     SLOT_ANY,
     SLOT_SAMPLED,
@@ -176,7 +177,8 @@ class _PlanBuilder:
                 (self.resource_numbers[key], self.ticks_to_units(use.best), self.ticks_to_units(use.worst))
                 for key, use in activity.uses.items()
                 if key in self.resource_numbers
-            ),
+            )
+            + (((OUTSIDE, 0, self.ticks_to_units(activity.wait)),) if activity.wait else ()),
         )
 
     def clock_callback(self, activity: Activity) -> int:

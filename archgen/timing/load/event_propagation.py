@@ -109,7 +109,7 @@ class _Propagation(StepUpdates):
                     CoreResponses({}, {}, waits), self._limits_of(step)
                 ).storing_waits
         for name in sorted(readers.difference(self.resources_of)):
-            if state.system.activities[name].uses:
+            if state.system.activities[name].suspends:
                 own_core = ProcessingResource(name, None, 1, ((name,),))
                 stores = find_waiting_stores(state, own_core, self.waiting_ids, (name,), self.budget_of[name])
                 state.storing_waits[name] = self._limit_response(name, stores[name])

@@ -121,7 +121,7 @@ def _find_order(
     system: TimingSystem, resource: ProcessingResource, members: Sequence[Activity]
 ) -> tuple[SchedulingOrder | None, bool]:
     """Return the order of a queue, and whether it is that of a core."""
-    if any(activity.uses for activity in members):
+    if any(activity.suspends for activity in members):
         return None, False  # who waits for a resource leaves the core to others
     if len(resource.units) == 1:
         pool = find_pool(system, members[0])

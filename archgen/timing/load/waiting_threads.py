@@ -60,8 +60,9 @@ def find_waiting_responses(
         responses[name] = response
         if activity.response is not None:
             # What is declared may hold a wait for the world outside; to others it matters when the work is done.
-            state.work_ends[name] = response
             responses[name] = WorstResponse(activity.response, "declared")
+            is_earlier = response.value is not None and response.value <= activity.response
+            state.work_ends[name] = response if is_earlier else responses[name]
         elif activity.wcet is None:
             responses[name] = WorstResponse(None, "unknown", unite_causes((UnknownCause((name,)), response.cause)))
     return responses
@@ -162,8 +163,9 @@ def _waits_together(state: PropagationState, own_ids: Sequence[str]) -> _Waits |
         return unite_causes(causes)
     known_rivals = {key: each for key, each in rivals.items() if isinstance(each, Rivals)}
     use_times: dict[str, int | UnknownCause] = {
-        name: sum(use.worst + known_rivals[key].blocking for key, use in state.system.activities[name].uses.items())
+        name: sum(use.worst + known_rivals[key].blocking for key, use in activity.uses.items()) + activity.wait
         for name in own_ids
+        if (activity := state.system.activities[name])
     }
     waits = _add_waits(state, use_times)
     return waits if isinstance(waits, UnknownCause) else waits._replace(rivals=tuple(known_rivals.values()))
@@ -245,7 +247,7 @@ def _fills_thread(state: PropagationState, own_ids: Sequence[str]) -> bool:
     if is_reentrant(system, first) or (len(own_ids) > 1 and pool is not None and pool.threads != 1):
         return False
     shares = [
-        work_utilisation((activity.wcet or 0) + sum(use.worst for use in activity.uses.values()), model)
+        work_utilisation((activity.wcet or 0) + sum(use.worst for use in activity.uses.values()) + activity.wait, model)
         for activity in (system.activities[name] for name in own_ids)
         if not isinstance(model := state.event_models[activity.id], UnknownCause)
     ]

@@ -50,7 +50,7 @@ def divide_resource(system: TimingSystem, resource: ProcessingResource) -> Itera
 def part_waiting_units(system: TimingSystem, resource: ProcessingResource) -> Iterable[ProcessingResource]:
     """Yield a part for each thread that waits for resources, and one for all others; the resource where none waits."""
     is_waiting = any(
-        system.activities[name].uses for unit in (*resource.units, *resource.foreign_units) for name in unit
+        system.activities[name].suspends for unit in (*resource.units, *resource.foreign_units) for name in unit
     )
     waiting_threads = tuple(_find_waiting_threads(system, resource)) if is_waiting else ()
     if not waiting_threads or resource.missing:
@@ -86,13 +86,13 @@ def _find_waiting_threads(system: TimingSystem, resource: ProcessingResource) ->
     all_members = [system.activities[name] for unit in (*resource.units, *resource.foreign_units) for name in unit]
     crowded_pools = find_crowded_pools(system, all_members)
     waiting_pools = {
-        crowded_pools[activity.id] for activity in all_members if activity.uses and activity.id in crowded_pools
+        crowded_pools[activity.id] for activity in all_members if activity.suspends and activity.id in crowded_pools
     }
     crowds: dict[ThreadPool, list[ThreadUnit]] = {}
     for unit in resource.units:
         pool = crowded_pools.get(unit[0])
         if pool is not None and pool in waiting_pools:
             crowds.setdefault(pool, []).append(unit)
-        elif any(system.activities[name].uses for name in unit):
+        elif any(system.activities[name].suspends for name in unit):
             yield (unit,)
     yield from (tuple(units) for units in crowds.values())

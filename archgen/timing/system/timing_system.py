@@ -121,6 +121,20 @@ class Activity:
     places: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
 
     @property
+    def wait(self) -> int:
+        """Return how long an activation waits in its callback (for an answer, a device), in ticks: it keeps its thread, and
+        leaves its core. That is what a declared response has beside the times for processor and resources.
+        """
+        if self.response is None or self.wcet is None or self.behaviour == "once":
+            return 0
+        return max(self.response - self.wcet - sum(use.worst for use in self.uses.values()), 0)
+
+    @property
+    def suspends(self) -> bool:
+        """Whether an activation keeps its thread for some time without needing a core."""
+        return bool(self.uses) or (self.response is not None and self.wait > 0)
+
+    @property
     def core(self) -> int | None:
         """The core, where it is pinned to exactly one."""
         return self.cores[0] if len(self.cores) == 1 else None
