@@ -137,6 +137,10 @@ class PlannedExecutor:
     id: str
     threads: int
     order: SchedulingOrder | None
+    is_serial: bool = False
+    """Whether its threads compute one at a time, as those of CPython do."""
+    serves_by_kind: bool = True
+    """Whether a wait set lists timers first, then subscriptions, services and clients."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -35,7 +35,10 @@ class ThreadPlacement:
         if key not in self.executor_numbers:
             self.executor_numbers[key] = len(self.executors)
             threads, order = self._threads_and_order(key, activity)
-            self.executors.append(PlannedExecutor(key, threads, order))
+            known = self.system.executors.get(key)
+            is_serial = known is not None and known.is_serial
+            by_kind = known is None or known.library.serves_by_kind
+            self.executors.append(PlannedExecutor(key, threads, order, is_serial, by_kind))
         return self.executor_numbers[key]
 
     def processor_of(self, activity: Activity) -> tuple[int, tuple[int, ...]]:
@@ -85,7 +88,9 @@ class ThreadPlacement:
         """
         key = _executor_key(self.system, activity)
         threads, _ = self._threads_and_order(key, activity)
-        candidates = self.members[key] if threads == 1 else [activity]
+        known = self.system.executors.get(key)
+        is_one = threads == 1 or (known is not None and known.is_serial)
+        candidates = self.members[key] if is_one else [activity]
         pins = (
             tuple(core for core in member.cores if member.host is not None and core < self._core_count(member.host))
             for member in candidates

@@ -21,7 +21,7 @@ from archgen.timing.load.queue_orders import (
     bound_round,
 )
 from archgen.timing.system.core_placement import ProcessingResource
-from archgen.timing.system.thread_pools import count_entities, find_crowded_pools, find_pool, is_reentrant
+from archgen.timing.system.thread_pools import count_entities, find_crowded_pools, is_reentrant
 from archgen.timing.system.timing_system import Activity, TimingSystem, samples_inputs
 
 QueueOrder = Literal["non_preemptive", "fifo", "ros2_executor", "edf"]
@@ -124,10 +124,8 @@ def _find_order(
     if any(activity.suspends for activity in members):
         return None, False  # who waits for a resource leaves the core to others
     if len(resource.units) == 1:
-        pool = find_pool(system, members[0])
         executor = system.executors.get(members[0].executor)
-        is_thread = pool is not None and pool.threads == 1
-        return (executor.order if executor is not None and is_thread else None), False
+        return (executor.order if executor is not None and executor.threads == 1 else None), False
     is_plain = all(len(unit) == 1 for unit in resource.units) and not any(is_reentrant(system, a) for a in members)
     if not is_plain or find_crowded_pools(system, members) or resource.host is None or len(resource.core_set) != 1:
         return None, False

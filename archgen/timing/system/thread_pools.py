@@ -20,7 +20,7 @@ def find_pool(system: TimingSystem, activity: Activity) -> ThreadPool | None:
     """Return the threads that may run an activity, None where it has one of its own."""
     executor = system.executors.get(activity.executor)
     if executor is not None:
-        return ThreadPool(executor.id, executor.threads)
+        return ThreadPool(executor.id, executor.parallel_threads)
     # A system made without executors: what is in no container has a thread of its own.
     if activity.container is None:
         return None
@@ -34,7 +34,7 @@ def name_lane(system: TimingSystem, activity: Activity) -> str:
     if executor is None:
         pool = find_pool(system, activity)
         return pool.key if pool is not None and pool.threads == 1 else f"activity {activity.id}"
-    if executor.threads == 1:
+    if executor.parallel_threads == 1:
         return executor.id
     if activity.callback_group is None:
         return f"activity {activity.id}"
@@ -45,6 +45,17 @@ def is_reentrant(system: TimingSystem, activity: Activity) -> bool:
     """Whether several activations of an activity may run at once."""
     executor = system.executors.get(activity.executor)
     return executor is not None and executor.threads != 1 and activity.callback_group is None
+
+
+def fills_cores(system: TimingSystem, activity: Activity) -> bool:
+    """Whether several activations of an activity may compute at once."""
+    return is_reentrant(system, activity) and not system.executors[activity.executor].is_serial
+
+
+def find_serial_process(system: TimingSystem, name: str) -> str | None:
+    """Return the process of an activity where its threads compute one at a time, and wait beside one another."""
+    executor = system.executors.get(system.activities[name].executor)
+    return executor.id if executor is not None and executor.is_serial and executor.suspends else None
 
 
 def works_in_order(system: TimingSystem, activity: Activity) -> bool:
@@ -89,7 +100,7 @@ def find_crowded_pools(system: TimingSystem, activities: Iterable[Activity]) -> 
     members_by_pool: dict[ThreadPool, list[Activity]] = defaultdict(list)
     for activity in activities:
         executor = system.executors.get(activity.executor)
-        if executor is not None and executor.threads == 1:
+        if executor is not None and executor.parallel_threads == 1:
             continue  # as nearly everywhere
         pool = find_pool(system, activity)
         if pool is not None and pool.threads is not None and pool.threads > 1:
@@ -116,7 +127,7 @@ def find_joint_nodes(system: TimingSystem) -> Mapping[str, tuple[Activity, ...]]
     """Return the nodes outside of containers that implement several components and have one thread, with these."""
     members_by_node: dict[str, list[Activity]] = defaultdict(list)
     for activity in system.activities.values():
-        pool = find_pool(system, activity)
-        if activity.container is None and pool is not None and pool.threads == 1:
+        executor = system.executors.get(activity.executor)
+        if activity.container is None and executor is not None and executor.threads == 1:
             members_by_node[activity.node].append(activity)
     return {node: tuple(members) for node, members in members_by_node.items() if len(members) > 1}

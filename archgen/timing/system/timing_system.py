@@ -15,6 +15,7 @@ from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
 from archgen.model.declared_timing import ActivityBehaviour, SchedulingOrder
 from archgen.model.node import FlowKind
+from archgen.model.runtime_facts import RCLCPP, ClientLibrary
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +47,19 @@ class Executor:
     threads: int | None
     host: str | None
     order: SchedulingOrder | None = None
+    library: ClientLibrary = RCLCPP
+    suspends: bool = False
+    """Whether something in it keeps its thread for some time without needing a core."""
+
+    @property
+    def is_serial(self) -> bool:
+        """Whether several threads compute one at a time."""
+        return self.threads != 1 and not self.library.computes_at_once
+
+    @property
+    def parallel_threads(self) -> int | None:
+        """Return how many threads may be under way at once: of those that compute one at a time and never wait, one."""
+        return 1 if self.is_serial and not self.suspends else self.threads
 
 
 @dataclass(frozen=True, slots=True)
