@@ -14,7 +14,7 @@ from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
 from archgen.timing.figures.value_arithmetic import (
     is_boundless,
     is_known_bound,
-    list_causes,
+    list_assumptions,
     sum_bounds,
 )
 from archgen.timing.system.timing_system import Arc
@@ -104,7 +104,8 @@ def _bound_path_set(
     if other_costs.complete:
         return value
     missing = tuple(dict.fromkeys((*value.missing, *other_costs.missing)))
-    assumptions = tuple(dict.fromkeys((*value.assumptions, *list_causes(other_costs))))
+    own = {*value.assumptions, *list_assumptions(other_costs)}
+    assumptions = (*value.assumptions, *(text for text in other_costs.assumptions if text not in own))
     return replace(value, complete=False, missing=missing, assumptions=assumptions, side="at least")
 
 

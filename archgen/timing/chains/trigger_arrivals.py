@@ -10,13 +10,7 @@ from math import ceil
 from archgen.frozen import dataclass
 from archgen.timing.analysis import Analysis
 from archgen.timing.figures.figure_wording import join_first_names
-from archgen.timing.figures.timing_values import (
-    UNKNOWN_VALUE,
-    ZERO_VALUE,
-    TimingValue,
-    UnknownCause,
-    unite_causes,
-)
+from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, TimingValue, UnknownCause
 from archgen.timing.figures.value_arithmetic import (
     NO_USE_NOTE,
     is_known_bound,
@@ -27,7 +21,7 @@ from archgen.timing.figures.value_arithmetic import (
     unknown_value,
     value_of_cause,
 )
-from archgen.timing.load.event_models import arriving_model
+from archgen.timing.load.event_models import input_model
 from archgen.timing.load.event_streams import max_arrivals
 from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.system.timing_system import Activity, Arc, best_response, list_memory_rivals
@@ -137,7 +131,7 @@ class TriggerArrivals:
         return TimingValue(None, assumptions=("diverged", text))
 
     def _count_waiting(
-        self, state: PropagationState, reader: Activity, arcs: Iterable[Arc]
+        self, state: PropagationState, reader: Activity, arcs: tuple[Arc, ...]
     ) -> int | UnknownCause | None:
         """Return how many messages may wait in a reader's queue; None where no bound says how long they do."""
         response = self.analysis.responses[reader.id].worst
@@ -145,14 +139,8 @@ class TriggerArrivals:
             return None
         # A job has begun R - B after it was activated; what comes at that very moment may come before.
         wait = ceil(response.value / state.system.tick) - best_response(reader) + reader.jitter
-        counts = [
-            model
-            if isinstance(model := arriving_model(state, arc), UnknownCause)
-            else max_arrivals(model, max(wait, 0) + 1)
-            for arc in arcs
-        ]
-        causes = [each for each in counts if isinstance(each, UnknownCause)]
-        return unite_causes(causes) if causes else sum(each for each in counts if not isinstance(each, UnknownCause))
+        model = input_model(state, reader, arcs[0].input, arcs)
+        return model if isinstance(model, UnknownCause) else max_arrivals(model, max(wait, 0) + 1)
 
     def lacks_sure_use(self, activity: Activity, arc: Arc) -> bool:
         """Whether each message of an arc may be among those that are dropped and forgotten: others may come before it."""

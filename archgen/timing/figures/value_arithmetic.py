@@ -140,11 +140,6 @@ def list_assumptions(value: TimingValue) -> tuple[str, ...]:
     return tuple(text for text in value.assumptions if text.split(":")[0].strip() not in _CAUSE_WORDS)
 
 
-def list_causes(value: TimingValue) -> tuple[str, ...]:
-    """Return the words that say why there is no figure."""
-    return tuple(text for text in value.assumptions if text not in list_assumptions(value))
-
-
 def is_unfound(value: TimingValue) -> bool:
     """Whether the search found no bound for a figure, or for a part of it; `missing` then names nobody for that part."""
     return not is_known_bound(value) and "diverged" in value.assumptions

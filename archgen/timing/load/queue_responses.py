@@ -136,12 +136,14 @@ def _find_order(
 
 
 def _build_task(system: TimingSystem, activity: Activity, priorities: Mapping[str, int | None]) -> QueuedTask:
+    executor = system.executors.get(activity.executor)
+    by_kind = executor is None or executor.library.serves_by_kind
     return QueuedTask(
         activity.id,
         activity.wcet or 0,
         (),
         priorities.get(activity.id),
         activity.deadline if activity.deadline is not None else activity.period,
-        _RANKS.get(activity.behaviour or "", 2),
+        _RANKS.get(activity.behaviour or "", 2) if by_kind else 0,
         max(count_entities(system, activity), 1),
     )
