@@ -18,7 +18,8 @@ from archgen.model.ros_distro import is_ros_1
 
 MANY_THREADED = "component_container_mt"
 """The program of ROS 2 that takes as many threads as it is told, or else as there are cores."""
-_MANY_THREADED_PROGRAMS = frozenset({MANY_THREADED, "component_container_isolated"})
+_ISOLATED = "component_container_isolated"
+"""The program of ROS 2 that has a thread for each of its nodes."""
 TRANSFORM_MESSAGE = "tf2_msgs/msg/TFMessage"
 
 
@@ -48,10 +49,16 @@ def find_container_threads(architecture: Architecture, container: Container) -> 
     Where nothing is written, ROS 2 starts `component_container`, which has one; a nodelet manager of ROS 1 has one for
     each core, and other middlewares have one for each component.
     """
-    if container.threads is not None:
+    if container.threads is not None and container.executable != _ISOLATED:
         return container.threads
-    has_many = container.executable in _MANY_THREADED_PROGRAMS or is_ros_1(architecture.distro)
+    has_many = container.executable in {MANY_THREADED, _ISOLATED} or is_ros_1(architecture.distro)
     return None if has_many or architecture.project.middleware != ROS else 1
+
+
+def is_isolated(architecture: Architecture, node: Node) -> bool:
+    """Whether one thread works for all of a node, whatever is written of its callbacks: its container has one for each."""
+    container = architecture.containers.get(node.container or "")
+    return container is not None and container.executable == _ISOLATED
 
 
 def count_node_threads(node: Node) -> int:

@@ -47,7 +47,6 @@ def random_crowded_system(seed: int) -> TimingSystem:
         cores,
         resources=resources,
         executors=executors,
-        threads={"box": threads},
         bandwidths={"l": None},
     )
 
@@ -106,7 +105,6 @@ class _Maker:
             self.cores,
             resources=self.resources,
             executors=self.executors,
-            threads=self.threads,
             bandwidths={"l": None},
         )
 

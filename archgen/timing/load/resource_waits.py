@@ -89,8 +89,8 @@ def _find_order(system: TimingSystem, resource_id: str) -> SchedulingOrder | Non
 
 
 def thread_key(activity: Activity) -> str:
-    """Return what runs an activity: its executor, its container, or itself."""
-    return activity.executor or activity.container or activity.id
+    """Return what runs an activity: its executor, or itself."""
+    return activity.executor or activity.id
 
 
 def find_turn_times(system: TimingSystem, name: str) -> int | None:
@@ -132,10 +132,8 @@ def bound_in_turn(system: TimingSystem, name: str, resource_id: str, users: Iter
 
 
 def _count_threads(system: TimingSystem, key: str) -> int | None:
-    """Return the threads of an executor or container; None where there is one for each member."""
-    if key in system.executors:
-        return system.executors[key].threads
-    return system.threads.get(key) if key in system.threads else 1
+    """Return the threads of an executor; None where there is one for each member."""
+    return system.executors[key].threads if key in system.executors else 1
 
 
 def _bound_by_arrivals(

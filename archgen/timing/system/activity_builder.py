@@ -12,7 +12,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.declared_timing import ActivityBehaviour, InputTiming, MeasuredTimes, Timing
 from archgen.model.node import Endpoint, Node
 from archgen.model.port_media import is_physical
-from archgen.model.runtime_facts import keeps_each_source
+from archgen.model.runtime_facts import is_isolated, keeps_each_source
 from archgen.timing.figures.tick_unit import TickUnit, written_period
 from archgen.timing.system.built_parts import ActivitySource, BuiltParts
 from archgen.timing.system.timing_system import Activity, ResourceUse, StoringCallback
@@ -95,8 +95,9 @@ def _list_sources(
     architecture: Architecture, node: Node, component_id: str | None, endpoints: Sequence[Endpoint]
 ) -> ActivitySource:
     topics = architecture.topics
-    shared_flags = tuple([topic.shared if (topic := topics.get(each.label)) else False for each in endpoints])
-    return ActivitySource(node, architecture.components.get(component_id or ""), endpoints, shared_flags)
+    flags = [topic.shared if (topic := topics.get(each.label)) else False for each in endpoints]
+    component = architecture.components.get(component_id or "")
+    return ActivitySource(node, component, endpoints, (*flags, is_isolated(architecture, node)))
 
 
 def _outside_inputs(architecture: Architecture) -> Mapping[str, list[str]]:
@@ -187,6 +188,8 @@ def executor_key(node: Node) -> str:
 
 def _find_callback_group(part: _NodePart) -> str | None:
     """Return the mutually exclusive group of an activity, None where its callbacks run at once."""
+    if is_isolated(part.architecture, part.node):
+        return part.node.id
     if part.node.reentrant:
         return None
     groups = part.node.callback_groups

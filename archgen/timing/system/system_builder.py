@@ -51,7 +51,6 @@ def build_system(
         external_inputs=dict(_external_inputs(architecture, activities_by_id)),
         optional_inputs=frozenset(port.id for port in architecture.inputs.values() if port.optional),
         cores={host.id: host.cores for host in architecture.hosts.values()},
-        threads={each.id: find_container_threads(architecture, each) for each in architecture.containers.values()},
         executors={executor.id: executor for executor in _build_executors(architecture, activities_by_id)},
         resources={
             resource.id: SharedResource(resource.id, resource.host, resource.scheduling)

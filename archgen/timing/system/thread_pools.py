@@ -19,12 +19,7 @@ class ThreadPool(NamedTuple):
 def find_pool(system: TimingSystem, activity: Activity) -> ThreadPool | None:
     """Return the threads that may run an activity, None where it has one of its own."""
     executor = system.executors.get(activity.executor)
-    if executor is not None:
-        return ThreadPool(executor.id, executor.parallel_threads)
-    # A system made without executors: what is in no container has a thread of its own.
-    if activity.container is None:
-        return None
-    return ThreadPool(f"container {activity.container}", system.threads.get(activity.container))
+    return None if executor is None else ThreadPool(executor.id, executor.parallel_threads)
 
 
 def name_lane(system: TimingSystem, activity: Activity) -> str:
@@ -32,8 +27,7 @@ def name_lane(system: TimingSystem, activity: Activity) -> str:
     # Keys are prefixed, since an activity, a group and a container may have the same id.
     executor = system.executors.get(activity.executor)
     if executor is None:
-        pool = find_pool(system, activity)
-        return pool.key if pool is not None and pool.threads == 1 else f"activity {activity.id}"
+        return f"activity {activity.id}"
     if executor.parallel_threads == 1:
         return executor.id
     if activity.callback_group is None:

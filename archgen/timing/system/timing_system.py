@@ -199,8 +199,6 @@ class TimingSystem:
     """Input keys that need not be connected: nobody waits for one that is not."""
     cores: Mapping[str, int | None] = field(default_factory=dict)
     """Cores of each host, None where not written."""
-    threads: Mapping[str, int | None] = field(default_factory=dict)
-    """Threads of each container, None where not written."""
     executors: Mapping[str, Executor] = field(default_factory=dict)
     resources: Mapping[str, SharedResource] = field(default_factory=dict)
     host_orders: Mapping[str, SchedulingOrder] = field(default_factory=dict)
