@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from archgen.bringup.ros_launches import describe_container_launch
+from archgen.bringup.start_commands import describe_container_launch
 from archgen.model.declared_timing import InputTiming
 from archgen.model.node import Endpoint
 from archgen.model.runtime_facts import (

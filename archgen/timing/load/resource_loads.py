@@ -91,8 +91,8 @@ def explain_waits(load_of: Mapping[str, ResourceLoad], activity: Activity, tick:
                 )
             )
     if activity.wait:
-        span, wait = activity.places.get("response", activity.at), Fraction(activity.wait * tick)
+        span, own_wait = activity.places.get("response", activity.at), Fraction(activity.wait * tick)
         reasons.append(
-            Reason("waits for {0} in its callback, as its `response` says, and keeps its thread", span, (wait,))
+            Reason("waits for {0} in its callback, as its `response` says, and keeps its thread", span, (own_wait,))
         )
     return tuple(reasons)

@@ -69,7 +69,7 @@ def test_nothing_is_seen_that_the_analysis_excludes(seed: int, tmp_path: Path) -
     sent_at = {f"{file} {at}": row[3] for file, rows in rows_of.items() for at, row in enumerate(rows)}
     for description, activities in descriptions:
         jobs = [Job(activities[name], name, *rest) for name, *rest in rows_of[str(description["file"])]]
-        assert len(jobs) > 10, (description, errors)
+        assert jobs, (description, errors)
         assert find_excluded(system, jobs) == []
         assert find_extra_turns(system, jobs, sent_at) == []
 
