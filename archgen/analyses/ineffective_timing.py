@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.common_wording import join_words
@@ -134,15 +134,18 @@ def _find_idle_inputs(architecture: Architecture, analysis: Analysis) -> Iterato
     """Yield what is said of storing at inputs that fire, whose messages are worked on, and of services, which answer."""
     for activity in analysis.system.activities.values():
         timing = architecture.nodes[activity.node].timing.get(activity.component or "")
-        called_inputs = {arc.input for arc in analysis.system.arcs_into.get(activity.id, ()) if arc.role == "answer"}
+        arcs = analysis.system.arcs_into.get(activity.id, ())
+        called_inputs = {arc.input for arc in arcs if arc.role == "answer"}
+        source_counts = Counter((arc.input, arc.topic) for arc in arcs if arc.role == "data")
         for port, input_timing in timing.inputs.items() if timing else ():
             is_timed = input_timing.wcet is not None or input_timing.bcet is not None
             if port in activity.triggers and (is_timed or input_timing.stored_at_once):
                 idle_key = "the time" if is_timed else "`stored`"
                 reason = f"it fires `{activity.id}`"
-            elif port in called_inputs and (input_timing.memory or input_timing.stored_at_once):
-                idle_key = "`memory`" if input_timing.memory else "`stored`"
-                reason = "it is a service or an action, of which no message is stored"
+            elif port in called_inputs and input_timing.stored_at_once:
+                idle_key, reason = "`stored`", "it is a service or an action, of which no message is stored"
+            elif input_timing.memory and all(count == 1 for (key, _), count in source_counts.items() if key == port):
+                idle_key, reason = "`memory`", "no topic of it has several sources"
             else:
                 continue
             message = f"{idle_key} below `inputs` of `{port}` has no effect: {reason}"

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 import random
+from collections.abc import Mapping
 
 import pytest
 
+from archgen.timing.chains.chain_advice import advise_on_chain
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.run_analysis import analyse_architecture
 from tests.property_sizes import mark_further_samples
@@ -55,6 +57,14 @@ def test_what_is_stored_through_one_of_two_publishers_has_no_sure_use() -> None:
         "not proven",
         ("no sure use: ctl keeps the last message of /obstacles: one of s2 may take the place of that of s1",),
     )
+
+
+def test_what_helps_is_another_topic_or_memory() -> None:
+    model = architecture(_text())
+    analysis = analyse_architecture(model)
+    advice = advise_on_chain(analysis, bound_all_chains(analysis, model)["c"])
+    assert advice is not None
+    assert advice.first_step.startswith("Let each source send on a topic of its own, or write `memory: each_source`")
 
 
 def test_two_topics_of_one_input_have_two_memories() -> None:
@@ -116,15 +126,14 @@ def _random_text(seed: int) -> str:
             "inputs": {"i": [f"{each}.out" for each in sources], "j": [f"{each}.out" for each in others]},
             "outputs": {"out": "T"},
         }
-        trigger: dict[str, object] = dice.choice(
-            (
-                {"period": "30 ms"},
-                {"trigger": ["i"]},
-                {"trigger": ["i"]},
-                {"trigger": "any"},
-                {"trigger": {"all": ["i", "j"]}},
-            )
+        kinds: tuple[dict[str, object], ...] = (
+            {"period": "30 ms"},
+            {"trigger": ["i"]},
+            {"trigger": ["i"]},
+            {"trigger": "any"},
+            {"trigger": {"all": ["i", "j"]}},
         )
+        trigger = dice.choice(kinds)
         if "trigger" in trigger and dice.random() < 0.2:
             trigger = {**trigger, "throttle": "12 ms"}
         if dice.random() < 0.2:
@@ -158,6 +167,6 @@ def _random_text(seed: int) -> str:
     )
 
 
-def _time(dice: random.Random, timing: dict[str, object]) -> dict[str, object]:
+def _time(dice: random.Random, timing: Mapping[str, object]) -> dict[str, object]:
     longest = dice.choice((100, 500, 1000, 2000, 4000))
     return {**timing, "wcet": f"{longest} us", "bcet": f"{dice.randint(0, longest)} us"}

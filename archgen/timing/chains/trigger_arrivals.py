@@ -13,6 +13,7 @@ from archgen.timing.figures.figure_wording import join_first_names
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, TimingValue, UnknownCause
 from archgen.timing.figures.value_arithmetic import (
     NO_USE_NOTE,
+    REPLACED_WORDS,
     is_known_bound,
     multiply_value,
     name_missing_element,
@@ -127,7 +128,7 @@ class TriggerArrivals:
         else:
             reason = f"keeps the last message of {arc.topic}"
         others = join_first_names(tuple(dict.fromkeys(each.source for each in rivals)))
-        text = f"{NO_USE_NOTE}: {reader.id} {reason}: one of {others} may take the place of that of {arc.source}"
+        text = f"{NO_USE_NOTE}: {reader.id} {reason}: one of {others} {REPLACED_WORDS} that of {arc.source}"
         return TimingValue(None, assumptions=("diverged", text))
 
     def _count_waiting(

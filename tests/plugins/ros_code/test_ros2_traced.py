@@ -20,6 +20,7 @@ from archgen.timing.system.timing_system import TimingSystem
 from archgen.views.generation.generation_context import GenerationContext
 from tests.ros_environment import NEWEST_PYTHON, make_ros_python, ros_environment
 from tests.running import archgen_here
+from tests.timing.random_systems import architecture
 
 SECONDS = 6
 TRACER = Path(__file__).with_name("traced_node.py")
@@ -46,13 +47,13 @@ def test_nothing_is_seen_that_the_analysis_excludes(seed: int, tmp_path: Path) -
     if sys.version_info[:2] > NEWEST_PYTHON or sys.platform != "linux":
         pytest.skip(f"there is no ROS 2 for {sys.platform} and Python {sys.version.split()[0]}")
     (tmp_path / "archgen.yaml").write_text(json.dumps(_random_project(seed)))
-    architecture = check_project(tmp_path).architecture
-    system, _ = build_system(architecture)
+    project = check_project(tmp_path).architecture
+    system, _ = build_system(project)
     archgen_here("generate", "ros2_python", "-o", tmp_path / "w", "--keep-going", cwd=tmp_path)
     dice = random.Random(seed)  # noqa: S311 - a test's dice
     descriptions = [
         _describe_program(system, program, tmp_path, dice)
-        for program in make_view(GenerationContext(architecture)).data["programs"]
+        for program in make_view(GenerationContext(project)).data["programs"]
     ]
     environment = ros_environment(seed, tmp_path) | {"PYTHONPATH": str(tmp_path / "w" / "src" / "rt_g")}
     processes = [
@@ -138,19 +139,13 @@ def test_what_is_excluded_is_found() -> None:
         }
     }
     components = {name: {"outputs": {"out": "std_msgs/msg/String"}} for name in "ab"}
-    system, _ = build_system(_link({"groups": {"g": {"components": components}}, **text}))
+    system, _ = build_system(architecture(json.dumps({"groups": {"g": {"components": components}}, **text})))
     beside = [Job("n.a", "a", 1, 0, 2, 1, ""), Job("n.b", "b", 2, 1, 3, 1, "")]
     assert find_excluded(system, beside) == []
     assert len(find_excluded(system, [job._replace(computed=2) for job in beside])) == 1  # 4 s of computing in 3 s
     assert len(find_excluded(system, [beside[0], beside[1]._replace(activity="n.a")])) == 1  # one group
     third = [*beside, Job("n.b", "b", 3, 1.5, 3, 0, "")]
     assert len(find_excluded(system, third)) == 3  # three threads, three at once, one group
-
-
-def _link(project: Mapping[str, object]) -> object:
-    from tests.timing.random_systems import architecture
-
-    return architecture(json.dumps(project))
 
 
 def _random_project(seed: int) -> dict[str, object]:
@@ -193,7 +188,7 @@ def _describe_program(
     system: TimingSystem, program: Mapping[str, object], folder: Path, dice: random.Random
 ) -> tuple[dict[str, object], dict[str, str]]:
     """Say what the callbacks of a program do, and to which activity each belongs."""
-    (node,) = program["nodes"]  # type: ignore[misc]
+    node: Mapping[str, str] = program["nodes"][0]  # type: ignore[index]
     activity_of = {each.component: each for each in system.activities.values() if each.node == node["id"]}
     callbacks: dict[str, tuple[float, list[str]]] = {}
     activities: dict[str, str] = {}
