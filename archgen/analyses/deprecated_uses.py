@@ -9,10 +9,10 @@ from typing import NamedTuple
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.model.architecture import Architecture
+from archgen.model.component_nesting import list_described_outputs, list_relied_outputs
 from archgen.model.deprecation_lookup import find_deprecation, find_replacement
 from archgen.model.generic_names import read_generic_name
 from archgen.model.promise import Deprecation
-from archgen.model.relied_outputs import list_described_outputs, list_relied_outputs
 
 _KIND_WORDS = {"output": "output", "type": "type", "component_type": "component type"}
 _MAX_LISTED = 6

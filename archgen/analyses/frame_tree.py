@@ -11,8 +11,8 @@ from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import find_closest
 from archgen.model.architecture import Architecture
+from archgen.model.component_nesting import list_described_outputs
 from archgen.model.coordinate_frames import Frame, walk_ancestors
-from archgen.model.relied_outputs import list_described_outputs
 
 _MAX_LISTED = 6
 """So many frames of a circle are named, and so many places of it shown."""

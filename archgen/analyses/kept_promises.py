@@ -10,10 +10,10 @@ from typing import NamedTuple
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.model.architecture import Architecture
+from archgen.model.component_nesting import list_described_outputs
 from archgen.model.node import Endpoint
 from archgen.model.promise import Promise
 from archgen.model.quantity import Quantity
-from archgen.model.relied_outputs import list_described_outputs
 from archgen.model.ros_distro import is_ros_1
 from archgen.timing.analysis import Analysis, EventPace
 from archgen.timing.chains.limit_states import LimitState, judge_lower_limit, judge_upper_limit

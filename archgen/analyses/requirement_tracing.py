@@ -13,8 +13,7 @@ from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean, find_closest
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
-from archgen.model.requirement import Requirement
-from archgen.model.requirement_tree import add_wholes, index_parts
+from archgen.model.requirement import Requirement, add_wholes, index_parts
 
 
 def unknown_requirement(architecture: Architecture) -> Iterator[Diagnostic]:

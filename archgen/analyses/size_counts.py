@@ -13,7 +13,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 from archgen.model.element_annotations import PropertyDeclaration
 from archgen.model.port_media import uses_ros
-from archgen.model.requirement_tree import add_wholes
+from archgen.model.requirement import add_wholes
 
 
 @dataclass(frozen=True, slots=True)

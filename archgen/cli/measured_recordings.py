@@ -14,8 +14,8 @@ from archgen.diagnostics.safe_text import format_json, make_visible
 from archgen.diagnostics.text_columns import find_width, wrap_line
 
 if TYPE_CHECKING:
-    from archgen.edit.measured_figures import MeasuredSlice
-    from archgen.importers.recorded_files import ReadRecordings
+    from archgen.edit.measured_slice import MeasuredSlice
+    from archgen.importers.foreign_import import ReadRecordings
     from archgen.model.architecture import Architecture
     from archgen.pipeline import CheckedProject
     from archgen.timing.analysis import Analysis, ChainResult
@@ -82,7 +82,7 @@ def _compare_recordings(
 def _read_recordings(
     paths: Sequence[Path], architecture: Architecture, analysis: Analysis, chains: Mapping[str, ChainResult]
 ) -> ReadRecordings:
-    from archgen.importers.recorded_files import RecordingRefusedError
+    from archgen.importers.foreign_import import RecordingRefusedError
     from archgen.installed_plugins import load_reader
 
     read_measured = load_reader("recordings")
@@ -132,7 +132,7 @@ def _refuse_errors(checked_project: CheckedProject, *, has_errors: bool) -> None
 
 
 def _make_slice(checked_project: CheckedProject, recordings: ReadRecordings, slice_path: Path) -> MeasuredSlice:
-    from archgen.edit.measured_figures import make_measured_slice
+    from archgen.edit.measured_slice import make_measured_slice
 
     measured_slice = make_measured_slice(
         checked_project, recordings.observations, _name_slice(checked_project.root, slice_path)

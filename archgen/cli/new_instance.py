@@ -36,7 +36,7 @@ def add_type(  # noqa: PLR0913, PLR0917 - one for each option
 ) -> None:
     """Add a component type, in the file that holds most of them."""
     from archgen.edit import element_place
-    from archgen.edit.new_element import NewElement
+    from archgen.edit.edit_proof import NewElement
     from archgen.model.path_resolver import title_from_id
 
     checked_project = command_support.check_or_exit(project)
@@ -92,7 +92,7 @@ def add_instance(  # noqa: PLR0913, PLR0917 - one for each option
     """Add an instance of a component type, with its inputs to be filled. ID is GROUP.ID; TYPE is as in `filter<Pose>`."""
     from archgen.diagnostics.common_wording import join_words
     from archgen.edit import element_place
-    from archgen.edit.new_element import NewElement
+    from archgen.edit.edit_proof import NewElement
     from archgen.model.path_resolver import title_from_id
 
     checked_project = command_support.check_or_exit(project)
@@ -166,7 +166,7 @@ def add_variant(  # noqa: PLR0913 - one for each option
 ) -> None:
     """Add a variant, in the file that holds most of them. What it changes is written below `changes`."""
     from archgen.edit import element_place
-    from archgen.edit.new_element import NewElement
+    from archgen.edit.edit_proof import NewElement
     from archgen.model.path_resolver import title_from_id
     from archgen.model.variant import BASE_NAME
 

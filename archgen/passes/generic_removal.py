@@ -9,7 +9,7 @@ from archgen.compose.type_expressions import TypeExpression, parse_type_expressi
 from archgen.compose.type_table import OPERATION_PARTS, bind_type_body, list_generic_names
 from archgen.diagnostics.element_origins import TreePath
 from archgen.link import mapping_values
-from archgen.link.data_types.generic_types import bind_name, is_bound_name
+from archgen.link.data_types.field_types import bind_name, is_bound_name
 from archgen.model.element_ids import make_unique_id, spell_in_ascii
 from archgen.model.generic_names import read_generic_name
 from archgen.model.message_types import PART_KEYS
@@ -313,7 +313,7 @@ def _name_specialised(work: PassWork, generic_path: TreePath, expression: TypeEx
 
 def _make_id_words(type_name: str) -> str:
     """Return the words of a type's name as they stand in an id: `envelope_of_laser_pose` for `Envelope<Laser pose>`."""
-    spelled = re.sub(r"\S*/(?=[^/\s]*$)", "", type_name).replace("<", " of ").replace(",", " and ")
+    spelled = re.sub(r"(?<!\S)\S*/(?=[^/\s]*+$)", "", type_name).replace("<", " of ").replace(",", " and ")
     words = _WORD.findall(_WORD_BREAK.sub(" ", spell_in_ascii(spelled)).lower())
     return "_".join(words) or "type"
 

@@ -16,7 +16,7 @@ from archgen.compare.kinds.key_spec import ReadContext, Reader
 from archgen.compare.normal_values import freeze_value, last_part, parameter_leaves, unordered_values
 from archgen.frozen import replace
 from archgen.model.architecture import Chain, Policy, ProjectInfo, UseCase
-from archgen.model.component_type_patterns import PATTERN_GROUP
+from archgen.model.component import PATTERN_GROUP
 from archgen.model.coordinate_frames import Frame
 from archgen.model.declared_timing import InputTiming, OutputTiming, Timing
 from archgen.model.deployment import Host, Link

@@ -8,7 +8,7 @@ from archgen.bringup.plan_shapes import StartStep
 from archgen.bringup.start_plan import describes_start, make_start_plan
 from archgen.model.agreed_terms import GENERAL_TERMS, find_agreement
 from archgen.model.architecture import Architecture
-from archgen.model.frame_sharing import SharedFrame, find_shared_frames
+from archgen.model.setting_sharing import SharedFrame, find_shared_frames
 from archgen.model.step_connections import ConnectedStep
 from archgen.timing.analysis import ChainResult
 from archgen.timing.figures import figure_wording
