@@ -1,14 +1,14 @@
-"""A project is judged as it stands in each of its variants, and what passes make of it is judged again."""
+"""A project is judged as it stands in each of its variants."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from archgen import project
 from archgen.checking.checked_project import CheckedProject
-from archgen.checking.linked_project import MergedProject, PartMemory, merge_project
+from archgen.checking.linked_project import PartMemory
+from archgen.checking.merged_project import MergedProject, merge_project
 from archgen.checking.project_judging import judge_merged_project
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.suggestions import did_you_mean
@@ -21,9 +21,6 @@ from archgen.project.project_loading import adopt_settings, changes_settings
 from archgen.syntax.project_files import RememberedFiles
 from archgen.syntax.yaml_tree import list_spans
 from archgen.timing.run_analysis import AnalysisMemory
-
-if TYPE_CHECKING:
-    from archgen.passes import Pass
 
 
 class UnknownVariantError(Exception):
@@ -181,69 +178,3 @@ class _VariantJudge:
             table=laid.root,
             diagnostics=(*before.diagnostics, *laid.diagnostics),
         )
-
-
-def read_origins(checked_project: CheckedProject) -> CheckedProject:
-    """Return a project with what its comments say of passes that made it: at its elements and in its findings."""
-    sources = checked_project.sources
-    texts = (sources.text_of(file) or "" for file in sources.file_names())
-    if not any("# archgen: made[" in text or "# archgen: from " in text for text in texts):
-        return checked_project
-    from archgen.passes import origin_comments
-
-    made_elements = origin_comments.read_origin_comments(sources)
-    return replace(
-        checked_project,
-        architecture=replace(checked_project.architecture, made_elements=made_elements),
-        findings=origin_comments.label_findings(checked_project.findings, sources, made_elements, {}),
-    )
-
-
-def transform_project(
-    checked_project: CheckedProject,
-    pass_names: Sequence[str],
-    known_passes: Mapping[str, Pass] | None = None,
-    analysis_memory: AnalysisMemory | None = None,
-) -> CheckedProject:
-    """Return what passes make of a checked project, judged again; `transformed` says what was made from what.
-
-    `known_passes` are those that there are by name, None for those that ship with archgen.
-    A project with variants is taken as it stands without them where a pass keeps none: see `stand_in_variants`.
-    Raise `passes.UnknownPassError` for a name that is none of `known_passes`.
-    """
-    # Imported here: hardly any run needs it.
-    from archgen.passes import PASSES, order_passes, run_passes
-
-    known_passes = PASSES if known_passes is None else known_passes
-    ordered_passes = order_passes(pass_names, known_passes)
-    if checked_project.variants and not all(each.keeps_variants for each in ordered_passes):
-        checked_project = stand_in_variants(checked_project, [BASE_NAME])
-    transformed = run_passes(
-        checked_project.loaded_project,
-        checked_project.merged_table,
-        pass_names,
-        checked_project.architecture.interfaces,
-        known_passes,
-        checked_project.transformed,
-    )
-    if not transformed.is_changed and not transformed.findings:
-        # It is judged already: most projects have no generic types to remove.
-        return replace(checked_project, transformed=transformed)
-    before_passes = merge_project(checked_project.loaded_project)
-    diagnostics = (*before_passes.diagnostics, *transformed.findings)
-    merged_project = replace(before_passes, table=transformed.root, diagnostics=diagnostics)
-    judged_project = judge_in_variants(merged_project, analysis_memory or AnalysisMemory(), None)
-    from archgen.passes import origin_comments
-
-    made_elements = {
-        **checked_project.architecture.made_elements,
-        **origin_comments.index_origins(transformed.root, transformed.provenance),
-    }
-    made_places = origin_comments.list_made_places(transformed.root, transformed.provenance)
-    return replace(
-        judged_project,
-        architecture=replace(judged_project.architecture, made_elements=made_elements),
-        findings=origin_comments.label_findings(judged_project.findings, judged_project.sources, {}, made_places),
-        transformed=transformed,
-        steps=checked_project.steps,
-    )
