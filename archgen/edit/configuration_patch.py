@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
@@ -45,7 +46,7 @@ def format_patch(edits: Sequence[FileEdit]) -> Iterator[str]:
     """Yield the lines of a patch that `git apply` takes in the project's folder, with their line ends."""
     for edit in edits:
         old_lines, new_lines = (
-            content.decode().splitlines(keepends=True) for content in (edit.old_content or b"", edit.new_content)
+            re.findall(r"[^\n]*\n|[^\n]+", content.decode()) for content in (edit.old_content or b"", edit.new_content)
         )
         for line in difflib.unified_diff(old_lines, new_lines, f"a/{edit.file}", f"b/{edit.file}"):
             yield line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n"
@@ -176,4 +177,4 @@ def _prove(
 
 
 def _write(bound: Fraction | None) -> str:
-    return "any time" if bound is None else format_duration(bound)
+    return "no bound" if bound is None else format_duration(bound)

@@ -31,10 +31,12 @@ class ParsedText:
 
     @property
     def line_ending(self) -> str:
+        """Return how the first line ends."""
         first = self.lines[0] if self.lines else "\n"
         return first[len(first.rstrip("\r\n")) :] or "\n"
 
     def offset_of(self, line: int, column: int) -> int:
+        """Return how many characters stand before a place."""
         return sum(len(text) for text in self.lines[: line - 1]) + column - 1
 
     def text_from(self, value: YamlNode) -> str:

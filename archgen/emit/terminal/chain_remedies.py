@@ -2,26 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from fractions import Fraction
 
-from archgen.diagnostics.safe_text import make_visible
 from archgen.diagnostics.text_columns import TextRow
-from archgen.simulation.chain_evidence import ChainEvidence
 from archgen.simulation.chain_witnesses import ChainWitness
 from archgen.timing.analysis import ChainResult
-from archgen.timing.chains.chain_advice import ChainAdvice
 from archgen.timing.figures import figure_wording
-from archgen.timing.search.proving_changes import ChainRemedy
+from archgen.timing.search.proposals import Proposal
 
 REMEDY_TITLE = "What would prove them, found by trying"
-_MAX_NAMED = 4
-_KIND_WORDS = {
-    "wcet": "execution time",
-    "period": "rate",
-    "callback_groups": "callback group",
-    "reentrant": "callback group",
-}
 
 
 def describe_slack(result: ChainResult) -> str:
@@ -40,42 +30,39 @@ def describe_witness(chain_id: str, witness: ChainWitness | None) -> str:
     return f"seen in `{command}`: {figure_wording.format_duration(witness.longest)}"
 
 
-def list_remedy_rows(results: Mapping[str, ChainResult], evidence: ChainEvidence) -> Iterator[TextRow]:
-    """Yield for each chain that is not met the change that would prove it, or what was tried."""
-    yield from ((key, *describe_chain_remedy(remedy)) for key, remedy in evidence.remedies.items() if key in results)
+def list_remedy_rows(proposal: Proposal | None) -> Iterator[TextRow]:
+    """Yield for each chain that is not met what it takes in the best configuration that was tried."""
+    if proposal is None:
+        return
+    if proposal.best.changes:
+        yield (f"{proposal.best.words} (`archgen timing --propose`)",)
+    for name in proposal.tried[0].late:
+        yield name, describe_remedy(proposal, name)
 
 
-def describe_chain_remedy(remedy: ChainRemedy) -> tuple[str, ...]:
-    """Return the change that proves a chain as `--set` writes it, and the bound then; or what was tried."""
-    if remedy.changes:
-        options = " ".join(f"--set {quote_option(str(change))}" for change in remedy.changes)
-        return make_visible(
-            options
-        ), f"then at most {figure_wording.format_duration(remedy.bound.value or Fraction(0))}"
-    more_text = "; more could be tried" if remedy.is_cut else ""
-    return (f"nothing of what was tried: {describe_tried(remedy)}{more_text}",)
+def describe_remedy(proposal: Proposal, chain_id: str) -> str:
+    """Return what a chain takes in the best configuration, or that nothing helps of what was tried."""
+    best = proposal.best
+    figure = f"then at most {write_bound(best.bounds[chain_id])}"
+    if chain_id in best.late:
+        is_better = best.changes and best.bounds[chain_id] != proposal.tried[0].bounds[chain_id]
+        count = len(proposal.tried) - 1
+        tried = f"nothing of what was tried ({count} configuration{'s' if count != 1 else ''})"
+        figure = f"{figure}, which is not enough" if is_better else tried
+    return "; ".join(filter(None, (describe_floor(proposal, chain_id), figure)))
 
 
-def replace_advice(advice: ChainAdvice, remedy: ChainRemedy | None) -> ChainAdvice:
-    """Return the sentences on a chain, with the change that proves it as what to do, where one was found."""
-    if remedy is None or not remedy.changes:
-        return advice
-    change, bound = describe_chain_remedy(remedy)
-    return advice._replace(first_step=f"This would prove it, found by trying: {change} ({bound}).")
+def describe_floor(proposal: Proposal, chain_id: str) -> str:
+    """Say that a chain's floor is above its deadline; empty where it is not."""
+    floor = proposal.hopeless.get(chain_id)
+    if floor is None:
+        return ""
+    return (
+        f"with nobody in its way it takes {figure_wording.format_duration(floor)}: "
+        "nothing but other rates, triggers or execution times can prove it"
+    )
 
 
-def describe_tried(remedy: ChainRemedy) -> str:
-    """Return what was tried to prove a chain: `priority of a, b; core of a`."""
-    names_by_word: dict[str, dict[str, None]] = {}
-    for kind, names in remedy.tried:
-        names_by_word.setdefault(_KIND_WORDS.get(kind, kind), {}).update(dict.fromkeys(names))
-    phrases = [
-        f"{word} of {figure_wording.join_first_names(tuple(names), _MAX_NAMED)}"
-        for word, names in names_by_word.items()
-    ]
-    return "; ".join(phrases) or "nothing there can be changed"
-
-
-def quote_option(text: str) -> str:
-    """Return an option's value as a shell takes it."""
-    return text if all(letter.isalnum() or letter in "._-=,/:" for letter in text) else f"'{text}'"
+def write_bound(bound: Fraction | None) -> str:
+    """Return the bound of a chain in a configuration; None is none."""
+    return "no bound" if bound is None else figure_wording.format_duration(bound)
