@@ -48,7 +48,7 @@ def describe_remedy(proposal: Proposal, chain_id: str) -> str:
         is_better = best.changes and best.bounds[chain_id] != proposal.tried[0].bounds[chain_id]
         count = len(proposal.tried) - 1
         tried = f"nothing of what was tried ({count} configuration{'s' if count != 1 else ''})"
-        figure = f"{figure}, which is not enough" if is_better else tried
+        figure = f"{figure}, which is not enough" if is_better else tried if count else ""
     return "; ".join(filter(None, (describe_floor(proposal, chain_id), figure)))
 
 
@@ -59,7 +59,7 @@ def describe_floor(proposal: Proposal, chain_id: str) -> str:
         return ""
     return (
         f"with nobody in its way it takes {figure_wording.format_duration(floor)}: "
-        "nothing but other rates, triggers or execution times can prove it"
+        f"nothing but other rates, triggers or execution times can prove it (`archgen timing --budget {chain_id}`)"
     )
 
 

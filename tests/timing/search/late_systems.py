@@ -11,8 +11,9 @@ from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.run_analysis import analyse_architecture
 from archgen.timing.search.chain_floors import find_floors
 from archgen.timing.search.proposals import MAX_TRIES, Proposal, find_proposal
+from tests.timing.random_robots import random_robot_text
 from tests.timing.random_styles import random_style_text
-from tests.timing.random_systems import architecture, random_text
+from tests.timing.random_systems import architecture
 from tests.timing.random_threads import random_threads_text
 from tests.timing.search.trials import start_trials
 
@@ -20,12 +21,12 @@ _FAR = parse_quantity("1 h", "duration")
 
 
 def draw_late_system(seed: int) -> Architecture | None:
-    """Return a random system with deadlines; None where something is pinned or unplaced, or no chain has a floor."""
-    draw = (random_style_text, random_threads_text, random_text)[seed % 3]
+    """Return a random system with deadlines; None where a core or an order is written, or no chain has a floor."""
+    draw = (random_style_text, random_robot_text, random_threads_text)[seed % 3]
     drawn = architecture(draw(seed // 3))
     timings = [timing for node in drawn.nodes.values() for timing in node.timing.values()]
     is_pinned = any(timing.core is not None or timing.cores for timing in timings)
-    if is_pinned or not all(node.host for node in drawn.nodes.values()):
+    if is_pinned or any(host.scheduling or host.core_scheduling for host in drawn.hosts.values()):
         return None
     asked = replace(drawn, chains={name: replace(chain, deadline=_FAR) for name, chain in drawn.chains.items()})
     floors = find_floors(analyse_architecture(asked), asked)
