@@ -90,8 +90,7 @@ def _report_slow_host(host: Host, slow_answers: Sequence[_SlowAnswer], margin: F
         f"with all that works on `{host.id}`, {len(slow_answers)} promises may not be kept: {join_words([*phrases, *more_text])}{_describe_margin(margin)}",
         host.at,
         labels=tuple(Label(answer.indicator.at, "asks for less") for answer in slow_answers[:_MAX_NAMED_ANSWERS]),
-        help="give what is urgent a priority or a core, move something to another host, or correct what the performances "
-        "promise",
+        help="`archgen timing --why` with one of them shows what gets in its way; or correct what the performances promise",
         element=host.id,
     )
 
@@ -108,7 +107,9 @@ def _report_slow_component(slow_answer: _SlowAnswer, margin: Fraction) -> Diagno
         labels=(Label(span, "takes longer" if is_undisturbed else "takes longer with what gets in its way"),)
         if span != NO_SPAN
         else (),
-        help="make the node quicker, give it a priority or a core, or correct what the performance promises",
+        help="make the node quicker, or correct what the performance promises"
+        if is_undisturbed
+        else f"`archgen timing --why {activity.id}` shows what gets in its way; or correct what the performance promises",
         element=component.id,
     )
 

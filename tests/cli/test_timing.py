@@ -139,7 +139,7 @@ def test_what_has_no_place_is_to_be_written_by_hand(run: Run, robot: Path) -> No
     )
     robot.write_text(text.replace("    container: navbox\n", "    container: *box\n"), encoding="utf-8")
     ran = run("timing", robot, "--propose", "--apply")
-    assert ran.status == 1
+    assert ran.status == 2
     assert "no patch: `container` is not written as a plain value on one line" in ran.err
     assert "to be written by hand: --set planner.container=none --set" in ran.err
     assert _json(run, robot, "--propose")["propose"]["refused"].startswith("`container` is not written")

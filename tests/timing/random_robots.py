@@ -38,7 +38,7 @@ class _RobotMaker:
             worst = max(1, round(share * self.periods[name] * 1000))
             timing = [kinds[name], f"wcet: {worst} us", f"bcet: {self.dice.choice((worst, worst // 2, worst // 4))} us"]
             if gpu and self.dice.random() < 0.2:
-                timing.append(f"uses: {{gpu_{host}: {max(1, round(0.1 * self.periods[name] * 1000))} us}}")
+                timing.append(f"uses: {{gpu_{host}: {max(1, round(0.02 * self.periods[name] * 1000))} us}}")
             nodes[f"{name} {'+box_' if boxed[name] else '@'}{host}"] = ", ".join(timing)
         wires = " ".join(f"{source}>{name}" for name in names for source in self.sources[name])
         chains = ", ".join(f"c{at}: {{through: [{', '.join(way)}]}}" for at, way in enumerate(self._walk(names)))

@@ -15,7 +15,7 @@ from archgen.timing.search.chain_floors import find_floors
 
 OverrideLayer = Callable[[Architecture, Sequence[str]], Architecture]
 """Lays changes over an architecture, as `--set` writes them."""
-_TERMS_PER_TRY = 100_000
+_TERMS_PER_TRY = 250_000
 """Terms of a search that count as one more try: an analysis of a large host costs as much as many of small ones."""
 
 
