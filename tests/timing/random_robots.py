@@ -48,7 +48,9 @@ class _RobotMaker:
         rest.append("containers: {" + ", ".join(f"box_{host}: {{host: {host}, threads: 1}}" for host in boxes) + "}")
         rest.append("resources: {" + ", ".join(f"gpu_{host}: {{host: {host}}}" for host in self.hosts) + "}")
         if len(self.hosts) > 1:
-            rest.append(f"links: {{lan: {{connects: [{', '.join(self.hosts)}], latency: {{best: 100 us, worst: 1 ms}}}}}}")
+            rest.append(
+                f"links: {{lan: {{connects: [{', '.join(self.hosts)}], latency: {{best: 100 us, worst: 1 ms}}}}}}"
+            )
         return sketch(nodes, wires, "\n".join(rest))
 
     def _draw_kind(self, name: str, before: list[str]) -> str:
