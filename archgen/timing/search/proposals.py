@@ -5,19 +5,18 @@ Bounded by a number of tries, in a fixed order: the same files give the same pro
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
 from archgen.frozen import dataclass
 from archgen.timing.analysis import ChainResult
-from archgen.timing.search.chain_floors import find_floors, find_hopeless_chains
 from archgen.timing.search.change_trials import Changes, ChangeTrials, TriesSpentError
 from archgen.timing.search.run_configurations import ORDERS, ConfigurationSpace, RunConfiguration, TriggerChoice
 
 MAX_TRIES = 60
 """How many configurations are tried for a project."""
-_KEPT_TRIES = 15
+_KEPT_TRIES = 12
 """How many tries moving single elements leaves for what comes after it."""
 _UNBOUNDED_LATENESS = Fraction(3)
 """How late a chain without a bound counts, in deadlines; and one with a bound at most."""
@@ -35,29 +34,42 @@ class TriedConfiguration:
     bounds: Mapping[str, Fraction | None]
     late: tuple[str, ...]
     lateness: Fraction
-    changes_triggers: bool = False
 
     @property
     def rank(self) -> tuple[Fraction, int]:
         """Return what configurations are compared by: lateness, and then how much is to be changed."""
         return self.lateness, len(self.changes)
 
+    @property
+    def changes_triggers(self) -> bool:
+        """Whether it changes what fires an element, and with that a program."""
+        return any(change.kind == "trigger" for change in self.changes)
+
 
 @dataclass(frozen=True, slots=True)
 class Proposal:
-    """What was tried for the chains that are not met, in its order: what is written is the first.
-
-    `best` is that itself where nothing is better; `kept_triggers` is the best one that changes no trigger.
-    """
+    """What was tried for the chains that are not met, in its order: what is written is the first."""
 
     deadlines: Mapping[str, Fraction]
     hopeless: Mapping[str, Fraction]
     """The floors that are above the deadline of their chain, in ns."""
     tried: tuple[TriedConfiguration, ...]
-    best: TriedConfiguration
-    kept_triggers: TriedConfiguration
     is_cut: bool = False
     """Whether more could have been tried."""
+
+    @property
+    def best(self) -> TriedConfiguration:
+        """Return the one that is least late, and makes no chain late that is not so now: what is written, if none is better."""
+        return self._find_best(self.tried)
+
+    @property
+    def kept_triggers(self) -> TriedConfiguration:
+        """Return the best one that changes no trigger."""
+        return self._find_best([each for each in self.tried if not each.changes_triggers])
+
+    def _find_best(self, tried: Sequence[TriedConfiguration]) -> TriedConfiguration:
+        harmless = [each for each in tried if set(each.late) <= set(self.tried[0].late)]
+        return min(harmless, key=lambda each: each.rank)
 
 
 def find_proposal(trials: ChangeTrials, chains: Mapping[str, ChainResult], *, keep_triggers: bool = False) -> Proposal:
@@ -75,27 +87,21 @@ class _ProposalSearch:
         }
         self.keeps_triggers = keep_triggers
         self.hopeless: dict[str, Fraction] = {}
-        self.tried: dict[Changes, TriedConfiguration] = {}
-        self.configurations: dict[Changes, RunConfiguration] = {}
-        self.written = self.best = self._try(RunConfiguration())
-        self.kept_triggers = self.written
+        self.tried: dict[Changes, tuple[TriedConfiguration, RunConfiguration]] = {}
+        self._try(RunConfiguration())
+        self.written = self.best = self.tried[()][0]
         self.is_cut = False
 
     def run(self) -> Proposal:
         """Search until all chains are proven, or no try is left."""
         if self.written.late:
-            architecture = self.trials.architecture
-            floors = find_floors(self.trials.analysis, architecture)
-            self.hopeless = find_hopeless_chains(
-                {name: floor for name, floor in floors.items() if name in self.deadlines}, architecture
-            )
+            self.hopeless = self._find_hopeless(())
             try:
                 self._search()
-                self._leave_out_needless()
+                self._climb(self.space.list_smaller)
             except TriesSpentError:
                 self.is_cut = True
-        tried = tuple(self.tried.values())
-        return Proposal(self.deadlines, self.hopeless, tried, self.best, self.kept_triggers, self.is_cut)
+        return Proposal(self.deadlines, self.hopeless, tuple(each for each, _ in self.tried.values()), self.is_cut)
 
     def _search(self) -> None:
         if self._try_orders():
@@ -104,93 +110,64 @@ class _ProposalSearch:
             triggers = self._choose_triggers()
             if triggers and self._try_orders(triggers):
                 return
-        if not self._move_elements() and not self.hopeless and not self.keeps_triggers:
-            self._add_triggers()
+        self._climb(lambda start: self.space.list_moves(start, self.best.late), _KEPT_TRIES)
+        if not self.hopeless and not self.keeps_triggers:
+            for choice in self.space.list_triggers(self.best.late) if self.best.late else ():
+                base = self.tried[self.best.changes][1]
+                self._try(replace(base, triggers=(*base.triggers, choice)))
 
-    def _try(self, configuration: RunConfiguration) -> TriedConfiguration:
-        """Analyse a configuration, and keep it where it is the best so far and makes no other chain late."""
+    def _find_hopeless(self, changes: Changes) -> dict[str, Fraction]:
+        """Return the floors that are above their chain's deadline with some changes."""
+        floors = self.trials.find_floors(changes)
+        return {name: floors[name] for name, limit in self.deadlines.items() if floors.get(name, limit) > limit}
+
+    def _try(self, configuration: RunConfiguration) -> bool:
+        """Analyse a configuration; return whether it is the best so far, and makes no other chain late."""
         changes = self.space.list_changes(configuration)
-        if changes not in self.tried:
-            slacks = {name: self.trials.find_slack(name, changes) for name in self.deadlines}
-            bounds = {n: None if slack is None else self.deadlines[n] - slack for n, slack in slacks.items()}
-            late = tuple(name for name, slack in slacks.items() if slack is None or slack < 0)
-            lateness = sum((self._count_lateness(name, bounds[name]) for name in late), Fraction(0))
-            result = TriedConfiguration(
-                self.space.describe(configuration), changes, bounds, late, lateness, bool(configuration.triggers)
-            )
-            self.tried[changes], self.configurations[changes] = result, configuration
-            if changes and set(result.late) <= set(self.written.late):
-                self.best = min(self.best, result, key=lambda each: each.rank)
-                if not result.changes_triggers:
-                    self.kept_triggers = min(self.kept_triggers, result, key=lambda each: each.rank)
-        return self.tried[changes]
-
-    def _count_lateness(self, name: str, bound: Fraction | None) -> Fraction:
-        if bound is None:
-            return _UNBOUNDED_LATENESS
-        return min(_UNBOUNDED_LATENESS, bound / self.deadlines[name] - 1)
-
-    def _is_proven(self) -> bool:
-        return not self.best.late
+        if changes in self.tried:
+            return False
+        slacks = {name: self.trials.find_slack(name, changes) for name in self.deadlines}
+        bounds = {name: None if slack is None else self.deadlines[name] - slack for name, slack in slacks.items()}
+        late = {name: slack for name, slack in slacks.items() if slack is None or slack < 0}
+        lateness = [
+            _UNBOUNDED_LATENESS if slack is None else min(_UNBOUNDED_LATENESS, -slack / self.deadlines[name])
+            for name, slack in late.items()
+        ]
+        words = self.space.describe(configuration)
+        result = TriedConfiguration(words, changes, bounds, tuple(late), sum(lateness, Fraction(0)))
+        self.tried[changes] = result, configuration
+        is_best = bool(changes) and late.keys() <= set(self.written.late) and result.rank < self.best.rank
+        self.best = result if is_best else self.best if changes else result
+        return is_best
 
     def _try_orders(self, triggers: Sequence[TriggerChoice] = ()) -> bool:
         """Try each order, with the processes as they are and with one for each node: nothing but these first."""
-        for order in ("", *ORDERS):
+        for order in ("", *filter(None, ORDERS)):
             for own_processes in dict.fromkeys(((), self.space.separable_nodes)):
                 base = RunConfiguration(own_processes=own_processes, triggers=tuple(triggers))
                 self._try(self.space.rank(base, order) if order else base)
-                if self._is_proven():
+                if not self.best.late:
                     return True
         return False
 
     def _choose_triggers(self) -> tuple[TriggerChoice, ...]:
         """Return the fewest triggers with which no chain's floor is above its deadline; empty where none do."""
-        chosen: list[TriggerChoice] = []
-        for choice in self.space.list_triggers(list(self.hopeless)):
-            chosen.append(choice)
-            changes = self.space.list_changes(RunConfiguration(triggers=tuple(chosen)))
-            floors = self.trials.find_floors(changes)
-            if all(name in floors and floors[name] <= self.deadlines[name] for name in self.hopeless):
-                return tuple(chosen)
+        choices = self.space.list_triggers(list(self.hopeless))
+        for count in range(1, len(choices) + 1):
+            triggers = tuple(choices[:count])
+            if not self._find_hopeless(self.space.list_changes(RunConfiguration(triggers=triggers))):
+                return triggers
         return ()
 
-    def _move_elements(self) -> bool:
-        """Move one element at a time to an end of its host's order, from the best on, as long as that helps."""
-        start = None
-        orders = {self.space.find_order(configuration) for configuration in self.configurations.values()}
-        while start is not self.best:
-            start = self.best
-            for configuration in self.space.list_moves(self.configurations[start.changes], start.late):
-                if self.trials.tries_left <= _KEPT_TRIES:
+    def _climb(self, list_next: Callable[[RunConfiguration], Iterable[RunConfiguration]], kept_tries: int = 0) -> None:
+        """Go on to the first configuration after the best one that is better, as long as there is one."""
+        is_better = self.best is not self.written or kept_tries > 0
+        while is_better and (self.best.late or not kept_tries):
+            is_better = False
+            for configuration in list_next(self.tried[self.best.changes][1]):
+                if self.trials.tries_left <= kept_tries:
                     self.is_cut = True
-                    return False
-                order = self.space.find_order(configuration)
-                if order not in orders:
-                    orders.add(order)
-                    if self._try(configuration) is self.best:
-                        break
-            if self._is_proven():
-                return True
-        return False
-
-    def _add_triggers(self) -> None:
-        """Try triggers on top of the best configuration, one after the other."""
-        for choice in self.space.list_triggers(self.best.late):
-            configuration = self.configurations[self.best.changes]
-            self._try(replace(configuration, triggers=(*configuration.triggers, choice)))
-            if self._is_proven():
-                return
-
-    def _leave_out_needless(self) -> None:
-        """Take back what the best configuration does not need."""
-        start: TriedConfiguration | None = None
-        while start is not self.best and self.best is not self.written:
-            start = self.best
-            self._try_any(self.space.list_smaller(self.configurations[start.changes]))
-
-    def _try_any(self, configurations: Iterable[RunConfiguration]) -> None:
-        for configuration in configurations:
-            best = self.best
-            self._try(configuration)
-            if self.best is not best:
-                return
+                    return
+                is_better = self._try(configuration)
+                if is_better:
+                    break

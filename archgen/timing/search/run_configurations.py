@@ -24,11 +24,14 @@ ORDERS: Mapping[str, str] = {
     "deadline": "priorities by the chains' deadlines, then by rate",
     "end": "priorities by the chains' deadlines, then from each chain's end backwards",
     "chains": "priorities by rate, chains first",
+    "": "priorities",
 }
-"""The orders of the processes of a host that are tried, in words."""
+"""The orders of the processes of a host, in words; the last one is that of processes which were moved alone."""
 _LOWEST_PRIORITY, _HIGHEST_PRIORITY = 10, 99
 """The least urgent priority that is given, which leaves room below it; and the most urgent one of SCHED_FIFO."""
 _NAMED_MOVES = 2
+Ranking = tuple[str, ...]
+"""Processes of a host, the most urgent first; those that are not in it have no priority."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,16 +56,22 @@ class TriggerChoice:
 
 @dataclass(frozen=True, slots=True)
 class RunConfiguration:
-    """How an architecture is run: what differs from what is written. `priorities` are by process."""
+    """How an architecture is run: what differs from what is written. `rankings` are by host."""
 
     own_processes: tuple[str, ...] = ()
     """Nodes that leave their containers."""
     order: str = ""
-    """The order that the priorities come from, a key of ORDERS."""
-    priorities: tuple[tuple[str, int], ...] = ()
+    """The order that the rankings come from, a key of ORDERS."""
+    rankings: tuple[tuple[str, Ranking], ...] = ()
     moves: tuple[str, ...] = ()
-    """What was moved to an end of its host's order, in words."""
+    """What was moved within the order, in words."""
     triggers: tuple[TriggerChoice, ...] = ()
+
+    def with_ranking(self, host: str, ranking: Ranking, move: str = "") -> RunConfiguration:
+        """Return a configuration with another ranking of one host: an empty one leaves its priorities as they are written."""
+        rankings = {**dict(self.rankings), host: ranking}
+        kept = tuple((name, each) for name, each in rankings.items() if each)
+        return replace(self, rankings=kept, moves=(*self.moves, move) if move else self.moves)
 
 
 class ConfigurationSpace:
@@ -73,12 +82,13 @@ class ConfigurationSpace:
         self._architecture, self._analysis = architecture, analysis
         self._activities = analysis.system.activities
         self._chains = [chain for chain in chains.values() if chain.deadline is not None and chain.terms]
+        self._on_chain = {name for chain in self._chains for name in chain.through}
         self.separable_nodes = tuple(self._find_separable_nodes())
-        on_chain = {self._activities[term.activity].host for chain in self._chains for term in chain.terms}
+        chain_hosts = {self._activities[name].host for name in self._on_chain}
         self.ranked_hosts = tuple(
             host.id
             for host in architecture.hosts.values()
-            if host.id in on_chain and host.scheduling in {None, "fixed_priority"} and not host.core_scheduling
+            if host.id in chain_hosts and host.scheduling in {None, "fixed_priority"} and not host.core_scheduling
         )
 
     def _find_separable_nodes(self) -> Iterator[str]:
@@ -109,17 +119,13 @@ class ConfigurationSpace:
 
     def rank(self, configuration: RunConfiguration, order: str) -> RunConfiguration:
         """Return a configuration with priorities for all processes on the hosts of the chains."""
-        priorities: list[tuple[str, int]] = []
+        ranked = replace(configuration, order=order)
         for host in self.ranked_hosts:
             processes = self.list_processes(host, configuration.own_processes)
-            names = sorted(processes, key=lambda name: self._make_rank_key(order, processes[name]))
-            room = _HIGHEST_PRIORITY - _LOWEST_PRIORITY
-            priorities += [
-                (name, _LOWEST_PRIORITY + (place if len(names) <= room else place * room // len(names)))
-                for place, name in enumerate(reversed(names))
-                if len(names) > 1
-            ]
-        return replace(configuration, order=order, priorities=tuple(priorities))
+            if len(processes) > 1:
+                names = sorted(processes, key=lambda name: self._make_rank_key(order, processes[name]))
+                ranked = ranked.with_ranking(host, tuple(names))
+        return ranked
 
     def _make_rank_key(self, order: str, members: Sequence[Activity]) -> tuple[bool | Fraction, ...]:
         """Return what a process is sorted by, the most urgent first."""
@@ -130,52 +136,50 @@ class ConfigurationSpace:
         if order == "rate":
             return (rate,)
         if deadline is None or order == "chains":
-            return (deadline is None, rate) if order == "chains" else (True, rate)
+            return (deadline is None, rate)
         place = max(chain.through.index(name) for chain in own_chains for name in names.intersection(chain.through))
         return (False, deadline, *([Fraction(-place)] if order == "end" else []), rate)
 
     def list_moves(self, configuration: RunConfiguration, late_chains: Sequence[str]) -> Iterator[RunConfiguration]:
-        """Yield configurations with one process moved: to an end of its host's order, those of late chains first; then by one place."""
+        """Yield configurations with one process moved: to an end of its host's order, late chains first; then by one place."""
         urgent_names = {name for chain in self._chains if chain.id in late_chains for name in chain.through}
-        present = {host: self._list_priorities(host, configuration) for host in self.ranked_hosts}
-        for host, priorities in present.items():
+        rankings = dict(configuration.rankings)
+        for host in self.ranked_hosts:
             processes = self.list_processes(host, configuration.own_processes)
+            is_written = any(activity.priority is not None for members in processes.values() for activity in members)
+            if len(processes) == 1 or (is_written and host not in rankings):
+                continue
+            ranking = rankings.get(host, ())
             urgent = [name for name, members in processes.items() if any(a.id in urgent_names for a in members)]
             for process in (*urgent, *(name for name in processes if name not in urgent)):
-                others = [priority for name, priority in priorities.items() if name != process]
-                top, bottom = max(others, default=0) + 1, min(others, default=0) - 1
-                ends = [(top, "first"), (bottom if len(others) == len(processes) - 1 else 0, "last")]
-                for priority, word in ends if process in urgent else ends[::-1]:
-                    if len(processes) > 1 and 1 <= priority <= _HIGHEST_PRIORITY:
-                        yield _set_priorities(
-                            configuration, {process: priority}, f"{name_process(process)} {word} on {host}"
-                        )
-        for host, priorities in present.items():
-            ranked = sorted(priorities, key=lambda name: -priorities[name])
-            for above, below in pairwise(ranked):
-                swapped = {above: priorities[below], below: priorities[above]}
-                yield _set_priorities(
-                    configuration, swapped, f"{name_process(below)} before {name_process(above)} on {host}"
+                others = tuple(name for name in ranking if name != process)
+                ends = [((process, *others), "first")]
+                if len(ranking) == len(processes):
+                    ends.insert(len(ends) if process in urgent else 0, ((*others, process), "last"))
+                yield from (
+                    configuration.with_ranking(host, moved, f"{process.partition(' ')[2]} {word} on {host}")
+                    for moved, word in ends
                 )
+        for host, ranking in rankings.items():
+            for place, (above, below) in enumerate(pairwise(ranking)):
+                swapped = (*ranking[:place], below, above, *ranking[place + 2 :])
+                names = [name.partition(" ")[2] for name in (below, above)]
+                yield configuration.with_ranking(host, swapped, f"{' before '.join(names)} on {host}")
 
-    def _list_priorities(self, host: str, configuration: RunConfiguration) -> dict[str, int]:
-        """Return the priority of each process on a host that has one: as configured, else the highest that is written in it."""
-        configured = dict(configuration.priorities)
-        written = {
-            name: max((a.priority for a in members if a.priority is not None), default=None)
-            for name, members in self.list_processes(host, configuration.own_processes).items()
-        }
-        return {n: rank for n, own in written.items() if (rank := configured.get(n, own)) is not None}
-
-    def find_order(self, configuration: RunConfiguration) -> tuple[object, ...]:
-        """Return what two configurations share that run everything in the same order, whatever numbers they give."""
-        orders: list[tuple[str, int]] = []
-        for host in self.ranked_hosts:
-            priorities = self._list_priorities(host, configuration)
-            places = {value: place for place, value in enumerate(sorted(set(priorities.values())))}
-            orders += [(name, places[value]) for name, value in priorities.items()]
-        is_ranked = bool(configuration.priorities)
-        return configuration.own_processes, configuration.triggers, is_ranked, tuple(orders)
+    def list_smaller(self, configuration: RunConfiguration) -> Iterator[RunConfiguration]:
+        """Yield configurations that change less: priorities of fewer processes, fewer processes, or fewer triggers."""
+        for host, ranking in configuration.rankings:
+            processes = self.list_processes(host, configuration.own_processes)
+            needed = [place for place, name in enumerate(ranking) if self._on_chain & {a.id for a in processes[name]}]
+            yield configuration.with_ranking(host, ())
+            yield configuration.with_ranking(host, ranking[: max(needed, default=-1) + 1])
+        container_of = {node: self._architecture.nodes[node].container for node in configuration.own_processes}
+        for container in dict.fromkeys(container_of.values()):
+            kept_nodes = tuple(node for node, own_container in container_of.items() if own_container != container)
+            processes_left = replace(configuration, own_processes=kept_nodes)
+            yield self.rank(processes_left, configuration.order) if configuration.order else processes_left
+        for choice in configuration.triggers:
+            yield replace(configuration, triggers=tuple(each for each in configuration.triggers if each != choice))
 
     def list_triggers(self, chain_ids: Sequence[str]) -> list[TriggerChoice]:
         """Return the triggers that would spare chains the wait for a clock, what waits longest first.
@@ -193,88 +197,43 @@ class ConfigurationSpace:
     def _find_trigger(self, source: str, reader_id: str) -> TriggerChoice | None:
         system, reader = self._analysis.system, self._activities[reader_id]
         own_rate = self._analysis.paces[reader_id].rate.value
-        for arc in system.arcs_into.get(reader_id, ()):
+        arcs = [arc for arc in system.arcs_into.get(reader_id, ()) if arc.role == "data"]
+        for arc in (arc for arc in arcs if arc.source == source):
             port = self._architecture.inputs.get(arc.input)
-            writers = [other for other in system.arcs_into[reader_id] if other.input == arc.input]
-            if arc.source != source or arc.role != "data" or port is None or len(writers) > 1:
-                continue
-            rate = self._analysis.outputs[arc.source, arc.output].rate.value
-            if reader.behaviour != "periodic" or not own_rate or not rate or is_selective_arc(system, arc):
-                continue
-            if rate >= own_rate and not self._activities[source].conditional:
-                return TriggerChoice(reader_id, port.name, int(rate / own_rate))
+            rate = self._analysis.outputs[source, arc.output].rate.value
+            is_sure = not self._activities[source].conditional and not is_selective_arc(system, arc)
+            has_one_source = sum(other.input == arc.input for other in arcs) == 1
+            if port and own_rate and rate and reader.behaviour == "periodic" and is_sure and has_one_source:
+                return TriggerChoice(reader_id, port.name, int(rate / own_rate)) if rate >= own_rate else None
         return None
 
     def list_changes(self, configuration: RunConfiguration) -> Changes:
         """Return what is to be written for a configuration: no more than differs."""
         changes = [TriedChange(node, "container", "none") for node in configuration.own_processes]
-        priorities = dict(configuration.priorities)
-        for host in self.ranked_hosts if priorities else ():
-            for process, members in self.list_processes(host, configuration.own_processes).items():
-                priority = priorities.get(process)
-                nodes = dict.fromkeys(
-                    activity.node for activity in members if priority is not None and activity.priority != priority
-                )
-                changes += [TriedChange(node, "timing.priority", str(priority)) for node in nodes]
-        return (*changes, *(change for choice in configuration.triggers for change in choice.list_changes()))
-
-    def list_smaller(self, configuration: RunConfiguration) -> Iterator[RunConfiguration]:
-        """Yield configurations that change less: without the priorities of one host, the processes of one container."""
-        priorities = dict(configuration.priorities)
-        for host in self.ranked_hosts:
+        for host, ranking in configuration.rankings:
             processes = self.list_processes(host, configuration.own_processes)
-            ranked = sorted((name for name in processes if name in priorities), key=lambda name: priorities[name])
-            on_chain = [
-                any(a.id in chain.through for chain in self._chains for a in processes[name]) for name in ranked
-            ]
-            tail = ranked[: on_chain.index(True)] if True in on_chain else ranked
-            for left_out in (ranked, tail):
-                if left_out:
-                    kept = tuple((name, value) for name, value in configuration.priorities if name not in left_out)
-                    yield replace(configuration, priorities=kept)
-        containers = dict.fromkeys(self._architecture.nodes[node].container for node in configuration.own_processes)
-        for container in containers:
-            kept_nodes = tuple(
-                n for n in configuration.own_processes if self._architecture.nodes[n].container != container
-            )
-            yield replace(configuration, own_processes=kept_nodes)
-        for choice in configuration.triggers:
-            yield replace(configuration, triggers=tuple(each for each in configuration.triggers if each != choice))
+            room = _HIGHEST_PRIORITY - _LOWEST_PRIORITY
+            for place, process in enumerate(reversed(ranking)):
+                step = place if len(ranking) <= room else place * room // len(ranking)
+                members = [a for a in processes.get(process, ()) if a.priority != _LOWEST_PRIORITY + step]
+                changes += [
+                    TriedChange(node, "timing.priority", str(_LOWEST_PRIORITY + step))
+                    for node in dict.fromkeys(activity.node for activity in members)
+                ]
+        return (*changes, *(change for choice in configuration.triggers for change in choice.list_changes()))
 
     def describe(self, configuration: RunConfiguration) -> str:
         """Return a configuration in words: `a process for each node, priorities by rate`."""
-        own_nodes = configuration.own_processes
+        own_nodes, moves = configuration.own_processes, configuration.moves
+        is_each = own_nodes == self.separable_nodes
         phrases = (
-            [
-                "a process for each node"
-                if own_nodes == self.separable_nodes
-                else f"processes of their own for {join_words(own_nodes)}"
-            ]
+            ["a process for each node" if is_each else f"own processes for {join_words(own_nodes)}"]
             if own_nodes
             else []
         )
-        if configuration.order and configuration.priorities:
-            ranked = dict(configuration.priorities)
-            processes_by_host = {host: self.list_processes(host, own_nodes) for host in self.ranked_hosts}
-            hosts = [host for host, processes in processes_by_host.items() if ranked.keys() & processes.keys()]
-            rest = any(ranked.keys() & p.keys() and p.keys() - ranked.keys() for p in processes_by_host.values())
+        if configuration.rankings and configuration.order:
+            hosts = [host for host, _ in configuration.rankings]
             place = f" on {join_words(hosts)}" if len(hosts) < len(self.ranked_hosts) else ""
-            phrases.append(
-                f"{ORDERS[configuration.order]}{place}{' (not for what is below the chains)' if rest else ''}"
-            )
-        moves = configuration.moves
-        phrases += [
-            *(moves if len(moves) <= _NAMED_MOVES else [f"{len(moves)} moves in it"]),
-            *(choice.describe() for choice in configuration.triggers),
-        ]
-        return ", ".join(phrases) or "as written"
-
-
-def name_process(process: str) -> str:
-    """Return the id of a process's node or container."""
-    return process.partition(" ")[2]
-
-
-def _set_priorities(configuration: RunConfiguration, priorities: Mapping[str, int], move: str) -> RunConfiguration:
-    new_priorities = {**dict(configuration.priorities), **priorities}
-    return replace(configuration, priorities=tuple(new_priorities.items()), moves=(*configuration.moves, move))
+            phrases.append(f"{ORDERS[configuration.order]}{place}")
+        phrases += moves if len(moves) <= _NAMED_MOVES else [f"{len(moves)} moves in it"]
+        return ", ".join([*phrases, *(choice.describe() for choice in configuration.triggers)]) or "as written"

@@ -9,7 +9,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.quantity import parse_quantity
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.run_analysis import analyse_architecture
-from archgen.timing.search.chain_floors import find_floors
+from archgen.timing.search.change_trials import find_floors
 from archgen.timing.search.proposals import MAX_TRIES, Proposal, find_proposal
 from tests.timing.random_robots import random_robot_text
 from tests.timing.random_styles import random_style_text

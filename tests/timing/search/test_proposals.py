@@ -67,9 +67,11 @@ def _prove_by_rate(seed: int) -> tuple[bool, bool] | None:
     return all(slack is not None and slack >= 0 for slack in slacks), not proposal.best.late
 
 
-@pytest.mark.parametrize("first_seed", [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (30, 60, 90))])
+@pytest.mark.parametrize(
+    "first_seed", [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(15, 150, 15))]
+)
 def test_all_that_priorities_by_rate_prove_is_proven(first_seed: int) -> None:
-    answers = [answer for seed in range(first_seed, first_seed + 30) if (answer := _prove_by_rate(seed)) is not None]
+    answers = [answer for seed in range(first_seed, first_seed + 15) if (answer := _prove_by_rate(seed)) is not None]
     assert all(is_proposed or not is_proven_by_rate for is_proven_by_rate, is_proposed in answers)
     assert sum(is_proposed for _, is_proposed in answers) > sum(by_rate for by_rate, _ in answers)
 
@@ -122,7 +124,7 @@ def test_no_more_is_changed_than_is_needed() -> None:
     )
     proposal = propose_for(architecture(text))
     assert [str(change) for change in proposal.best.changes] == ["b.container=none"]
-    assert proposal.best.words == "processes of their own for b"
+    assert proposal.best.words == "own processes for b"
 
 
 def test_where_no_clock_is_to_blame_a_trigger_is_the_last_resort() -> None:
@@ -144,7 +146,7 @@ def test_tries_are_counted_and_the_same_each_time(monkeypatch: pytest.MonkeyPatc
     assert len(propose_for(asked, 3).tried) == 4
     assert propose_for(asked) == propose_for(asked)
     monkeypatch.setattr(proposals, "_KEPT_TRIES", 1_000)
-    assert not propose_for(asked).is_cut
+    assert propose_for(draw_late_system(3 * 22) or asked).is_cut
 
 
 def test_a_chain_without_figures_is_not_judged() -> None:
