@@ -157,7 +157,7 @@ def _refuse_writing(
 
 
 def _apply_overrides(architecture: Architecture, overrides: tuple[str, ...]) -> Architecture:
-    from archgen.link.override_values import OverrideError
+    from archgen.link.process_overrides import OverrideError
     from archgen.link.timing_overrides import apply_overrides
 
     try:

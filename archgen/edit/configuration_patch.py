@@ -9,14 +9,12 @@ from fractions import Fraction
 
 from archgen import pipeline
 from archgen.edit.edit_proof import first_file_of, list_new_errors
-from archgen.edit.element_edit import EditRefusedError, FileEdit
-from archgen.edit.text_insertion import CannotInsertError
+from archgen.edit.element_edit import CannotInsertError, EditRefusedError, FileEdit
 from archgen.edit.value_change import ValueChange, change_values
 from archgen.model.node import Node
 from archgen.pipeline import CheckedProject
 from archgen.project.project_loading import load_from_files
-from archgen.syntax.overlaid_files import OverlaidFiles
-from archgen.syntax.project_files import FileRefusal
+from archgen.syntax.project_files import FileRefusal, OverlaidFiles
 from archgen.syntax.yaml_tree import MappingNode, YamlNode
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.figures.figure_wording import format_duration

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from archgen.edit.text_insertion import CannotInsertError, ParsedText, find_holder, find_place_in_braces, parse_text
+from archgen.edit.element_edit import CannotInsertError, ParsedText, find_holder, find_place_in_braces, parse_text
 from archgen.syntax import yaml_parser
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, node_to_data
 from archgen.syntax.yaml_writer import format_flow, format_scalar

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
 from pathlib import Path
 
 import pytest
@@ -13,6 +12,7 @@ from archgen.edit.element_edit import EditRefusedError
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.run_analysis import analyse_architecture
 from archgen.timing.search.proposals import TriedConfiguration, find_proposal
+from tests.repositories import git
 from tests.timing.search.trials import start_trials
 
 ROBOT = Path(__file__).parents[1] / "timing" / "search" / "nav_robot.yaml"
@@ -43,8 +43,8 @@ def _propose(path: Path) -> tuple[pipeline.CheckedProject, TriedConfiguration]:
 
 
 def _apply(folder: Path, patch: str) -> None:
-    subprocess.run(["git", "init", "-q", "."], cwd=folder, check=True)
-    subprocess.run(["git", "apply", "-"], cwd=folder, input=patch.encode(), check=True)
+    git(folder, "init", "-q", ".")
+    git(folder, "apply", "-", stdin=patch.encode())
 
 
 def _bound(path: Path) -> dict[str, object]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.edit.text_insertion import CannotInsertError
+from archgen.edit.element_edit import CannotInsertError
 from archgen.edit.value_change import ValueChange, change_values
 
 TIMING = ("nodes", "a", "timing")
