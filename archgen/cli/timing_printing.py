@@ -198,7 +198,7 @@ def print_proposal(request: TimingRequest, *, keep_triggers: bool, applies: bool
     if request.as_json:
         _print_json(proposal_text.proposal_to_json(proposal, patch or None, refusal))
     else:
-        _print_lines(proposal_text.format_proposal(proposal, find_width(sys.stdout)))
+        _print_lines(proposal_text.format_proposal(proposal, find_width(sys.stdout), shows_tried=not applies))
     if refusal is not None:
         options = " ".join(f"--set {change}" for change in proposal.best.changes)
         msg = f"no patch: {refusal}; to be written by hand: {options}"

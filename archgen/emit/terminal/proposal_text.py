@@ -17,7 +17,7 @@ _MAX_COLUMNS = 5
 _MS = 10**6
 
 
-def format_proposal(proposal: Proposal, width: int | None = None) -> Iterator[str]:
+def format_proposal(proposal: Proposal, width: int | None = None, *, shows_tried: bool = True) -> Iterator[str]:
     """Yield the floors that no configuration undercuts, all that was tried, and the best of it."""
     if not proposal.tried[0].late:
         yield "Each chain with a deadline is met, or lacks figures: there is nothing to do."
@@ -27,11 +27,12 @@ def format_proposal(proposal: Proposal, width: int | None = None) -> Iterator[st
         for name in proposal.hopeless
     ]
     yield from format_section("Chains that are late in any order, process, thread or core", rows, width)
-    yield "What was tried, each analysed: what chains take at most, and how far they are above their deadlines together"
-    yield from align_rows(_tried_rows(proposal), width)
-    if proposal.is_cut:
-        yield "  more could be tried: as many configurations as are allowed were analysed"
-    yield ""
+    if shows_tried:
+        yield "What was tried, each analysed: what chains take at most, and how far they are above their deadlines together"
+        yield from align_rows(_tried_rows(proposal), width)
+        if proposal.is_cut:
+            yield "  more could be tried: as many configurations as are allowed were analysed"
+        yield ""
     best = proposal.best
     if not best.changes:
         yield "Nothing of what was tried is better than what is written: there is nothing to do."
@@ -80,7 +81,10 @@ def _list_demands(configuration: TriedConfiguration) -> Iterator[str]:
     if "container" in kinds:
         yield "What leaves a container is started as a process of its own, and no message passes inside of one any more."
     if "trigger" in kinds:
-        yield "A trigger changes the program: it computes when its message comes (each n-th one: `every`), without a timer."
+        yield (
+            "A trigger changes the program: it computes when its message comes (each n-th one: `every`), without a timer; "
+            "the bound rests on no message being lost."
+        )
 
 
 def proposal_to_json(proposal: Proposal, patch: str | None, refusal: str | None) -> dict[str, Any]:

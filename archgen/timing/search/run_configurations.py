@@ -234,6 +234,10 @@ class ConfigurationSpace:
         if configuration.rankings and configuration.order:
             hosts = [host for host, _ in configuration.rankings]
             place = f" on {join_words(hosts)}" if len(hosts) < len(self.ranked_hosts) else ""
-            phrases.append(f"{ORDERS[configuration.order]}{place}")
+            sizes = [
+                (len(ranking), len(self.list_processes(host, own_nodes))) for host, ranking in configuration.rankings
+            ]
+            tail = ", none below the chains" if any(ranked < count for ranked, count in sizes) else ""
+            phrases.append(f"{ORDERS[configuration.order]}{place}{tail}")
         phrases += moves if len(moves) <= _NAMED_MOVES else [f"{len(moves)} moves in it"]
         return ", ".join([*phrases, *(choice.describe() for choice in configuration.triggers)]) or "as written"

@@ -171,7 +171,7 @@ def test_smaller_configurations_leave_out_a_host_the_tail_a_container_or_a_trigg
     fired = "b fired by each message of its input a"
     assert words == [
         f"a process for each node, {fired}",
-        f"a process for each node, priorities by rate, {fired}",
+        f"a process for each node, priorities by rate, none below the chains, {fired}",
         f"priorities by rate, {fired}",
         "a process for each node, priorities by rate",
     ]
