@@ -1,7 +1,9 @@
-"""Do components and services answer in the time that they have?"""
+"""Do components and services answer in the time that they have, and callbacks before others of their thread are due?"""
 
 from __future__ import annotations
 
+from collections import defaultdict
+from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
 from archgen.diagnostics.common_wording import join_words
@@ -11,10 +13,10 @@ from archgen.diagnostics.source_span import NO_SPAN
 from archgen.timing.chains.whole_bounds import bound_wholes, list_limits
 from archgen.timing.figures.figure_wording import format_duration, join_first_names
 from archgen.timing.figures.value_arithmetic import is_known_bound
+from archgen.timing.system.thread_pools import name_lane
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-    from fractions import Fraction
 
     from archgen.diagnostics.source_span import Span
     from archgen.model.architecture import Architecture
@@ -179,6 +181,43 @@ def _describe_margin(margin: Fraction) -> str:
     return f"; {format_percentage(margin)} of it must stay free" if margin else ""
 
 
+def long_callback(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
+    """A callback takes longer than the period of another one that waits for the same thread."""
+    members_by_thread: dict[str, list[Activity]] = defaultdict(list)
+    for activity in analysis.system.activities.values():
+        members_by_thread[name_lane(analysis.system, activity)].append(activity)
+    for members in members_by_thread.values():
+        if len(members) > 1:
+            yield from _find_long_callbacks(analysis, members)
+
+
+def _find_long_callbacks(analysis: Analysis, members: Sequence[Activity]) -> Iterator[Diagnostic]:
+    """Yield a finding for each callback of a thread that lets another one miss a tick, with the most frequent of these."""
+    # What others fire is due whenever they do: how late it may come is for chains to say.
+    timed = [(member.period, member) for member in members if member.behaviour == "periodic" and member.period]
+    timed.sort(key=lambda pair: pair[0])
+    for slow in members:
+        # While it uses a resource, it keeps its thread.
+        held = (slow.wcet or 0) + sum(use.worst for use in slow.uses.values())
+        delayed = [(period, member) for period, member in timed if period < held and member is not slow]
+        if not delayed:
+            continue
+        period, first = delayed[0]
+        more_count = len(delayed) - 1
+        more_text = f", and of {more_count} more timer{'s' if more_count > 1 else ''}" if more_count else ""
+        period_span = first.places.get("period", first.places.get("rate", NO_SPAN))
+        held_text, period_text = (format_duration(Fraction(ticks * analysis.system.tick)) for ticks in (held, period))
+        yield Diagnostic(
+            "long-callback",
+            f"`{slow.id}`, {held_text}, shares the thread of `{first.id}`, which is due every {period_text}{more_text}",
+            slow.places.get("wcet", slow.at),
+            labels=(Label(period_span, "due in the meantime"),) if period_span != NO_SPAN else (),
+            help=f"`archgen timing --why {first.id}` shows how late it may come, `archgen timing --propose` what helps chains "
+            "that are late for it",
+            element=slow.node,
+        )
+
+
 RULES = (
     (
         slow_component,
@@ -190,4 +229,5 @@ RULES = (
         Severity.WARNING,
         (RuleOption("margin", 0, 0, 99, "The share of the caller's period that must stay free."),),
     ),
+    (long_callback, Severity.WARNING),
 )

@@ -132,7 +132,7 @@ def add_element(
     for old_id, new_id in edit.renamed_nodes:
         click.echo(f"the node `{old_id}` gets the id `{new_id}`, since its id follows from its component", err=True)
     if dry_run:
-        sys.stdout.writelines(f"{make_visible(line)}\n" for line in edit.unified_diff())
+        sys.stdout.writelines(f"{make_visible(line.rstrip())}\n" for line in edit.unified_diff())
         return
     command_support.write_edit(checked_project.root, edit, f"`{full_id}` at line {edit.line}")
     click.echo("`archgen check` says what it still lacks.")

@@ -175,9 +175,9 @@ def print_budget(request: TimingRequest, chain_id: str) -> None:
 def print_proposal(request: TimingRequest, *, keep_triggers: bool, applies: bool) -> None:
     """Print a configuration in which chains are less late (`--propose`), with its patch; or write it (`--apply`)."""
     from archgen.diagnostics.safe_text import make_visible
-    from archgen.edit.configuration_patch import format_patch, plan_patch
+    from archgen.edit.configuration_patch import plan_patch
     from archgen.edit.element_edit import EditRefusedError
-    from archgen.emit.terminal import proposal_text
+    from archgen.emit.terminal import chain_remedies
     from archgen.link.timing_overrides import apply_overrides
     from archgen.timing.search.change_trials import ChangeTrials
     from archgen.timing.search.proposals import MAX_TRIES, find_proposal
@@ -194,11 +194,11 @@ def print_proposal(request: TimingRequest, *, keep_triggers: bool, applies: bool
     except EditRefusedError as error:
         command_support.print_findings(error.errors, request.checked_project, sys.stderr)
         refusal = error.message
-    patch = "".join(format_patch(edits))
+    patch = "".join(line for edit in edits for line in edit.unified_diff())
     if request.as_json:
-        _print_json(proposal_text.proposal_to_json(proposal, patch or None, refusal))
+        _print_json(chain_remedies.proposal_to_json(proposal, patch or None, refusal))
     else:
-        _print_lines(proposal_text.format_proposal(proposal, find_width(sys.stdout), shows_tried=not applies))
+        _print_lines(chain_remedies.format_proposal(proposal, find_width(sys.stdout), shows_tried=not applies))
     if refusal is not None:
         options = " ".join(f"--set {change}" for change in proposal.best.changes)
         msg = f"no patch: {refusal}; to be written by hand: {options}"

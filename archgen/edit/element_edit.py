@@ -35,6 +35,9 @@ class EditRefusedError(Exception):
         self.errors = errors
 
 
+_LINE_FEEDS = re.compile(r"[^\n]*\n|[^\n]+")
+
+
 @dataclass(frozen=True, slots=True)
 class FileEdit:
     """One file's bytes before (None: the file is new) and after, and the line at which the element begins.
@@ -49,12 +52,13 @@ class FileEdit:
     renamed_nodes: tuple[tuple[str, str], ...] = ()
 
     def unified_diff(self) -> Iterator[str]:
-        """Yield a unified diff, as git writes it."""
-        old_lines = (self.old_content or b"").decode().splitlines()
-        name = "/dev/null" if self.old_content is None else f"a/{self.file}"
-        return difflib.unified_diff(
-            old_lines, self.new_content.decode().splitlines(), name, f"b/{self.file}", lineterm=""
+        """Yield the lines of a unified diff, with their ends, as `git apply` takes it."""
+        old_lines, new_lines = (
+            _LINE_FEEDS.findall(each.decode()) for each in (self.old_content or b"", self.new_content)
         )
+        name = "/dev/null" if self.old_content is None else f"a/{self.file}"
+        for line in difflib.unified_diff(old_lines, new_lines, name, f"b/{self.file}"):
+            yield line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n"
 
 
 def plan_edit(checked_project: CheckedProject, place: ElementPlace, element: NewElement, element_id: str) -> FileEdit:

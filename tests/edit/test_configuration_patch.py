@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline
-from archgen.edit.configuration_patch import format_patch, plan_patch
+from archgen.edit.configuration_patch import plan_patch
 from archgen.edit.element_edit import EditRefusedError
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.run_analysis import analyse_architecture
@@ -60,7 +60,7 @@ def test_git_applies_the_patch_of_the_newcomers_robot(tmp_path: Path, ending: st
     robot.write_bytes(before.encode())
     checked_project, best = _propose(robot)
     edits = plan_patch(checked_project, best)
-    _apply(tmp_path, "".join(format_patch(edits)))
+    _apply(tmp_path, "".join(line for edit in edits for line in edit.unified_diff()))
     after = robot.read_bytes().decode()
     assert after.encode() == edits[0].new_content
     assert [line for line in before.split("\n") if "#" in line] == [line for line in after.split("\n") if "#" in line]
@@ -74,7 +74,7 @@ def test_each_value_goes_where_the_node_stands(tmp_path: Path) -> None:
     assert not best.late
     edits = plan_patch(checked_project, best)
     assert {edit.file for edit in edits} <= {"nodes.yaml", "groups.yaml"}
-    _apply(tmp_path, "".join(format_patch(edits)))
+    _apply(tmp_path, "".join(line for edit in edits for line in edit.unified_diff()))
     assert "# quick" in (tmp_path / "groups.yaml").read_text(encoding="utf-8")
     assert "# first" in (tmp_path / "nodes.yaml").read_text(encoding="utf-8")
     assert _bound(tmp_path) == best.bounds

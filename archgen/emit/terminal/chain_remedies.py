@@ -1,17 +1,22 @@
-"""What is said of chains beyond their bounds: the run in which one is late, and what would prove it."""
+"""What is said of chains beyond their bounds: the run in which one is late, what would prove it, and all that was tried."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
+from typing import Any
 
-from archgen.diagnostics.text_columns import TextRow
+from archgen.diagnostics.text_columns import TextRow, align_rows, format_section
+from archgen.emit.data import timing_json
 from archgen.simulation.chain_witnesses import ChainWitness
 from archgen.timing.analysis import ChainResult
 from archgen.timing.figures import figure_wording
-from archgen.timing.search.proposals import Proposal
+from archgen.timing.search.proposals import Proposal, TriedConfiguration
 
 REMEDY_TITLE = "What would prove them, found by trying"
+_MAX_COLUMNS = 5
+"""So many chains have a column of their own in the table of what was tried: those that are not met as written."""
+_MS = 10**6
 
 
 def describe_slack(result: ChainResult) -> str:
@@ -66,3 +71,105 @@ def describe_floor(proposal: Proposal, chain_id: str) -> str:
 def write_bound(bound: Fraction | None) -> str:
     """Return the bound of a chain in a configuration; None is none."""
     return "no bound" if bound is None else figure_wording.format_duration(bound)
+
+
+def format_proposal(proposal: Proposal, width: int | None = None, *, shows_tried: bool = True) -> Iterator[str]:
+    """Yield the floors that no configuration undercuts, all that was tried, and the best of it."""
+    if not proposal.tried[0].late:
+        yield "Each chain with a deadline is met, or lacks figures: there is nothing to do."
+        return
+    rows = [
+        (name, f"deadline {write_bound(proposal.deadlines[name])}", describe_floor(proposal, name))
+        for name in proposal.hopeless
+    ]
+    yield from format_section("Chains that are late in any order, process, thread or core", rows, width)
+    if shows_tried:
+        yield "What was tried, each analysed: what chains take at most, and how far they are above their deadlines together"
+        yield from align_rows(_tried_rows(proposal), width)
+        if proposal.is_cut:
+            yield "  more could be tried: as many configurations as are allowed were analysed"
+        yield ""
+    best = proposal.best
+    if not best.changes:
+        yield "Nothing of what was tried is better than what is written: there is nothing to do."
+        return
+    yield f"Proposed: {best.words}."
+    yield f"  {_describe_result(proposal, best)}"
+    kept = proposal.kept_triggers
+    if best.changes_triggers and kept.changes:
+        yield f"  Without another trigger, the best is: {kept.words}. {_describe_result(proposal, kept)}"
+        yield "  `--propose settings` proposes that."
+    yield from (f"  {line}" for line in _list_demands(best))
+
+
+def _tried_rows(proposal: Proposal) -> Iterator[TextRow]:
+    names = proposal.tried[0].late[:_MAX_COLUMNS]
+    yield "", "changes", "met", *names, "above", "configuration"
+    for tried in proposal.tried:
+        mark = "->" if tried is proposal.best and tried.changes else ""
+        met_count = len(proposal.deadlines) - len(tried.late)
+        bounds = [f"{write_bound(tried.bounds[name])}{'' if name in tried.late else ' ok'}" for name in names]
+        above = figure_wording.format_share(tried.lateness)
+        yield mark, str(len(tried.changes)), f"{met_count} of {len(proposal.deadlines)}", *bounds, above, tried.words
+
+
+def _describe_result(proposal: Proposal, tried: TriedConfiguration) -> str:
+    if not tried.late:
+        count = len(proposal.deadlines)
+        subject = {1: "The chain is", 2: "Both chains are"}.get(count, f"All {count} chains are")
+        return f"{subject} proven."
+    phrases = [
+        f"{name} {write_bound(bound)}"
+        + (f", {figure_wording.format_duration(bound - proposal.deadlines[name])} above its deadline" if bound else "")
+        for name in tried.late
+        for bound in (tried.bounds[name],)
+    ]
+    return f"Not proven then: {'; '.join(phrases)}."
+
+
+def _list_demands(configuration: TriedConfiguration) -> Iterator[str]:
+    """Yield what a configuration asks for besides the files."""
+    kinds = {change.kind for change in configuration.changes}
+    if "priority" in kinds:
+        yield (
+            "Priorities are those of processes under SCHED_FIFO: what starts each has to set its own (in a launch file "
+            '`prefix="chrt -f 20"`), and may do so with CAP_SYS_NICE, or with `rtprio 99` in /etc/security/limits.d.'
+        )
+    if "container" in kinds:
+        yield "What leaves a container is started as a process of its own, and no message passes inside of one any more."
+    if "trigger" in kinds:
+        yield (
+            "A trigger changes the program: it computes when its message comes (each n-th one: `every`), without a timer; "
+            "the bound rests on no message being lost."
+        )
+
+
+def proposal_to_json(proposal: Proposal, patch: str | None, refusal: str | None) -> dict[str, Any]:
+    """Return all that was tried as plain data; durations in ms. `patch` is None where there is nothing to write."""
+    return {
+        "version": timing_json.VERSION,
+        "propose": {
+            "deadlines": _durations_to_json(proposal.deadlines),
+            "floors": _durations_to_json(proposal.hopeless),
+            "tried": [_tried_to_json(tried) for tried in proposal.tried],
+            "best": proposal.tried.index(proposal.best),
+            "kept_triggers": proposal.tried.index(proposal.kept_triggers),
+            "cut": proposal.is_cut,
+            "patch": patch,
+            "refused": refusal,
+        },
+    }
+
+
+def _tried_to_json(tried: TriedConfiguration) -> dict[str, Any]:
+    return {
+        "configuration": tried.words,
+        "set": list(map(str, tried.changes)),
+        "bounds": _durations_to_json(tried.bounds),
+        "late": list(tried.late),
+        "lateness": float(tried.lateness),
+    }
+
+
+def _durations_to_json(durations: Mapping[str, Fraction | None]) -> dict[str, float | None]:
+    return {name: None if duration is None else float(duration / _MS) for name, duration in durations.items()}

@@ -8,7 +8,7 @@ import pytest
 
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
-from archgen.timing.search.chain_surroundings import list_chain_elements, list_neighbours
+from archgen.timing.search.chain_budgets import list_chain_elements, list_neighbours
 from tests.timing.made import MS, analysis, event, ms, periodic
 from tests.timing.sketches import analyse_sketch
 
