@@ -1,4 +1,4 @@
-"""What is said of chains beyond their bounds: the run in which one is late, what would prove it, and all that was tried."""
+"""What would prove chains that are late: in short beside each of them, and all that was tried with the best of it."""
 
 from __future__ import annotations
 
@@ -8,8 +8,6 @@ from typing import Any
 
 from archgen.diagnostics.text_columns import TextRow, align_rows, format_section
 from archgen.emit.data import timing_json
-from archgen.simulation.chain_witnesses import ChainWitness
-from archgen.timing.analysis import ChainResult
 from archgen.timing.figures import figure_wording
 from archgen.timing.search.proposals import Proposal, TriedConfiguration
 
@@ -17,22 +15,6 @@ REMEDY_TITLE = "What would prove them, found by trying"
 _MAX_COLUMNS = 5
 """So many chains have a column of their own in the table of what was tried: those that are not met as written."""
 _MS = 10**6
-
-
-def describe_slack(result: ChainResult) -> str:
-    """Return how much of its deadline a chain's bound leaves, or by how much it is above it: `252.1 ms left`."""
-    if result.slack is None:
-        return ""
-    text = figure_wording.format_duration(abs(result.slack))
-    return f"{text} left" if result.slack >= 0 else f"{text} above it"
-
-
-def describe_witness(chain_id: str, witness: ChainWitness | None) -> str:
-    """Return how to see a chain late, empty where no run is known."""
-    if witness is None:
-        return ""
-    command = f"archgen simulate --seed {witness.seed} --chain {chain_id} --seconds {witness.seconds}"
-    return f"seen in `{command}`: {figure_wording.format_duration(witness.longest)}"
 
 
 def list_remedy_rows(proposal: Proposal | None) -> Iterator[TextRow]:

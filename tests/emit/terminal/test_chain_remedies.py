@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import pytest
 
-from archgen.emit.terminal import chain_remedies
+from archgen.emit.terminal import chain_gaps, chain_remedies
 from archgen.simulation.chain_witnesses import ChainWitness
 from archgen.timing.search.change_trials import TriedChange
 from archgen.timing.search.proposals import Proposal, TriedConfiguration
@@ -23,14 +23,14 @@ MS = Fraction(10**6)
 def test_what_is_left_of_a_deadline(deadline: str, text: str) -> None:
     nodes = {"a @p": "period: 96 ms, wcet: 2 ms", "b @p": "wcet: 3 ms"}
     model = read_sketch(nodes, "a>b", f"hosts: {{p: {{cores: 1}}}}\nchains: {{c: {{through: [a, b]{deadline}}}}}")
-    assert chain_remedies.describe_slack(bound_with(model)["c"]) == text
+    assert chain_gaps.describe_slack(bound_with(model)["c"]) == text
 
 
 def test_a_witness_is_told_with_the_command_that_repeats_it() -> None:
-    assert chain_remedies.describe_witness("c", ChainWitness(17, 60, 163 * MS)) == (
+    assert chain_gaps.describe_witness("c", ChainWitness(17, 60, 163 * MS)) == (
         "seen in `archgen simulate --seed 17 --chain c --seconds 60`: 163 ms"
     )
-    assert chain_remedies.describe_witness("c", None) == ""
+    assert chain_gaps.describe_witness("c", None) == ""
 
 
 def _propose(bounds: list[dict[str, int | None]], hopeless: dict[str, Fraction] | None = None) -> Proposal:
