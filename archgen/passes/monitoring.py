@@ -11,7 +11,7 @@ from archgen.model.path_resolver import title_from_id
 from archgen.passes.existing_parts import is_existing
 from archgen.passes.pass_shape import Pass, PassWork
 from archgen.passes.written_places import Holder, find_type_of, list_holders
-from archgen.project.shipped_library import SHIPPED_ID
+from archgen.project.library_reading import SHIPPED_ID
 from archgen.syntax.yaml_tree import MappingNode
 
 MONITOR_TAG = "state_monitor"

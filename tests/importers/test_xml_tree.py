@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from archgen.importers import xml_tree
+from archgen.importers.foreign_files import MAX_DEPTH, parse_xml
 from archgen.importers.foreign_import import ForeignFileError
-from archgen.importers.xml_tree import MAX_DEPTH, parse_xml
 
 MODEL = b"""<?xml version="1.0" encoding="UTF-8"?>
 <xmi:XMI xmlns:xmi="http://www.omg.org/spec/XMI/20131001" xmlns="urn:none">
