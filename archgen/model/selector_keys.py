@@ -257,7 +257,7 @@ _ELEMENT_FINDERS: Mapping[str, Callable[[Architecture, str], SelectorHit]] = {
 """The keys whose values stand at other elements than the components and nodes that they select."""
 
 
-_CONDITION = re.compile(r"([a-z0-9_*]+)\s*(?:(>=|<=|=|>|<)\s*((?![<=>]).*\S))?")
+_CONDITION = re.compile(r"([a-z0-9_*]++)\s*+(?:(>=|<=|=|>|<)\s*+((?![<=>]).*\S))?")
 _ORDERS: Mapping[str, Callable[[int], bool]] = {
     ">=": lambda order: order >= 0,
     "<=": lambda order: order <= 0,
