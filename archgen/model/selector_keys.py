@@ -213,12 +213,11 @@ def _find_by_property(architecture: Architecture, text: str) -> SelectorHit:
         return SelectorHit(frozenset(), frozenset())
     components = {each: find_component_properties(architecture, own) for each, own in architecture.components.items()}
     nodes = {each: find_node_properties(architecture, own) for each, own in architecture.nodes.items()}
-    return SelectorHit(
-        *(
-            frozenset(each for each, own in found.items() if condition.is_met(own, matches_wildcard))
-            for found in (components, nodes)
-        )
+    met_components, met_nodes = (
+        frozenset(each for each, own in found.items() if condition.is_met(own, matches_wildcard))
+        for found in (components, nodes)
     )
+    return SelectorHit(met_components, met_nodes)
 
 
 def _hit_of_findings(architecture: Architecture, element_ids: Iterable[str]) -> SelectorHit:
