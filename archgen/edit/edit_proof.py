@@ -12,9 +12,9 @@ from dataclasses import dataclass, field
 
 from archgen import pipeline
 from archgen.compare.architecture_version import ArchitectureVersion
-from archgen.compare.compared_elements import MAPPED_KEY, ComparedElement
 from archgen.compare.element_listing import list_elements
 from archgen.compare.matched_ids import MatchedIds
+from archgen.compare.version_pair import MAPPED_KEY, ComparedElement
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node
