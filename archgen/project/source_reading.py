@@ -15,8 +15,7 @@ from archgen.model.agreed_terms import SIGNATURE_FOLDER
 from archgen.model.review_settings import agreement_file
 from archgen.project import baseline_reading
 from archgen.project.project_search import PROJECT_FILE
-from archgen.project.reading_state import ReadingState, parse_file
-from archgen.project.slice_parsing import Slice
+from archgen.project.slice_parsing import ReadingState, Slice, parse_file
 from archgen.project.source_patterns import (
     SKIPPED_FOLDERS,
     expand_source_pattern,
