@@ -142,7 +142,9 @@ def _set_times(dice: random.Random, hosts: dict[str, int], steps: dict[str, Step
             (sum(shares[each.name] * (core in each.cores) for each in steps.values() if each.host == step.host), core)
             for core in step.cores
         ]
-        step.worst = max(int(wanted * len(step.cores) * shares[step.name] / max(places)[0] / _find_rate(steps, step)), 10)
+        step.worst = max(
+            int(wanted * len(step.cores) * shares[step.name] / max(places)[0] / _find_rate(steps, step)), 10
+        )
         step.best = dice.choice((step.worst, step.worst // 2, 0))
     loads = []
     for host in hosts:
@@ -175,11 +177,13 @@ def _write(
     )
     box_text = ", ".join(f"{box}: {{threads: 1, host: {box[4:]}}}" for box in dict.fromkeys(boxes.values()))
     return sketch(
-        nodes, wires, f"hosts: {{{host_text}}}\nlinks: {{{link_text}}}\n" + (f"containers: {{{box_text}}}\n" if boxes else "")
+        nodes,
+        wires,
+        f"hosts: {{{host_text}}}\nlinks: {{{link_text}}}\n" + (f"containers: {{{box_text}}}\n" if boxes else ""),
     )
 
 
-@dataclass
+@dataclass(eq=False)
 class _Job:
     step: Step
     fired: int
@@ -260,9 +264,12 @@ class Simulation:
         while True:
             for thread, queue in self.queues.items():
                 if thread not in self.running and queue:
-                    place = self.dice.randrange(len(queue)) if self.order in {"dice", "starving"} else 0
-                    place = len(queue) - 1 if self.order == "last come" else place
-                    self.running[thread] = queue.pop(place)
+                    # Jobs of one callback begin in the order in which they came.
+                    firsts = list({job.step.name: job for job in reversed(queue)}.values())
+                    chosen = self.dice.choice(firsts) if self.order in {"dice", "starving"} else queue[0]
+                    chosen = firsts[0] if self.order == "last come" else chosen
+                    queue.remove(chosen)
+                    self.running[thread] = chosen
             taken: dict[tuple[str, int], _Job] = {}
             for thread in sorted(self.running, key=self._rank):
                 job = self.running[thread]
