@@ -142,7 +142,9 @@ def _set_times(dice: random.Random, hosts: dict[str, int], steps: dict[str, Step
             (sum(shares[each.name] * (core in each.cores) for each in steps.values() if each.host == step.host), core)
             for core in step.cores
         ]
-        step.worst = max(int(wanted * len(step.cores) * shares[step.name] / max(places)[0] / _find_rate(steps, step)), 10)
+        step.worst = max(
+            int(wanted * len(step.cores) * shares[step.name] / max(places)[0] / _find_rate(steps, step)), 10
+        )
         step.best = dice.choice((step.worst, step.worst // 2, 0))
     loads = []
     for host in hosts:
@@ -175,7 +177,9 @@ def _write(
     )
     box_text = ", ".join(f"{box}: {{threads: 1, host: {box[4:]}}}" for box in dict.fromkeys(boxes.values()))
     return sketch(
-        nodes, wires, f"hosts: {{{host_text}}}\nlinks: {{{link_text}}}\n" + (f"containers: {{{box_text}}}\n" if boxes else "")
+        nodes,
+        wires,
+        f"hosts: {{{host_text}}}\nlinks: {{{link_text}}}\n" + (f"containers: {{{box_text}}}\n" if boxes else ""),
     )
 
 

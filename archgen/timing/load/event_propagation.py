@@ -84,7 +84,11 @@ class _Propagation(StepUpdates):
     def run_to_fixed_point(self) -> PropagationState:
         """Take the strong components of the dependencies in order, and iterate only those that are loops."""
         all_steps = [
-            *self.state.triggers.order, *self.whole_hosts, *self.transactions, *self.resources, *self.joined_resources
+            *self.state.triggers.order,
+            *self.whole_hosts,
+            *self.transactions,
+            *self.resources,
+            *self.joined_resources,
         ]
         for steps in find_strong_components(all_steps, self.successors.__getitem__):
             # The strong components come in the order of dependency: what is outside of loops is found once, in one

@@ -81,9 +81,7 @@ class PropagationSteps:
                 find_transactions(state.system, state.triggers, self.resources, self._list_firing_arcs())
             )
         }
-        self.transaction_step_of = {
-            name: step for step, each in self.transactions.items() for name in each.place_of
-        }
+        self.transaction_step_of = {name: step for step, each in self.transactions.items() for name in each.place_of}
         for each in self.transactions.values():
             state.transaction_arcs.update(find_run_arcs(each.inner_triggers, each.ways_to))
         self.window_inputs: dict[str, tuple[object, object]] = {}
@@ -160,7 +158,11 @@ class PropagationSteps:
         successors: dict[str, list[str]] = {
             step: []
             for step in (
-                *system.activities, *self.whole_hosts, *self.transactions, *self.resources, *self.joined_resources
+                *system.activities,
+                *self.whole_hosts,
+                *self.transactions,
+                *self.resources,
+                *self.joined_resources,
             )
         }
         self._add_resource_steps(successors)

@@ -73,7 +73,10 @@ class Transactions:
 
 
 def find_transactions(
-    system: TimingSystem, triggers: TriggerGraph, resources: Mapping[str, ProcessingResource], firing_arcs: Iterable[Arc]
+    system: TimingSystem,
+    triggers: TriggerGraph,
+    resources: Mapping[str, ProcessingResource],
+    firing_arcs: Iterable[Arc],
 ) -> Iterator[Transactions]:
     """Yield the transactions of each group of cores that fire one another in turn."""
     # A thread that waits for a resource leaves its core idle.
@@ -149,7 +152,9 @@ def _build_place(
             name for name in unit if system.activities[name].wcet != 0 and name not in inner_triggers.silent_ids
         ]
         jobs_of[unit] = tuple(
-            PlaceJob(name, key, ways[key].entry if key else EventOrigin("activity", name), unit, system.activities[name].wcet)
+            PlaceJob(
+                name, key, ways[key].entry if key else EventOrigin("activity", name), unit, system.activities[name].wcet
+            )
             for name in working_ids
             for key in keys_of.get(name, (None,))
         )
