@@ -1,4 +1,7 @@
-"""Override how processes, hosts and resources run what is on them, without touching a file: `sensor_box.threads=2`."""
+"""Override how processes, hosts and resources run what is on them, without touching a file: `sensor_box.threads=2`.
+
+Read the values of overrides, and say what is wrong with them.
+"""
 
 from __future__ import annotations
 
@@ -9,8 +12,6 @@ from typing import Any
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.frozen import dataclass
-from archgen.link import override_values
-from archgen.link.override_values import OverrideError
 from archgen.model.architecture import Architecture
 from archgen.model.declared_timing import EXECUTOR_ORDERS, HOST_ORDERS, RESOURCE_ORDERS
 from archgen.model.deployment import Container, Host
@@ -18,13 +19,15 @@ from archgen.model.node import Node
 
 _ORDERS = {"nodes": EXECUTOR_ORDERS, "containers": EXECUTOR_ORDERS, "hosts": HOST_ORDERS, "resources": RESOURCE_ORDERS}
 _KEYS: Mapping[str, tuple[str, ...]] = {
-    "nodes": ("threads", "scheduling", "reentrant", "callback_groups", "host"),
+    "nodes": ("threads", "scheduling", "reentrant", "callback_groups", "host", "container"),
     "containers": ("threads", "scheduling", "host"),
     "hosts": ("cores", "scheduling"),
     "resources": ("scheduling",),
 }
 """The keys of each section that can be overridden."""
 _ALL_KEYS = tuple(dict.fromkeys(key for keys in _KEYS.values() for key in keys))
+NO_CONTAINER = "none"
+"""What `container` is set to for a process of its own."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,22 +78,26 @@ def _parse_value(  # noqa: PLR0913, PLR0917 - the parts of one override
     value: object | None
     if key == "callback_groups":
         components = architecture.nodes[element_id].implements
-        value = _find_members(components, override_values.split_list(text)) if part else None
+        value = _find_members(components, split_list(text)) if part else None
         expected = f"components of `{element_id}`, as in callback_groups.GROUP={components[0] if components else 'a'}"
     elif part and (section, key) != ("hosts", "scheduling"):
         value, expected = None, "a value of its own, without a part below it"
     elif key == "scheduling":
-        is_core = not part or override_values.parse_count(part) is not None
+        is_core = not part or parse_count(part) is not None
         value = text if text in _ORDERS[section] and is_core else None
         expected = ", ".join(_ORDERS[section]) + (", by host or by the number of a core" if section == "hosts" else "")
     elif key == "host":
         value = text if text in architecture.hosts else None
         expected = "a host" + (f"; {guess}" if (guess := did_you_mean(text, architecture.hosts)) else "")
+    elif key == "container":
+        value = text if text in architecture.containers or text == NO_CONTAINER else None
+        guess = did_you_mean(text, architecture.containers)
+        expected = f"a container, or `{NO_CONTAINER}` for a process of its own" + (f"; {guess}" if guess else "")
     elif key == "reentrant":
         value, expected = {"true": True, "false": False}.get(text), "true or false"
     else:
-        value, expected = override_values.parse_count(text) or None, "a whole number from 1"
-    return override_values.require_value(name, text, value, expected)
+        value, expected = parse_count(text) or None, "a whole number from 1"
+    return require_value(name, text, value, expected)
 
 
 def _find_members(components: tuple[str, ...], names: list[str]) -> tuple[str, ...] | None:
@@ -123,6 +130,8 @@ def apply_process_override(architecture: Architecture, override: ProcessOverride
             for node in architecture.nodes.values()
         }
         architecture = replace(architecture, nodes=nodes)
+    elif isinstance(element, Node) and override.key == "container":
+        changes = _change_container(architecture, element, override.value)
     elif override.key == "reentrant" and override.value:
         changes["callback_groups"] = {}
     changed_section: dict[str, Any] = {override.section: {**elements, override.element_id: replace(element, **changes)}}
@@ -135,6 +144,12 @@ def _change_orders(host: Host, override: ProcessOverride) -> dict[str, Any]:
     return {"core_scheduling": {**host.core_scheduling, int(override.part): override.value}}
 
 
+def _change_container(architecture: Architecture, node: Node, name: str) -> dict[str, Any]:
+    """Return the container of a node, and the host that it has by it; a process of its own stays where it was."""
+    container = architecture.containers.get(name)
+    return {"container": container.id, "host": container.host or node.host} if container else {"container": None}
+
+
 def _change_groups(node: Node, override: ProcessOverride) -> dict[str, Any]:
     """Return the callback groups with one of them as overridden: its components leave their other groups."""
     other_groups = {
@@ -144,3 +159,38 @@ def _change_groups(node: Node, override: ProcessOverride) -> dict[str, Any]:
         and (remaining := tuple(component for component in members if component not in override.value))
     }
     return {"callback_groups": {**other_groups, override.part: override.value}, "reentrant": False}
+
+
+_MAX_COUNT_DIGITS = 9
+
+
+class OverrideError(ValueError):
+    """A figure cannot be overridden; the message says why."""
+
+
+def parse_count(text: str) -> int | None:
+    """Return a whole number, None for any other text."""
+    return int(text) if text.isascii() and text.isdigit() and len(text) <= _MAX_COUNT_DIGITS else None
+
+
+def parse_counts(text: str) -> tuple[int, ...] | None:
+    """Return a list of whole numbers in ascending order, each once; None for any other text."""
+    numbers = [parse_count(word) for word in split_list(text)]
+    return (
+        tuple(sorted({number for number in numbers if number is not None})) if numbers and None not in numbers else None
+    )
+
+
+def split_list(text: str) -> list[str]:
+    """Return the entries of a list as files have it; its brackets may be left out."""
+    inner = text[1:-1] if text.startswith("[") and text.endswith("]") else text
+    return [word.strip() for word in inner.split(",")] if inner.strip() else []
+
+
+def require_value(key: str, text: str, parsed_value: object | None, expected: str) -> object:
+    """Return a value that could be read. Raises `OverrideError` where it is None."""
+    if parsed_value is not None:
+        return parsed_value
+    digits_hint = "; that has too many digits" if sum(map(str.isdigit, text)) > _MAX_COUNT_DIGITS else ""
+    msg = f"`{key}` takes {expected}, not `{text}`{digits_hint}"
+    raise OverrideError(msg)

@@ -8,8 +8,7 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline
-from archgen.compare.agreements import AgreementJudge, names_change
-from archgen.compare.change_hashes import hash_change
+from archgen.compare.agreements import AgreementJudge, hash_change, names_change
 from archgen.compare.comparison import Change, PartnerBreak
 from archgen.compare.connection_maps import ConnectionMap
 from archgen.compare.matched_ids import MatchedIds
@@ -19,7 +18,7 @@ from archgen.diagnostics.source_span import Span
 from archgen.model.architecture import Partner
 from archgen.model.review_settings import AcceptedChange, ReviewSettings
 from archgen.project.project_loading import load_from_files
-from archgen.syntax.overlaid_files import OverlaidFiles
+from archgen.syntax.project_files import OverlaidFiles
 
 TYPE = Change("changed", "output", "g.a.x", key="type")
 EMPTY = pipeline.judge_project(

@@ -1,10 +1,11 @@
-"""What a chain's bound lacks, in words: execution times, rates, latencies, links between hosts."""
+"""What is said of chains without a bound or beyond it: what the bound lacks, what is left, the run in which one is late."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
 from archgen.diagnostics.common_wording import join_words
+from archgen.simulation.chain_witnesses import ChainWitness
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.unfound_bounds import describe_unfound_places, find_overloaded_hosts, find_unfound_places
 from archgen.timing.figures import figure_wording
@@ -96,3 +97,19 @@ def _describe_basis(result: ChainResult) -> str:
         return ""
     values = [value for term in result.terms for value in (term.response, term.link)]
     return "(what is known) " if any(value.value for value in values) else "(periods only) "
+
+
+def describe_slack(result: ChainResult) -> str:
+    """Return how much of its deadline a chain's bound leaves, or by how much it is above it: `252.1 ms left`."""
+    if result.slack is None:
+        return ""
+    text = figure_wording.format_duration(abs(result.slack))
+    return f"{text} left" if result.slack >= 0 else f"{text} above it"
+
+
+def describe_witness(chain_id: str, witness: ChainWitness | None) -> str:
+    """Return how to see a chain late, empty where no run is known."""
+    if witness is None:
+        return ""
+    command = f"archgen simulate --seed {witness.seed} --chain {chain_id} --seconds {witness.seconds}"
+    return f"seen in `{command}`: {figure_wording.format_duration(witness.longest)}"

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field
 from math import lcm
 from typing import Literal
 
 from archgen.frozen import dataclass
+from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, RunResponse
+from archgen.timing.chains.element_index import ElementIndex, MeasuredBasis
 from archgen.timing.chains.path_search import CostGraph, Hop
 from archgen.timing.chains.step_delays import StepDelays
 from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue
@@ -35,6 +37,10 @@ class CostNetwork:
     runs: Mapping[str, RunResponse] = field(default_factory=dict)
     _graphs: dict[PathAim, tuple[CostGraph, list[int]]] = field(default_factory=dict)
     _other_views: list[CostNetwork] = field(default_factory=list)
+    _arcs_by_ends: dict[tuple[str, str], list[int]] = field(default_factory=dict)
+    _indices: list[ElementIndex] = field(default_factory=list)
+    _bases: list[MeasuredBasis] = field(default_factory=list)
+    _arcs_of_output: dict[str, list[int]] = field(default_factory=dict)
 
     @classmethod
     def of_analysis(cls, analysis: Analysis) -> CostNetwork:
@@ -56,6 +62,33 @@ class CostNetwork:
     def arcs(self) -> tuple[Arc, ...]:
         """Return the system's arcs; `Hop.arc` is an index into them."""
         return self.steps.analysis.system.arcs
+
+    def list_parallel(self, arc_index: int) -> Sequence[int]:
+        """Return the arcs that have the ends of an arc, itself among them."""
+        if not self._arcs_by_ends:
+            for index, each in enumerate(self.arcs):
+                self._arcs_by_ends.setdefault((each.source, each.target), []).append(index)
+        arc = self.arcs[arc_index]
+        return self._arcs_by_ends[arc.source, arc.target]
+
+    def index_elements(self, architecture: Architecture) -> ElementIndex:
+        """Return what the elements of chains stand for in the architecture that was analysed."""
+        if not self._indices:
+            self._indices.append(ElementIndex(self.steps.analysis.system, architecture))
+        return self._indices[0]
+
+    def find_measured_basis(self) -> MeasuredBasis:
+        """Return the measured execution times on which the figures of chains rest."""
+        if not self._bases:
+            self._bases.append(MeasuredBasis(self.steps.analysis))
+        return self._bases[0]
+
+    def list_arcs(self, output: str) -> Sequence[int]:
+        """Return the arcs (as indices) by which data leaves by an output."""
+        if not self._arcs_of_output:
+            for arc_index, arc in enumerate(self.arcs):
+                self._arcs_of_output.setdefault(arc.output, []).append(arc_index)
+        return self._arcs_of_output.get(output, ())
 
     def cost_graph(self, aim: PathAim) -> tuple[CostGraph, list[int]]:
         """Return the graph with the costs of an aim, and what each vertex costs as a start."""

@@ -7,7 +7,7 @@ point (K. Tindell, J. Clark 1994; compositional analysis as in pyCPA).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import TypeVar
 
@@ -16,7 +16,6 @@ from archgen.timing.figures.timing_values import UnknownCause, sum_ratios
 from archgen.timing.load.core_responses import CoreResponses
 from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.load_system import build_load_system, list_written_priorities
-from archgen.timing.load.lone_work import find_lone_wait
 from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.search_budgets import GroupBudgets
@@ -29,6 +28,7 @@ from archgen.timing.system.core_placement import (
     ProcessingResource,
     find_resources,
 )
+from archgen.timing.system.thread_pools import may_skip_ticks
 from archgen.timing.system.timing_system import TimingSystem, samples_inputs
 from archgen.timing.system.trigger_graph import TriggerGraph, find_triggers, has_own_rate
 
@@ -118,14 +118,32 @@ class _Propagation(StepUpdates):
                 state.storing_waits |= limit_responses(
                     CoreResponses({}, {}, waits), self._limits_of(step)
                 ).storing_waits
+            if queue is not None and queue.works_in_rounds:
+                for name in names:
+                    wait = state.storing_waits[name]
+                    state.storing_waits[name] = queue.limit_storing_wait(state.system, name, wait)
         for name in sorted(readers.difference(self.resources_of)):
-            if state.system.activities[name].uses:
-                own_core = ProcessingResource(name, None, 1, ((name,),))
-                stores = find_waiting_stores(state, own_core, self.waiting_ids, (name,), self.budget_of[name])
+            own_core, budget = ProcessingResource(name, None, 1, ((name,),)), self.budget_of[name]
+            if state.system.activities[name].suspends:
+                stores = find_waiting_stores(state, own_core, self.waiting_ids, (name,), budget)
                 state.storing_waits[name] = self._limit_response(name, stores[name])
             else:
-                budget = self.budget_of[name]
-                state.storing_waits[name] = find_lone_wait(state.system, name, state.event_models, budget)
+                waits = find_core_waits(state.system, own_core, state.event_models, (name,), budget)
+                state.storing_waits[name] = waits[name]
+        self._add_skipped_ticks(readers)
+
+    def _add_skipped_ticks(self, readers: Iterable[str]) -> None:
+        """Add to waits on other resources than a single core that a tick which waits for its job skips the next ones."""
+        state = self.state
+        single_cores = {name for step in self._list_single_steps() for name in self.resources[step].members}
+        for name in sorted(set(readers) - single_cores):
+            activity, wait, response = state.system.activities[name], state.storing_waits[name], state.responses[name]
+            if wait.value and response.value and may_skip_ticks(state.system, activity, response.value):
+                state.storing_waits[name] = wait._replace(value=wait.value + response.value - (activity.wcet or 0))
+
+    def _list_single_steps(self) -> Iterator[str]:
+        """Yield the resources of one core: their waits end where a job begins, whatever is skipped."""
+        return (step for step, each in self.resources.items() if not each.waits and step not in self.shared_cores)
 
     def _iterate_steps(self, steps: tuple[str, ...]) -> None:
         """Repeat until nothing changes: place by place, and then with what the ways over hosts say of all that leaves them."""

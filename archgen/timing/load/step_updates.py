@@ -60,7 +60,7 @@ class StepUpdates(PropagationSteps):
         state = self.state
         event_model = activation_model(state, step)
         is_same_model = step in state.responses and _is_unchanged(state.event_models.get(step), event_model)
-        is_waiting = step not in self.resources_of and bool(state.system.activities[step].uses)
+        is_waiting = step not in self.resources_of and state.system.activities[step].suspends
         if is_same_model and not is_waiting and step not in self.transaction_step_of:
             return False
         state.event_models[step] = event_model
@@ -125,7 +125,10 @@ class StepUpdates(PropagationSteps):
         queue: CoreQueue, models: EventModels, responses: Mapping[str, WorstResponse], budget: SearchBudget
     ) -> dict[str, QueueBound]:
         """Return what the order of a queue makes of the responses in any order."""
-        busy_period = max((each.value or 0 for each in responses.values() if each.tier != "declared"), default=0)
+        values = [each.value for each in responses.values() if each.tier != "declared"]
+        if None in values and not queue.works_in_rounds:
+            return {}
+        busy_period = max((value or 0 for value in values), default=0)
         return queue.bound_responses(models.__getitem__, busy_period, budget)
 
     def _limits_of(self, step: str) -> dict[str, HostLimit]:
