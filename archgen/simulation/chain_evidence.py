@@ -12,7 +12,6 @@ from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.search.change_trials import ChangeTrials, OverrideLayer
 from archgen.timing.search.proposals import MAX_TRIES, Proposal, find_proposal
 
-
 _SMALL_SIZE, _LEAST_TRIES = 150, 12
 """So many activities make a small project; and so many configurations are tried of the largest one."""
 
