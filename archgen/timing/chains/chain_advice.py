@@ -14,7 +14,7 @@ from archgen.timing.analysis import Analysis, ChainResult, ChainTerm
 from archgen.timing.chains.unfound_bounds import find_overloaded_hosts
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.figures.value_arithmetic import UNLINKED_NOTE, is_boundless
+from archgen.timing.figures.value_arithmetic import NO_USE_NOTE, REPLACED_WORDS, UNLINKED_NOTE, is_boundless
 from archgen.timing.system.core_placement import is_missing_cores
 
 _NAMED_LOADS = 3
@@ -123,6 +123,8 @@ def _suggest_for_cause(analysis: Analysis, result: ChainResult) -> str:
         return f"Take work off {hosts[0]}, where {needed} need{'s' if len(shares) == 1 else ''} most."
     if result.bound.missing and not result.bound.complete:
         return _suggest_measuring(analysis, result)
+    if any(text.startswith(NO_USE_NOTE) and REPLACED_WORDS in text for text in result.bound.assumptions):
+        return "Let each source send on a topic of its own, or write `memory: each_source` at the input where the program keeps a message of each."
     return ""
 
 
