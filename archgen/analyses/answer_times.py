@@ -196,8 +196,8 @@ def _find_long_callbacks(analysis: Analysis, members: Sequence[Activity]) -> Ite
     timed = [(member.period, member) for member in members if member.behaviour == "periodic" and member.period]
     timed.sort(key=lambda pair: pair[0])
     for slow in members:
-        # While it uses a resource, it keeps its thread.
-        held = (slow.wcet or 0) + sum(use.worst for use in slow.uses.values())
+        # While it uses a resource, or waits within its declared response, it keeps its thread.
+        held = max((slow.wcet or 0) + sum(use.worst for use in slow.uses.values()), slow.response or 0)
         delayed = [(period, member) for period, member in timed if period < held and member is not slow]
         if not delayed:
             continue
@@ -209,7 +209,7 @@ def _find_long_callbacks(analysis: Analysis, members: Sequence[Activity]) -> Ite
         yield Diagnostic(
             "long-callback",
             f"`{slow.id}`, {held_text}, shares the thread of `{first.id}`, which is due every {period_text}{more_text}",
-            slow.places.get("wcet", slow.at),
+            slow.places.get("response", slow.places.get("wcet", slow.at)),
             labels=(Label(period_span, "due in the meantime"),) if period_span != NO_SPAN else (),
             help=f"`archgen timing --why {first.id}` shows how late it may come, `archgen timing --propose` what helps chains "
             "that are late for it",

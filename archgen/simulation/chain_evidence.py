@@ -12,6 +12,9 @@ from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.search.change_trials import ChangeTrials, OverrideLayer
 from archgen.timing.search.proposals import MAX_TRIES, Proposal, find_proposal
 
+_SMALL_SIZE, _LEAST_TRIES = 150, 12
+"""So many activities make a small project; and so many configurations are tried of the largest one."""
+
 
 @dataclass(frozen=True, slots=True)
 class ChainEvidence:
@@ -36,7 +39,9 @@ def find_evidence(
     asked_results = [result for name, result in results.items() if asked in {None, name}]
     proposal = None
     if any(result.deadline and result.verdict in {"missed", "not proven"} for result in asked_results):
-        proposal = find_proposal(ChangeTrials(architecture, analysis, lay_overrides, MAX_TRIES), results)
+        # Of a large project fewer are tried, since nobody asked for it: `--propose` tries them all.
+        tries = max(_LEAST_TRIES, MAX_TRIES * _SMALL_SIZE // max(_SMALL_SIZE, len(analysis.system.activities)))
+        proposal = find_proposal(ChangeTrials(architecture, analysis, lay_overrides, tries), results)
     return ChainEvidence(find_witnesses(analysis, asked_results), proposal)
 
 
