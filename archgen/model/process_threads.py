@@ -1,8 +1,9 @@
-"""How many threads take the callbacks of a process: what is started is what is judged."""
+"""How many threads take the callbacks of a process, and in which order: what is started is what is judged."""
 
 from __future__ import annotations
 
 from archgen.model.architecture import Architecture
+from archgen.model.declared_timing import SchedulingOrder
 from archgen.model.deployment import Container
 from archgen.model.port_media import ROS
 from archgen.model.ros_distro import is_ros_1
@@ -22,3 +23,13 @@ def find_container_threads(architecture: Architecture, container: Container) -> 
         return container.threads
     has_many = container.executable in _MANY_THREADED_PROGRAMS or is_ros_1(architecture.distro)
     return None if has_many or architecture.project.middleware != ROS else 1
+
+
+def find_usual_order(architecture: Architecture) -> SchedulingOrder | None:
+    """Return the order in which a process takes callbacks where none is written; None where the middleware tells none.
+
+    ROS 2 works through wait sets, in C++ and in Python; ROS 1 has a queue.
+    """
+    if architecture.project.middleware != ROS:
+        return None
+    return "fifo" if is_ros_1(architecture.distro) else "ros2_executor"

@@ -40,7 +40,7 @@ class ChainTrace:
 
     `samplings` are the activation times of the first activity's jobs. `source_logs` give, for each later activity and
     each of its jobs, the job of the previous activity whose data it read (-1 for none). `job_ends` are the end times of
-    the last activity's jobs. `samples_world` says that the first activity samples the world; otherwise its activation
+    the last activity's jobs (-1 for one that has not ended). `samples_world` says that the first activity samples the world; otherwise its activation
     is the event. `forwarded_jobs` give, for each activity but the last, the jobs that sent something to the next one;
     None where all do.
     """
@@ -66,7 +66,9 @@ def measure_chain(trace: ChainTrace, *, forwarded_only: bool = False) -> ChainSe
     counted_jobs = _find_forwarded_jobs(trace) if forwarded_only else range(len(samplings) + 1)
     # In the order in which they are put out: a job that began earlier may end later where several run at once.
     carried_jobs = sorted(
-        (end, source) for job, end in enumerate(job_ends) if (source := _source_job(job, trace.source_logs)) >= 0
+        (end, source)
+        for job, end in enumerate(job_ends)
+        if end >= 0 and (source := _source_job(job, trace.source_logs)) >= 0
     )
     # A job that carries new data is also the first reaction to every input that was overwritten in between. The very
     # first one is left out: what came before it is not known.

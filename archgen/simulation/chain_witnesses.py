@@ -7,6 +7,7 @@ from fractions import Fraction
 
 from archgen.frozen import dataclass
 from archgen.simulation.analysis_bounds import find_publish_pauses
+from archgen.simulation.drawn_orders import DrawnOrder
 from archgen.simulation.seeded_runs import find_late_runs
 from archgen.timing.analysis import Analysis, ChainResult
 
@@ -28,6 +29,8 @@ class ChainWitness:
     seconds: int
     longest: Fraction
     """What the chain took in it, in ns."""
+    orders: tuple[DrawnOrder, ...] = ()
+    """The orders in which it did, where nobody wrote one."""
 
 
 def find_witnesses(analysis: Analysis, results: Iterable[ChainResult]) -> dict[str, ChainWitness]:
@@ -69,6 +72,7 @@ def _find_group_witnesses(
             late_run.seed,
             late_run.seconds,
             late_run.find_longest(samples_world=activities[group[key].through[0]].behaviour == "periodic"),
+            late_run.orders,
         )
         for key, late_run in late_runs.items()
     }

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from archgen.simulation.chain_tracking import ChainTrack, track_chain
+from archgen.simulation.drawn_orders import DrawnOrder, list_drawn_orders
 from archgen.simulation.event_loop import EventFloodError, run_plan
 from archgen.simulation.plan_builder import PublishPauses, build_plan
 from archgen.simulation.run_totals import RunTotals
@@ -58,6 +59,8 @@ class LateRun:
     """The longest reaction time in this run; None if nothing passed along the whole chain."""
     age: Fraction | None
     """The largest data age in this run."""
+    orders: tuple[DrawnOrder, ...] = ()
+    """The orders of what the chain comes to, where nobody wrote one."""
 
     def find_longest(self, *, samples_world: bool = False) -> Fraction:
         """Return what is to be held against the deadline: the age as well, where the chain samples the world."""
@@ -98,7 +101,8 @@ def find_late_runs(
             track.add_run(run)
             through, deadline = deadlines[key]
             figures = track.to_observed(through, plan.unit).bounded_figures
-            late_run = LateRun(seed, seconds, _find_largest(figures.reaction), _find_largest(figures.age))
+            orders = list_drawn_orders(run, track.activities)
+            late_run = LateRun(seed, seconds, _find_largest(figures.reaction), _find_largest(figures.age), orders)
             if late_run.find_longest(samples_world=track.samples_world) > deadline:
                 late_runs[key] = late_run
     return late_runs

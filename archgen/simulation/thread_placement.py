@@ -109,7 +109,7 @@ class ThreadPlacement:
         executor = self.system.executors.get(activity.executor)
         if executor is not None:
             # Where nobody wrote how many threads a container has, there is one for each member.
-            return executor.threads or len(self.members[key]), executor.order
+            return executor.threads or len(self.members[key]), executor.order or executor.usual_order
         threads = self.system.threads.get(activity.container or "")
         return threads or 1, _ORDERS_BY_THREADS.get(threads)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from archgen.bringup.ros_launches import describe_container_launch
-from archgen.model.process_threads import find_container_threads
+from archgen.model.process_threads import find_container_threads, find_usual_order
 from tests.timing.random_systems import architecture
 
 
@@ -36,3 +36,15 @@ def test_what_is_started_has_the_threads_that_are_judged(
 def test_another_middleware_has_a_thread_for_each_component() -> None:
     robot = architecture("project: {id: r, title: R, middleware: orocos}\ncontainers: {box: {}}\n")
     assert find_container_threads(robot, robot.containers["box"]) is None
+
+
+@pytest.mark.parametrize(
+    ("project", "order"),
+    [
+        ("ros: {distro: jazzy}", "ros2_executor"),
+        ("ros: {distro: noetic}", "fifo"),
+        ("project: {id: r, middleware: zenoh}", None),
+    ],
+)
+def test_the_order_of_callbacks_is_that_of_the_middleware(project: str, order: str | None) -> None:
+    assert find_usual_order(architecture(project)) == order

@@ -144,6 +144,7 @@ def _evidence_to_json(chain_id: str, evidence: ChainEvidence) -> JsonObject:
             "seed": witness.seed,
             "seconds": witness.seconds,
             "longest": float(witness.longest / _MS),
+            "orders": [order._asdict() for order in witness.orders],
         }
     if remedy:
         document["remedy"] = {

@@ -9,6 +9,7 @@ from archgen.diagnostics.safe_text import make_visible
 from archgen.diagnostics.text_columns import TextRow
 from archgen.simulation.chain_evidence import ChainEvidence
 from archgen.simulation.chain_witnesses import ChainWitness
+from archgen.simulation.drawn_orders import describe_orders
 from archgen.timing.analysis import ChainResult
 from archgen.timing.chains.chain_advice import ChainAdvice
 from archgen.timing.figures import figure_wording
@@ -37,7 +38,9 @@ def describe_witness(chain_id: str, witness: ChainWitness | None) -> str:
     if witness is None:
         return ""
     command = f"archgen simulate --seed {witness.seed} --chain {chain_id} --seconds {witness.seconds}"
-    return f"seen in `{command}`: {figure_wording.format_duration(witness.longest)}"
+    orders_text = describe_orders(witness.orders)
+    longest_text = figure_wording.format_duration(witness.longest)
+    return make_visible(f"seen in `{command}`: {longest_text}{f' ({orders_text})' if orders_text else ''}")
 
 
 def list_remedy_rows(results: Mapping[str, ChainResult], evidence: ChainEvidence) -> Iterator[TextRow]:

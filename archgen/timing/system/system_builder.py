@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Container
 from archgen.model.port_media import is_physical
-from archgen.model.process_threads import find_container_threads
+from archgen.model.process_threads import find_container_threads, find_usual_order
 from archgen.timing.analysis import Reason
 from archgen.timing.figures.tick_unit import choose_tick_unit
 from archgen.timing.system import message_sizes
@@ -85,14 +85,16 @@ def build_system(
 
 def _build_executors(architecture: Architecture) -> Iterator[Executor]:
     """Yield the processes: each container, and each node outside of one."""
+    usual_order = find_usual_order(architecture)
     for container in architecture.containers.values():
         executor_id = f"container {container.id}"
         threads = find_container_threads(architecture, container)
-        yield Executor(executor_id, threads, _find_container_host(architecture, container), container.scheduling)
+        host = _find_container_host(architecture, container)
+        yield Executor(executor_id, threads, host, container.scheduling, usual_order)
     for node in architecture.nodes.values():
         if not node.container:
             # What `rclcpp::spin(node)` is: one thread.
-            yield Executor(executor_key(node), node.threads or 1, node.host, node.scheduling)
+            yield Executor(executor_key(node), node.threads or 1, node.host, node.scheduling, usual_order)
 
 
 def _find_container_host(architecture: Architecture, container: Container) -> str | None:

@@ -38,7 +38,8 @@ class Executor:
     """What runs the callbacks of a process: those of a container, or of a node outside of one.
 
     `threads` is None where nobody wrote how many a container has; a node outside of a container has one if nothing is
-    written. `order` is the order in which a thread takes what is ready, None where it may be any.
+    written. `order` is the order in which a thread takes what is ready, None where nobody wrote it: bounds hold for any
+    then, and what is simulated keeps to `usual_order`, that of its middleware, where it is known.
     """
 
     id: str
@@ -46,6 +47,7 @@ class Executor:
     threads: int | None
     host: str | None
     order: SchedulingOrder | None = None
+    usual_order: SchedulingOrder | None = None
 
 
 @dataclass(frozen=True, slots=True)
