@@ -42,11 +42,13 @@ def describe_orders(orders: Iterable[DrawnOrder]) -> str:
 def list_drawn_orders(run: SimulationRun, activities: Collection[int]) -> tuple[DrawnOrder, ...]:
     """Return the orders of the executors, hosts and resources that some activities come to, in this sequence."""
     return tuple(
-        dict.fromkeys((
-            *_list_executor_orders(run, activities),
-            *_list_host_orders(run, activities),
-            *_list_resource_orders(run, activities),
-        ))
+        dict.fromkeys(
+            (
+                *_list_executor_orders(run, activities),
+                *_list_host_orders(run, activities),
+                *_list_resource_orders(run, activities),
+            )
+        )
     )
 
 
@@ -86,4 +88,3 @@ def _describe_order(run: SimulationRun, order: int, victim: int) -> str:
     if order == FAVOURED_OTHERS:
         return f"with {run.plan.activities[victim].id} after all others"
     return _ORDER_WORDS[order]
-

@@ -122,6 +122,8 @@ class HostLoad:
     Cores that nobody wrote the number of are left out.
     """
     earliest_deadline_bound: TimingValue = UNKNOWN_VALUE
+    unproven: tuple[str, ...] = ()
+    """The activities that nothing proves to be done by their deadline, or before they are activated again."""
 
     @property
     def share_of_cores(self) -> TimingValue | None:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from archgen.timing.analysis import EventPace, HostLoad
 from archgen.timing.figures.timing_values import TimingValue
+from archgen.timing.load.host_verdicts import name_host_verdict
 from archgen.timing.system.timing_system import Activity
 from archgen.views import element_references, inline_text, timing_words
 from archgen.views.graph_shapes import PeriodStep as Step
@@ -37,12 +38,6 @@ _SHORT_TIER_WORDS = {
     "priorities": "priorities",
 }
 """Shorter words for the table of all activities, where a longer line in each row makes the table a page longer."""
-_VERDICT_WORDS = {
-    "schedulable": "in time",
-    "overload": "overloaded",
-    "undecided": "open: load alone does not decide",
-    "unknown": "unknown",
-}
 LOAD_STATES: Mapping[str, Status] = {
     "overload": "missed",
     "undecided": "not proven",
@@ -207,7 +202,7 @@ def make_load_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | None
             # Both bounds hold for a single core only.
             share_cell(load.rate_monotonic_bound) if load.cores == 1 else (),
             share_cell(load.earliest_deadline_bound) if load.cores == 1 else (),
-            inline_text.to_inlines(Text(_VERDICT_WORDS[load.verdict], status=LOAD_STATES[load.verdict])),
+            inline_text.to_inlines(Text(name_host_verdict(load), status=LOAD_STATES[load.verdict])),
             inline_text.to_inlines(value_format.describe_missing(load.utilisation, timing_lookup.analysis, 3)),
         )
         for name, load in rank_hosts(timing_lookup)
