@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.rule_options import RuleOption, format_percentage
-from archgen.timing.chains.chain_bounds import find_unmet_chains
+from archgen.timing.chains.chain_bounds import find_missed_shares, find_unmet_chains
 from archgen.timing.chains.unfound_bounds import find_overloaded_hosts, find_unfound_places
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.value_arithmetic import is_boundless, is_known_bound, is_unfound
@@ -23,8 +23,17 @@ if TYPE_CHECKING:
 
 def late_chain(architecture: Architecture, analysis: Analysis, *, margin: Fraction) -> Iterator[Diagnostic]:
     """A chain misses its deadline, or nothing proves that it meets it."""
-    if not any(chain.deadline for chain in architecture.chains.values()):
+    if not any(chain.deadline_text for chain in architecture.chains.values()):
         return
+    for chain, share, best in find_missed_shares(analysis, architecture):
+        yield Diagnostic(
+            "late-chain",
+            f"the chain `{chain.id}` misses its deadline of {figure_wording.format_duration(share.limit)} for {share.name} of its "
+            f"reactions: each takes at least {figure_wording.format_duration(best.value or 0)}",
+            chain.deadline_places[share.name],
+            help=f"`archgen timing --sensitivity {chain.id}` shows which figure shortens it most",
+            element=chain.id,
+        )
     for late_result in find_unmet_chains(analysis, architecture, margin):
         chain_id, chain = late_result.chain.id, late_result.chain
         deadline = f"its deadline of {chain.deadline}"

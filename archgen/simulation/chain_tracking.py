@@ -104,4 +104,6 @@ def _summarise_ranges(ranges: Sequence[TimeRange], unit: Fraction) -> DurationDi
         Fraction(median).limit_denominator(1000) * unit,
         Fraction(percentile_95).limit_denominator(1000) * unit,
         max(high for _, high in ranges) * unit,
+        ranges,
+        unit,
     )

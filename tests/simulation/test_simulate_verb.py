@@ -18,7 +18,7 @@ groups:
       eye: {outputs: {seen: {type: Seen}}, timing: {period: 10 ms, wcet: 2 ms, bcet: 1 ms}}
       hand: {inputs: {seen: eye.seen}, outputs: {moved: {medium: physical}}, timing: {wcet: 3 ms}}
 types: {Seen: {message: std_msgs/msg/Empty}}
-chains: {reach: {through: [eye, hand], deadline: 20 ms}}
+chains: {reach: {through: [eye, hand], deadline: {always: 20 ms, 50 %: 5 ms}}}
 """
 
 
@@ -33,6 +33,9 @@ def test_json_is_as_the_schema_says(tmp_path: Path) -> None:
     data = json.loads(told(tmp_path, "--format", "json"))
     jsonschema_rs.validator_for(schema).validate(data)
     chain = data["chains"]["reach"]
+    assert chain["deadline_shares"] == [
+        {"share": "50 %", "limit": 5.0, "seen": chain["reaction"]["median"], "verdict": "late"}
+    ]
     assert chain["bound"] == 15
     assert 14 < chain["reaction"]["max"] <= 15
 

@@ -73,6 +73,7 @@ READERS: Mapping[tuple[str, str], Reader] = {
     ("timing", "cores"): timing_readers.read_cores,
     ("timing_input", "stored"): timing_readers.read_stored,
     ("chain", "through"): system_readers.read_way,
+    ("chain", "deadline."): system_readers.read_deadline_shares,
     ("view", "show"): system_readers.make_selector_reader("show"),
     ("variant", "without"): system_readers.make_selector_reader("without"),
     ("variant", "changes"): system_readers.read_variant_changes,

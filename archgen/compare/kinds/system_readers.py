@@ -17,6 +17,11 @@ def read_core_orders(host: Host, _context: ReadContext) -> Mapping[str, str]:
     return {str(core): order for core, order in host.core_scheduling.items()}
 
 
+def read_deadline_shares(chain: Chain, _context: ReadContext) -> Mapping[str, object]:
+    """Return how long shares of the reactions may take."""
+    return chain.deadline_shares
+
+
 def find_latency(link: Link, _context: ReadContext) -> Link:
     """Return the link: it has the keys below `latency` itself."""
     return link

@@ -12,6 +12,7 @@ from archgen.simulation.chain_witnesses import ChainWitness
 from archgen.simulation.drawn_orders import describe_orders
 from archgen.timing.analysis import ChainResult
 from archgen.timing.chains.chain_advice import ChainAdvice
+from archgen.timing.chains.chain_verdicts import VERDICT_WORDS
 from archgen.timing.figures import figure_wording
 from archgen.timing.search.proving_changes import ChainRemedy
 
@@ -31,6 +32,15 @@ def describe_slack(result: ChainResult) -> str:
         return ""
     text = figure_wording.format_duration(abs(result.slack))
     return f"{text} left" if result.slack >= 0 else f"{text} above it"
+
+
+def list_share_rows(result: ChainResult) -> Iterator[TextRow]:
+    """Yield the deadlines of shares of a chain's reactions, and what bounds say of them."""
+    for each in result.shares:
+        verdict = (
+            VERDICT_WORDS[each.verdict] if each.verdict != "open" else "only `archgen simulate` and recordings judge it"
+        )
+        yield f"  {each.name} of reactions", "", f"deadline {figure_wording.format_duration(each.limit)}", verdict
 
 
 def describe_witness(chain_id: str, witness: ChainWitness | None) -> str:

@@ -78,6 +78,7 @@ def format_chain(  # noqa: PLR0913, PLR0917 - what is shown of one chain
     if result.deadline:
         verdict_text = ", ".join(filter(None, (VERDICT_WORDS[result.verdict], chain_remedies.describe_slack(result))))
         rows.append(("deadline", format_figure(result.deadline), verdict_text))
+    rows += [(share.strip(), limit, verdict) for share, _, limit, verdict in chain_remedies.list_share_rows(result)]
     yield from align_rows(rows, width)
     if result.id in evidence.witnesses:
         yield f"  {chain_remedies.describe_witness(result.id, evidence.witnesses[result.id])}"

@@ -81,6 +81,7 @@ def _chain_rows(analysis: Analysis, chains: Iterable[ChainResult], evidence: Cha
                 )
             ),
         )
+        yield from chain_remedies.list_share_rows(result)
 
 
 def _advice_rows(analysis: Analysis, chains: Iterable[ChainResult], evidence: ChainEvidence) -> Iterator[TextRow]:

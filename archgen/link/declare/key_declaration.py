@@ -9,6 +9,7 @@ from typing import Any
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.link import mapping_values, sanity_checks
+from archgen.link.declare.deadline_declaration import read_deadline
 from archgen.link.declare.property_declaration import read_range, read_required
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.path_resolver import ElementRef
@@ -121,7 +122,7 @@ NAMING_TYPES = {"id": _resolve_id, "requirement_ids": _resolve_ids}
 """Types of what is named by its id alone; the description says what a key `offers`."""
 DECLARERS: Mapping[str, KeyDeclarer] = {
     "bandwidth": partial(_read_positive, dimension="bandwidth"),
-    "chain.deadline": partial(_read_positive, dimension="duration"),
+    "chain_deadline": read_deadline,
     "link.connects": read_link_ends,
     "link.latency": sanity_checks.read_latency,
     "property_declaration.range": read_range,

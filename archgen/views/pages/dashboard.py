@@ -133,7 +133,7 @@ def _chain_card(lookup: Lookup) -> DashboardCard | None:
             inline_text.to_inlines(Text(lookup.architecture.chains[result.id].title, ref=f"chain:{result.id}")),
             chain_status.chain_meter(result),
             timing_tables.duration_cell(result.bound),
-            timing_tables.duration_cell(result.deadline) if result.deadline else (),
+            timing_tables.deadline_cell(result),
             chain_status.margin_cell(result),
             chain_status.verdict_chip(result),
         )

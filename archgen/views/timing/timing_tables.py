@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from archgen.timing.analysis import EventPace, HostLoad
+from archgen.timing.analysis import ChainResult, EventPace, HostLoad
+from archgen.timing.figures.figure_wording import format_duration
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.load.host_verdicts import name_host_verdict
 from archgen.timing.system.timing_system import Activity
@@ -59,6 +60,13 @@ def figure_cell(text: str, value: TimingValue) -> Inlines:
 def duration_cell(value: TimingValue) -> Inlines:
     """Return a table cell for the upper bound of a duration."""
     return figure_cell(value_format.display_duration(value), value)
+
+
+def deadline_cell(result: ChainResult) -> Inlines:
+    """Return a table cell for all deadlines of a chain: `400 ms, 95 % in 150 ms`."""
+    always = duration_cell(result.deadline) if result.deadline else ()
+    shares = ", ".join(f"{each.name} in {format_duration(each.limit)}" for each in result.shares)
+    return (*always, Text(f"{', ' if always else ''}{shares}")) if shares else always
 
 
 def share_cell(value: TimingValue) -> Inlines:
