@@ -66,6 +66,8 @@ def _apply_assignment(run: SimulationRun, now: int, processor: int, thread_by_co
         # The job's end is already on the heap: the new version makes `end_thread` ignore it.
         threads.end_version[thread] += 1
         threads.time_left[thread] = threads.end_time[thread] - now
+        if run.log is not None:
+            run.log.enter_state(run, thread, "ready")
         ready.append((threads.urgency[thread], threads.ready_order[thread], thread))
     for core, thread in thread_by_core.items():
         threads.last_core[thread] = core
@@ -92,6 +94,8 @@ def _start_thread(run: SimulationRun, now: int, thread: int, running: list[int])
         threads.time_after_slice[thread] = max(remaining - slice_time, 0)
         remaining = min(remaining, slice_time)
     running.append(thread)
+    if run.log is not None:
+        run.log.enter_state(run, thread, "runs")
     threads.end_time[thread] = now + remaining
     heappush(run.heap, (now + remaining << 2 | JOB_END, thread, threads.end_version[thread]))
 
@@ -141,5 +145,7 @@ def _preempt_least_urgent(run: SimulationRun, now: int, ready: list[tuple[int, i
     running.remove(least_urgent)
     threads.end_version[least_urgent] += 1
     threads.time_left[least_urgent] = threads.end_time[least_urgent] - now
+    if run.log is not None:
+        run.log.enter_state(run, least_urgent, "ready")
     heappush(ready, (threads.urgency[least_urgent], threads.ready_order[least_urgent], least_urgent))
     return True

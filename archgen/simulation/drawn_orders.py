@@ -68,10 +68,10 @@ def _list_host_orders(run: SimulationRun, activities: Collection[int]) -> Iterat
     visited = {plan.activities[activity].processor for activity in activities}
     for number, processor in enumerate(plan.processors):
         if number in visited and processor.host and processor.order is None:
-            processes = {each.executor for each in plan.callbacks if plan.activities[each.activity].processor == number}
+            members = (each.executor for each in plan.callbacks if plan.activities[each.activity].processor == number)
             words = _describe_order(run, processors.scheduler[number], processors.victim[number])
             has_priorities = any(each.priority is not None for each in plan.activities if each.processor == number)
-            if sum(plan.executors[executor].threads for executor in processes) > processor.cores:
+            if sum(plan.executors[executor].threads for executor in dict.fromkeys(members)) > processor.cores:
                 yield DrawnOrder(processor.name, f"by priority, then {words}" if has_priorities else words)
 
 

@@ -100,7 +100,7 @@ def find_late_runs(
         for key, track in tracks.items():
             track.add_run(run)
             through, deadline = deadlines[key]
-            figures = track.to_observed(through, plan.unit).bounded_figures
+            figures = track.to_observed(through, plan.unit, (seed,)).bounded_figures
             orders = list_drawn_orders(run, track.activities)
             late_run = LateRun(seed, seconds, _find_largest(figures.reaction), _find_largest(figures.age), orders)
             if late_run.find_longest(samples_world=track.samples_world) > deadline:

@@ -54,6 +54,8 @@ class ObservedChain:
     through: tuple[str, ...]
     all_inputs: ChainFigures
     forwarded_inputs: ChainFigures | None
+    latest_seed: int | None = None
+    """The run in which it took longest; None where nothing passed along it."""
 
     @property
     def bounded_figures(self) -> ChainFigures:

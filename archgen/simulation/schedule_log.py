@@ -1,0 +1,173 @@
+"""Who ran, waited and held what in one run; and the way on which a chain was latest in it, step by step."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Literal, NamedTuple
+
+from archgen.simulation.chain_series import ChainTrace, find_latest_passage, list_passed_jobs
+from archgen.simulation.chain_tracking import ChainTrack, track_chain
+from archgen.simulation.drawn_orders import DrawnOrder, list_drawn_orders
+from archgen.simulation.event_loop import process_events
+from archgen.simulation.plan_builder import PublishPauses, build_plan
+from archgen.simulation.simulation_run import SimulationRun, ThreadState
+from archgen.timing.system.timing_system import TimingSystem
+
+_SECOND = 10**9
+StepKind = Literal["waits", "queues", "works", "stays"]
+"""What keeps the data of a chain: they are not asked for yet, who asks has to wait, it works (and is interrupted), or what
+was sent stays until something newer is.
+"""
+
+
+class ThreadSpan(NamedTuple):
+    """A thread in one state, in units: it runs or waits for a core, or uses a resource or waits for it (else -1)."""
+
+    thread: int
+    callback: int
+    job: int
+    state: ThreadState
+    resource: int
+    start: int
+    end: int
+
+
+@dataclass(slots=True)
+class ScheduleLog:
+    """The states of all threads of a run, noted as they change."""
+
+    spans: list[ThreadSpan] = field(default_factory=list)
+    _open: dict[int, tuple[int, ThreadState, int, int]] = field(default_factory=dict)
+
+    def enter_state(self, run: SimulationRun, thread: int, state: ThreadState, resource: int = -1) -> None:
+        """Note that a thread begins to be in a state, now."""
+        self.leave_state(run, thread)
+        self._open[thread] = run.threads.callback[thread], state, resource, run.now
+
+    def leave_state(self, run: SimulationRun, thread: int) -> None:
+        """Note that a thread has nothing to do any more, now."""
+        if thread in self._open:
+            callback, state, resource, start = self._open.pop(thread)
+            if run.now > start:
+                job = run.threads.job_number[thread] if run.threads.time_left[thread] >= 0 else -1
+                self.spans.append(ThreadSpan(thread, callback, job, state, resource, start, run.now))
+
+
+class WayStep(NamedTuple):
+    """A step of a chain's way, in units: where its data were and why, which job of the activity, and who held it up."""
+
+    activity: int
+    job: int
+    kind: StepKind
+    start: int
+    end: int
+    holders: tuple[tuple[str, int], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class LateSchedule:
+    """A run in which a chain was late: all that threads did, the chain's latest way, and the orders that were drawn."""
+
+    seed: int
+    seconds: int
+    run: SimulationRun
+    spans: tuple[ThreadSpan, ...]
+    way: tuple[WayStep, ...]
+    orders: tuple[DrawnOrder, ...]
+
+    @property
+    def longest(self) -> Fraction:
+        """What the chain took, in ns."""
+        return (self.way[-1].end - self.way[0].start) * self.run.plan.unit
+
+
+def record_schedule(
+    system: TimingSystem, through: Sequence[str], seed: int, seconds: int, pauses: PublishPauses
+) -> LateSchedule | None:
+    """Run one seed again and note all that threads do; None where nothing passed along the chain in it."""
+    plan = build_plan(system, pauses)
+    track = track_chain(plan, through)
+    if track is None:
+        return None
+    run = SimulationRun(plan, seed, track.activities, {wire for wires in track.wires for wire in wires})
+    run.log = ScheduleLog()
+    process_events(run, int(seconds * _SECOND / plan.unit))
+    spans = tuple(sorted(run.log.spans, key=lambda span: (span.start, span.thread)))
+    way = tuple(_list_way(run, track, track.trace_run(run), spans))
+    return LateSchedule(seed, seconds, run, spans, way, list_drawn_orders(run, track.activities)) if way else None
+
+
+def _list_way(
+    run: SimulationRun, track: ChainTrack, trace: ChainTrace, spans: Sequence[ThreadSpan]
+) -> Iterator[WayStep]:
+    """Yield the steps of the latest passage, without a gap: their lengths add up to what it took."""
+    passage = find_latest_passage(trace, forwarded_only=track.is_selective)
+    if passage is None:
+        return
+    time, activities = passage.begin, run.activities
+    for activity, job in zip(track.activities, list_passed_jobs(trace, passage), strict=True):
+        moments: tuple[tuple[StepKind, int], ...] = (
+            ("waits", activities.job_activations[activity][job]),
+            ("queues", activities.job_starts[activity][job]),
+            ("works", activities.job_ends[activity][job]),
+        )
+        for kind, end in moments:
+            if end > time:
+                step = WayStep(activity, job, kind, time, end)
+                is_event = kind == "waits" and activity == track.activities[0]
+                yield step if is_event else step._replace(holders=_find_holders(run, spans, step))
+                time = end
+    if passage.end > time:
+        yield WayStep(track.activities[-1], passage.last_job, "stays", time, passage.end)
+
+
+def _find_holders(run: SimulationRun, spans: Sequence[ThreadSpan], step: WayStep) -> tuple[tuple[str, int], ...]:
+    """Return who was on the thread, the core or the resource that a job waited for, and for how long, the longest first."""
+    callbacks, processors = run.callbacks, run.processors.of_activity
+    activity, has_begun = step.activity, step.kind == "works"
+    near_spans = [span for span in spans if span.end > step.start and span.start < step.end]
+    own_spans = [
+        span
+        for span in near_spans
+        if span.job == step.job
+        and callbacks.activity[span.callback] == activity
+        and not callbacks.is_storing[span.callback]
+    ]
+    stops = [span for span in own_spans if span.state in {"ready", "awaits"}]
+    waits = [(each.resource, each.start, each.end) for each in stops] if has_begun else [(-1, step.start, step.end)]
+    executors = {planned.executor for planned in run.plan.callbacks if planned.activity == activity}
+    mates, others = Counter[str](), Counter[str]()
+    for resource, start, end in waits:
+        for span in near_spans:
+            overlap = min(span.end, end) - max(span.start, start)
+            if overlap <= 0 or span in own_spans or span.state not in {"runs", "uses", "awaits"}:
+                continue
+            other = callbacks.activity[span.callback]
+            name = run.plan.activities[other].id
+            if resource < 0 and not has_begun and callbacks.executor[span.callback] in executors:
+                mates[name] += overlap
+            elif (
+                (span.resource == resource and span.state == "uses")
+                if resource >= 0
+                else (span.state == "runs" and processors[other] == processors[activity])
+            ):
+                others[name] += overlap
+    # Whoever shares its thread comes first: only where nobody had it did it wait for a core. What is not asked for yet
+    # waits for a turn of its thread as well, to be stored.
+    found = mates if mates or step.kind == "waits" else others
+    return tuple(sorted(found.items(), key=lambda item: (-item[1], item[0])))
+
+
+def describe_step(schedule: LateSchedule, step: WayStep) -> str:
+    """Write a step in words: `until costmap looks`, `controller waits for its turn`."""
+    name = schedule.run.plan.activities[step.activity].id
+    words = {
+        "waits": "until {} looks",
+        "queues": "{} waits for its turn",
+        "works": "{} works",
+        "stays": "until {} sends the next",
+    }
+    return words[step.kind].format(name)
