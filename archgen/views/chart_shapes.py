@@ -11,7 +11,21 @@ from archgen.frozen import dataclass
 from archgen.views.graph_shapes import Graph
 from archgen.views.sequence_shapes import SequenceChart
 
-SegmentKind = Literal["sampling", "response", "link", "load", "other_load", "met", "missed", "unproven", "open", "best"]
+SegmentKind = Literal[
+    "sampling",
+    "response",
+    "link",
+    "load",
+    "other_load",
+    "met",
+    "missed",
+    "late_wait",
+    "unproven",
+    "open",
+    "best",
+    "gap",
+]
+"""What a piece of a bar is; nothing is drawn for a `gap`."""
 
 
 @dataclass(frozen=True, slots=True)
