@@ -18,6 +18,12 @@ from archgen.timing.system.timing_system import TimingSystem
 
 _SECOND = 10**9
 StepKind = Literal["waits", "queues", "works", "stays"]
+_STEP_WORDS: dict[StepKind, str] = {
+    "waits": "until {} looks",
+    "queues": "{} waits for its turn",
+    "works": "{} works",
+    "stays": "until {} sends the next",
+}
 """What keeps the data of a chain: they are not asked for yet, who asks has to wait, it works (and is interrupted), or what
 was sent stays until something newer is.
 """
@@ -57,14 +63,40 @@ class ScheduleLog:
 
 
 class WayStep(NamedTuple):
-    """A step of a chain's way, in units: where its data were and why, which job of the activity, and who held it up."""
+    """A step of a chain's way, in ns: whose job it is about, what keeps the data, and who held that up for how long."""
 
-    activity: int
+    activity: str
     job: int
     kind: StepKind
-    start: int
-    end: int
-    holders: tuple[tuple[str, int], ...] = ()
+    start: Fraction
+    end: Fraction
+    holders: tuple[tuple[str, Fraction], ...]
+
+    @property
+    def words(self) -> str:
+        """Return the step in words: `until costmap looks`, `controller waits for its turn`."""
+        return _STEP_WORDS[self.kind].format(self.activity)
+
+
+class TrackSpan(NamedTuple):
+    """What a thread is at from when to when, in ns, for which activity and job; `resource` is what it uses or waits for."""
+
+    activity: str
+    job: int
+    state: ThreadState
+    resource: str
+    start: Fraction
+    end: Fraction
+    is_storing: bool
+    is_on_way: bool
+
+
+class Track(NamedTuple):
+    """What one thread of a process did; `host` is empty where none is written."""
+
+    host: str
+    name: str
+    spans: tuple[TrackSpan, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,15 +105,14 @@ class LateSchedule:
 
     seed: int
     seconds: int
-    run: SimulationRun
-    spans: tuple[ThreadSpan, ...]
+    tracks: tuple[Track, ...]
     way: tuple[WayStep, ...]
     orders: tuple[DrawnOrder, ...]
 
     @property
     def longest(self) -> Fraction:
         """What the chain took, in ns."""
-        return (self.way[-1].end - self.way[0].start) * self.run.plan.unit
+        return self.way[-1].end - self.way[0].start
 
 
 def record_schedule(
@@ -95,9 +126,32 @@ def record_schedule(
     run = SimulationRun(plan, seed, track.activities, {wire for wires in track.wires for wire in wires})
     run.log = ScheduleLog()
     process_events(run, int(seconds * _SECOND / plan.unit))
-    spans = tuple(sorted(run.log.spans, key=lambda span: (span.start, span.thread)))
+    spans = sorted(run.log.spans, key=lambda span: (span.start, span.thread))
     way = tuple(_list_way(run, track, track.trace_run(run), spans))
-    return LateSchedule(seed, seconds, run, spans, way, list_drawn_orders(run, track.activities)) if way else None
+    orders = list_drawn_orders(run, track.activities)
+    return LateSchedule(seed, seconds, tuple(_list_tracks(run, spans, way)), way, orders) if way else None
+
+
+def _list_tracks(run: SimulationRun, spans: Sequence[ThreadSpan], way: Sequence[WayStep]) -> Iterator[Track]:
+    """Yield the threads by host, in the order in which they began to work; those of one process are numbered."""
+    plan, on_way = run.plan, {(step.activity, step.job) for step in way}
+    threads: dict[tuple[str, int, int], list[TrackSpan]] = {}
+    for thread, callback_number, job, state, resource, start, end in spans:
+        callback = plan.callbacks[callback_number]
+        activity = plan.activities[callback.activity]
+        place = plan.processors[activity.processor].host or "", callback.executor, thread
+        used = plan.resources[resource].id if resource >= 0 else ""
+        times = start * plan.unit, end * plan.unit
+        is_way = not callback.is_storing and (activity.id, job) in on_way
+        span = TrackSpan(activity.id, job, state, used, *times, callback.is_storing, is_way)
+        threads.setdefault(place, []).append(span)
+    counts = Counter[int]()
+    for (host, executor, _), track_spans in threads.items():
+        counts[executor] += 1
+        # Processes are called `container navbox`, `node base`.
+        name = plan.executors[executor].id.partition(" ")[2]
+        number = f" ({counts[executor]})" if counts[executor] > 1 else ""
+        yield Track(host, f"{name}{number}", tuple(track_spans))
 
 
 def _list_way(
@@ -107,37 +161,38 @@ def _list_way(
     passage = find_latest_passage(trace, forwarded_only=track.is_selective)
     if passage is None:
         return
-    time, activities = passage.begin, run.activities
+    time, activities, unit = passage.begin, run.activities, run.plan.unit
     for activity, job in zip(track.activities, list_passed_jobs(trace, passage), strict=True):
         moments: tuple[tuple[StepKind, int], ...] = (
             ("waits", activities.job_activations[activity][job]),
             ("queues", activities.job_starts[activity][job]),
             ("works", activities.job_ends[activity][job]),
+            ("stays", passage.end if activity == track.activities[-1] else -1),
         )
         for kind, end in moments:
             if end > time:
-                step = WayStep(activity, job, kind, time, end)
-                is_event = kind == "waits" and activity == track.activities[0]
-                yield step if is_event else step._replace(holders=_find_holders(run, spans, step))
+                # Nobody holds up the world, nor what was sent.
+                is_free = kind == "stays" or (kind == "waits" and activity == track.activities[0])
+                holders = [] if is_free else _find_holders(run, spans, (activity, job), kind, (time, end))
+                held = tuple((name, length * unit) for name, length in holders)
+                yield WayStep(run.plan.activities[activity].id, job, kind, time * unit, end * unit, held)
                 time = end
-    if passage.end > time:
-        yield WayStep(track.activities[-1], passage.last_job, "stays", time, passage.end)
 
 
-def _find_holders(run: SimulationRun, spans: Sequence[ThreadSpan], step: WayStep) -> tuple[tuple[str, int], ...]:
+def _find_holders(
+    run: SimulationRun, spans: Sequence[ThreadSpan], key: tuple[int, int], kind: StepKind, window: tuple[int, int]
+) -> list[tuple[str, int]]:
     """Return who was on the thread, the core or the resource that a job waited for, and for how long, the longest first."""
     callbacks, processors = run.callbacks, run.processors.of_activity
-    activity, has_begun = step.activity, step.kind == "works"
-    near_spans = [span for span in spans if span.end > step.start and span.start < step.end]
+    activity, has_begun = key[0], kind == "works"
+    near_spans = [span for span in spans if span.end > window[0] and span.start < window[1]]
     own_spans = [
         span
         for span in near_spans
-        if span.job == step.job
-        and callbacks.activity[span.callback] == activity
-        and not callbacks.is_storing[span.callback]
+        if (callbacks.activity[span.callback], span.job) == key and not callbacks.is_storing[span.callback]
     ]
     stops = [span for span in own_spans if span.state in {"ready", "awaits"}]
-    waits = [(each.resource, each.start, each.end) for each in stops] if has_begun else [(-1, step.start, step.end)]
+    waits = [(each.resource, each.start, each.end) for each in stops] if has_begun else [(-1, *window)]
     executors = {planned.executor for planned in run.plan.callbacks if planned.activity == activity}
     mates, others = Counter[str](), Counter[str]()
     for resource, start, end in waits:
@@ -157,17 +212,5 @@ def _find_holders(run: SimulationRun, spans: Sequence[ThreadSpan], step: WayStep
                 others[name] += overlap
     # Whoever shares its thread comes first: only where nobody had it did it wait for a core. What is not asked for yet
     # waits for a turn of its thread as well, to be stored.
-    found = mates if mates or step.kind == "waits" else others
-    return tuple(sorted(found.items(), key=lambda item: (-item[1], item[0])))
-
-
-def describe_step(schedule: LateSchedule, step: WayStep) -> str:
-    """Write a step in words: `until costmap looks`, `controller waits for its turn`."""
-    name = schedule.run.plan.activities[step.activity].id
-    words = {
-        "waits": "until {} looks",
-        "queues": "{} waits for its turn",
-        "works": "{} works",
-        "stays": "until {} sends the next",
-    }
-    return words[step.kind].format(name)
+    found = mates if mates or kind == "waits" else others
+    return sorted(found.items(), key=lambda item: (-item[1], item[0]))

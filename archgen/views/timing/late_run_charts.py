@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from fractions import Fraction
+from typing import NamedTuple
 
 from archgen.simulation.drawn_orders import describe_orders
-from archgen.simulation.schedule_log import LateSchedule, ThreadSpan, describe_step
+from archgen.simulation.schedule_log import LateSchedule, TrackSpan
 from archgen.timing.analysis import ChainResult
 from archgen.timing.figures.figure_wording import format_duration
 from archgen.views.chart_shapes import BarSegment, Chart, ChartBar, SegmentKind
@@ -15,8 +17,16 @@ from archgen.views.timing.load_charts import to_float
 from archgen.views.timing.timing_lookup import TimingLookup
 
 _NS_PER_MS = 10**6
-_Piece = tuple[int, int, SegmentKind, str]
-"""From when to when, in units, how it is drawn, and what it is."""
+
+
+class _Piece(NamedTuple):
+    """A stretch of a row, in ns."""
+
+    start: Fraction
+    end: Fraction
+    kind: SegmentKind
+    label: str
+    tooltip: str
 
 
 def make_late_run_charts(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator[Chart]:
@@ -42,81 +52,69 @@ def make_late_run_figures(lookup: Lookup, timing_lookup: TimingLookup, result: C
 
 
 def _make_chart(lookup: Lookup, result: ChainResult, schedule: LateSchedule) -> Chart:
-    plan, deadline = schedule.run.plan, result.deadline.value if result.deadline else None
-    words = [describe_step(schedule, step) for step in schedule.way]
-    way: list[_Piece] = []
-    for step, text in zip(schedule.way, words, strict=True):
-        held = ", ".join(f"{name} {format_duration(time * plan.unit)}" for name, time in step.holders)
-        kind: SegmentKind = "missed" if step.kind == "works" else "late_wait"
-        way.append((step.start, step.end, kind, f"{text}{f', held up by {held}' if held else ''}"))
-    title = lookup.architecture.chains[result.id].title
+    deadline = result.deadline.value if result.deadline else None
+    title, way = lookup.architecture.chains[result.id].title, list(_list_way_pieces(schedule))
     return Chart(
         f"chains/{result.id}.late",
         f"{title}: a run in which it is late",
         "ms",
-        (_draw_bar(schedule, "The chain", way, strong=True), *_list_thread_bars(lookup, schedule)),
+        (_draw_bar(schedule, "The chain", way, format_duration(schedule.longest)), *_list_rows(lookup, schedule)),
         limit=(to_float(deadline / _NS_PER_MS), f"deadline {format_duration(deadline)}") if deadline else None,
         conclusion=f"Late: {format_duration(schedule.longest)} in this run.",
-        legend=(
-            "missed: works for the chain",
-            "late_wait: keeps the chain waiting",
-            "response: works",
-            "other_load: waits",
-        ),
+        legend=("missed: works for the chain", "late_wait: keeps it waiting", "response: works", "other_load: waits"),
         notes=(describe_orders(schedule.orders),) if schedule.orders else (),
-        alt=f"{title}: {'; '.join(text for _, _, _, text in way)}.",
+        alt=f"{title}: {'; '.join(piece.tooltip for piece in way)}.",
     )
 
 
-def _list_thread_bars(lookup: Lookup, schedule: LateSchedule) -> Iterator[ChartBar]:
-    """Yield a row for each thread and resource on the way, or of who held the chain up, by host."""
-    plan, callbacks = schedule.run.plan, schedule.run.plan.callbacks
-    on_way = {(step.activity, step.job) for step in schedule.way}
-    names = {plan.activities[activity].id for activity, _ in on_way} | {
-        name for step in schedule.way for name, _ in step.holders
-    }
-    executors = {each.executor for each in callbacks if plan.activities[each.activity].id in names}
-    rows: dict[tuple[str, int, int], list[_Piece]] = {}
-    for span in schedule.spans:
-        callback = callbacks[span.callback]
-        host = plan.processors[plan.activities[callback.activity].processor].host or ""
-        if callback.executor in executors:
-            rows.setdefault((host, -1, span.thread), []).append(_make_piece(schedule, span, on_way))
-        if span.state == "uses" and any(
-            use[0] == span.resource for name, _ in on_way for use in plan.activities[name].uses
-        ):
-            rows.setdefault((host, span.resource, -1), []).append(_make_piece(schedule, span, on_way))
-    first_callbacks = {span.thread: callbacks[span.callback] for span in reversed(schedule.spans)}
-    for (host, resource, thread), pieces in sorted(rows.items()):
-        name = (
-            plan.resources[resource].id
-            if resource >= 0
-            else plan.executors[first_callbacks[thread].executor].id.partition(" ")[2]
-        )
-        host_title = lookup.architecture.hosts[host].title if host in lookup.architecture.hosts else host
-        yield _draw_bar(schedule, f"{name} on {host_title}" if host else name, pieces)
+def _list_way_pieces(schedule: LateSchedule) -> Iterator[_Piece]:
+    """Yield the steps of the chain, each with who held it up."""
+    for step in schedule.way:
+        holders = [f"{name} {format_duration(time)}" for name, time in step.holders]
+        tooltip = f"{step.words}, held up by {', '.join(holders)}" if holders else step.words
+        label = f"held up by {holders[0]}" if holders and step.kind != "works" else step.words
+        yield _Piece(step.start, step.end, "missed" if step.kind == "works" else "late_wait", label, tooltip)
 
 
-def _make_piece(schedule: LateSchedule, span: ThreadSpan, on_way: Iterable[tuple[int, int]]) -> _Piece:
-    plan = schedule.run.plan
-    callback = plan.callbacks[span.callback]
-    is_way = (callback.activity, span.job) in on_way and not callback.is_storing
+def _list_rows(lookup: Lookup, schedule: LateSchedule) -> Iterator[ChartBar]:
+    """Yield a row for each thread on the way, or of who held the chain up, and for each resource that they use; by host."""
+    concerned = {step.activity for step in schedule.way} | {name for step in schedule.way for name, _ in step.holders}
+    rows: dict[tuple[str, str], list[_Piece]] = {}
+    for track in sorted(schedule.tracks, key=lambda track: track.host):
+        if any(span.activity in concerned for span in track.spans):
+            rows[track.host, track.name] = [_make_piece(span) for span in track.spans]
+    used = {span.resource for track in schedule.tracks for span in track.spans if span.is_on_way and span.resource}
+    for resource in sorted(used):
+        spans = [
+            span
+            for track in schedule.tracks
+            for span in track.spans
+            if (span.resource, span.state) == (resource, "uses")
+        ]
+        rows["", resource] = [_make_piece(span) for span in sorted(spans, key=lambda span: span.start)]
+    for (host, name), pieces in rows.items():
+        title = lookup.architecture.hosts[host].title if host in lookup.architecture.hosts else host
+        yield _draw_bar(schedule, f"{name} on {title}" if host else name, pieces)
+
+
+def _make_piece(span: TrackSpan) -> _Piece:
     waits = span.state in {"ready", "awaits"}
-    kind: SegmentKind = ("late_wait" if waits else "missed") if is_way else ("other_load" if waits else "response")
-    return span.start, span.end, kind, plan.activities[callback.activity].id
+    kind: SegmentKind = (
+        ("late_wait" if waits else "missed") if span.is_on_way else "other_load" if waits else "response"
+    )
+    return _Piece(span.start, span.end, kind, span.activity, span.activity)
 
 
-def _draw_bar(schedule: LateSchedule, title: str, pieces: Iterable[_Piece], *, strong: bool = False) -> ChartBar:
+def _draw_bar(schedule: LateSchedule, title: str, pieces: Iterable[_Piece], value: str = "") -> ChartBar:
     """Draw what lies within the way, with gaps between."""
-    first, last, unit = schedule.way[0].start, schedule.way[-1].end, schedule.run.plan.unit
+    time, last = schedule.way[0].start, schedule.way[-1].end
     segments: list[BarSegment] = []
-    time = first
-    for piece_start, piece_end, kind, text in pieces:
-        start, end = max(piece_start, time), min(piece_end, last)
+    for piece in pieces:
+        start, end = max(piece.start, time), min(piece.end, last)
         if end > start:
             if start > time:
-                segments.append(BarSegment(to_float((start - time) * unit / _NS_PER_MS), "gap"))
-            length = (end - start) * unit
-            segments.append(BarSegment(to_float(length / _NS_PER_MS), kind, text, f"{text}: {format_duration(length)}"))
+                segments.append(BarSegment(to_float((start - time) / _NS_PER_MS), "gap"))
+            tooltip = f"{piece.tooltip}: {format_duration(end - start)}"
+            segments.append(BarSegment(to_float((end - start) / _NS_PER_MS), piece.kind, piece.label, tooltip))
             time = end
-    return ChartBar(title, tuple(segments), format_duration((last - first) * unit) if strong else "", strong=strong)
+    return ChartBar(title, tuple(segments), value, strong=bool(value))
