@@ -16,7 +16,7 @@ from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
 _DIMENSIONS = {"rate": "frequency", "max_gap": "duration", "max_age": "duration"}
 _LIMIT = re.compile(
-    r"(?P<number>[-+]?(?:[0-9][0-9_]*\.?[0-9]*(?:[eE][-+]?[0-9]+)?|\.[0-9]+(?:[eE][-+]?[0-9]+)?|\.inf)) ?(?P<unit>\S*)\Z",
+    r"(?P<number>[-+]?(?>[0-9][0-9_]*\.?[0-9]*(?:[eE][-+]?[0-9]+)?|\.[0-9]+(?:[eE][-+]?[0-9]+)?|\.inf)) ?(?P<unit>\S*+)\Z",
     re.IGNORECASE,
 )
 _MAX_LENGTH = 400

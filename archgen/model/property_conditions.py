@@ -14,7 +14,7 @@ from archgen.model.component import Component
 from archgen.model.element_annotations import order_values
 from archgen.model.node import Node
 
-_CONDITION = re.compile(r"([a-z0-9_*]+)\s*(?:(>=|<=|=|>|<)\s*((?![<=>]).*\S))?")
+_CONDITION = re.compile(r"([a-z0-9_*]++)\s*+(?:(>=|<=|=|>|<)\s*+((?![<=>]).*\S))?")
 _ORDERS: Mapping[str, Callable[[int], bool]] = {
     ">=": lambda order: order >= 0,
     "<=": lambda order: order <= 0,

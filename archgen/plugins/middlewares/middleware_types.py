@@ -20,7 +20,7 @@ from archgen.plugins.middlewares.middleware_names import (
 from archgen.plugins.middlewares.middleware_primitives import ALIASES, PRIMITIVES
 from archgen.plugins.middlewares.player_interfaces import record_interface
 
-_LIST = re.compile(r"\s*\[[^\[\]]*\]\Z")
+_LIST = re.compile(r"(?:(?<!\s)\s++)?+\[[^\[\]]*+\]\Z")
 _FOREIGN_TYPE = re.compile(r"[A-Za-z_]\w*(?:::[A-Za-z_]\w*)*\Z", re.ASCII)
 _FOREIGN_FILE = re.compile(r"[A-Za-z0-9_][\w.+-]*(?:/[\w+-][\w.+-]*)*\Z", re.ASCII)
 _TEXT_TYPE = "string"

@@ -21,7 +21,7 @@ _EVENT_PATTERN = re.compile(
 )
 _ANY_EVENT = re.compile(r"\[[-0-9:. ]+\] (?:\(\+[0-9?.]+\) )?(?:[^ {}]+ )?[\w:-]+: \{")
 _ROS_EVENT = re.compile(r"(?:^| )ros2:\w+: \{")
-_FIELD_PATTERN = re.compile(r'(\w+) = (?:"((?:[^"\\]|\\.)*)"|(-?\w+))')
+_FIELD_PATTERN = re.compile(r'(?<!\w)(\w++) = (?:"((?:[^"\\]|\\.)*+)"|(-?\w++))')
 _TIME_PATTERN = re.compile(
     r"(?:(?P<date>\d{4}-\d\d-\d\d) )?(?P<hour>\d\d):(?P<minute>[0-5]\d):(?P<second>[0-5]\d)\.(?P<fraction>\d{1,9})\Z",
     re.ASCII,

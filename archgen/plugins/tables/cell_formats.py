@@ -16,8 +16,9 @@ _PERCENT_IDS, _DATE_IDS = (
 )
 """The formats that every workbook knows without writing them down."""
 _LITERAL_PATTERN = re.compile(r'"([^"]*)"|\\(.)')
-_CURRENCY_PATTERN = re.compile(r"\[\$([^\]-]*)[^\]]*\]")
-_CONDITION_PATTERN = re.compile(r"\[[^\]]*\]")
+# A format is of 255 characters at most.
+_CURRENCY_PATTERN = re.compile(r"\[\$([^\]-]{0,255}+)[^\]]{0,255}+\]")
+_CONDITION_PATTERN = re.compile(r"\[[^\]]{0,255}+\]")
 _DATE_LETTERS = re.compile(r"[ymdhs]", re.IGNORECASE)
 
 

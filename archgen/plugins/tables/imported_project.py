@@ -15,7 +15,7 @@ from archgen.plugins.tables.table_cells import TableCell
 UNSORTED = "unsorted"
 """The group of components for which no row names one."""
 _MAX_GUESSES = 20
-_PATH_SEPARATOR = re.compile(r"\s*(?:::|->|[./:>\\|])\s*")
+_PATH_SEPARATOR = re.compile(r"(?:(?<!\s)\s++)?+(?:::|->|[./:>\\|])\s*+")
 
 
 @dataclass(slots=True)

@@ -18,7 +18,7 @@ from archgen.views.timing import chain_charts, load_charts, rate_phrases, timing
 from archgen.views.timing.late_run_charts import make_late_run_figures
 from archgen.views.timing.timing_lookup import TimingLookup
 
-_ACTIVITY_NAME = re.compile(r"([a-z0-9.]+(?:_[a-z0-9.]+)+)")
+_ACTIVITY_NAME = re.compile(r"(?<![a-z0-9.])([a-z0-9.]++(?:_[a-z0-9.]++)++)")
 
 
 def make_whole_fact(lookup: Lookup, component_id: str) -> Inlines:

@@ -32,7 +32,7 @@ _PARAMETER_HEAD = re.compile(r"(/\S+):")
 _BAG_TOPIC = re.compile(r"(?:Topic information:)?\s*Topic: (/\S+) \| Type: (\S+) \|.*")
 _MESSAGE = re.compile(r"[A-Za-z]\w*/(?:msg|srv|action)/[A-Za-z]\w*\Z", re.ASCII)
 _QUIET = re.compile(
-    r"(?:Type|Publisher count|Subscription count|Clients count|Services count|Node name|There are \d+|WARNING"
+    r"(?:Type|Publisher count|Subscription count|Clients count|Services count|Node name|There are \d++|WARNING"
     r"|(?:Published|Subscribed) topics:|Action: /|/\S+: \w+ \[\d+\]|\w+ \[\d+\]|\[(?:WARN|INFO)\]).*"
 )
 
