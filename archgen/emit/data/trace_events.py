@@ -37,8 +37,9 @@ def format_trace(chain_id: str, schedule: LateSchedule) -> bytes:
     for place, span in placed_spans:
         subject = f"{span.activity} stores" if span.is_storing else span.activity
         words = " ".join(filter(None, (subject, _STATE_WORDS[span.state], span.resource)))
-        args = {"held by": list(dict.fromkeys(_list_holders(span, uses)))} if span.state == "awaits" else {}
-        events.append(_make_slice(words, place, span.start, span.end, cat=span.state, args=args))
+        holders = list(dict.fromkeys(_list_holders(span, uses))) if span.state == "awaits" else []
+        more = {"args": {"held by": holders}} if holders else {}
+        events.append(_make_slice(words, place, span.start, span.end, cat=span.state, **more))
     about = {
         "chain": make_visible(chain_id),
         "longest_ms": float(schedule.longest / 10**6),
