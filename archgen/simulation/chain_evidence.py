@@ -7,7 +7,8 @@ from dataclasses import field, replace
 
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
-from archgen.simulation.chain_witnesses import ChainWitness, find_witnesses
+from archgen.simulation.chain_witnesses import find_witnesses
+from archgen.simulation.seeded_runs import LateRun
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.search.change_trials import ChangeTrials, OverrideLayer
 from archgen.timing.search.proving_changes import MAX_TRIES, ChainRemedy, find_remedies
@@ -17,7 +18,7 @@ from archgen.timing.search.proving_changes import MAX_TRIES, ChainRemedy, find_r
 class ChainEvidence:
     """The witnesses of missed chains, and what would prove those that are not proven, by chain."""
 
-    witnesses: Mapping[str, ChainWitness] = field(default_factory=dict)
+    witnesses: Mapping[str, LateRun] = field(default_factory=dict)
     remedies: Mapping[str, ChainRemedy] = field(default_factory=dict)
 
 
@@ -34,8 +35,6 @@ def find_evidence(
     return ChainEvidence(find_witnesses(analysis, results.values()), {remedy.chain: remedy for remedy in remedies})
 
 
-def apply_witnesses(
-    results: Mapping[str, ChainResult], witnesses: Mapping[str, ChainWitness]
-) -> dict[str, ChainResult]:
+def apply_witnesses(results: Mapping[str, ChainResult], witnesses: Mapping[str, LateRun]) -> dict[str, ChainResult]:
     """Return the chains, those of which a late run was seen as missed."""
     return {key: replace(result, verdict="missed") if key in witnesses else result for key, result in results.items()}

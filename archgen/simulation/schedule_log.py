@@ -184,33 +184,29 @@ def _find_holders(
 ) -> list[tuple[str, int]]:
     """Return who was on the thread, the core or the resource that a job waited for, and for how long, the longest first."""
     callbacks, processors = run.callbacks, run.processors.of_activity
-    activity, has_begun = key[0], kind == "works"
+    activity = key[0]
     near_spans = [span for span in spans if span.end > window[0] and span.start < window[1]]
     own_spans = [
         span
         for span in near_spans
         if (callbacks.activity[span.callback], span.job) == key and not callbacks.is_storing[span.callback]
     ]
+    # What has begun waits where it was stopped; what has not waits all the time, for its thread first of all.
     stops = [span for span in own_spans if span.state in {"ready", "awaits"}]
-    waits = [(each.resource, each.start, each.end) for each in stops] if has_begun else [(-1, *window)]
+    waits = [(each.resource, each.start, each.end) for each in stops] if kind == "works" else [(-1, *window)]
     executors = {planned.executor for planned in run.plan.callbacks if planned.activity == activity}
     mates, others = Counter[str](), Counter[str]()
     for resource, start, end in waits:
         for span in near_spans:
             overlap = min(span.end, end) - max(span.start, start)
-            if overlap <= 0 or span in own_spans or span.state not in {"runs", "uses", "awaits"}:
+            if overlap <= 0 or span in own_spans or span.state == "ready":
                 continue
             other = callbacks.activity[span.callback]
-            name = run.plan.activities[other].id
-            if resource < 0 and not has_begun and callbacks.executor[span.callback] in executors:
-                mates[name] += overlap
-            elif (
-                (span.resource == resource and span.state == "uses")
-                if resource >= 0
-                else (span.state == "runs" and processors[other] == processors[activity])
-            ):
-                others[name] += overlap
-    # Whoever shares its thread comes first: only where nobody had it did it wait for a core. What is not asked for yet
-    # waits for a turn of its thread as well, to be stored.
+            is_mate = kind != "works" and callbacks.executor[span.callback] in executors
+            holds_resource = span.state == "uses" and span.resource == resource
+            holds_core = span.state == "runs" and processors[other] == processors[activity]
+            if is_mate or (holds_core if resource < 0 else holds_resource):
+                (mates if is_mate else others)[run.plan.activities[other].id] += overlap
+    # Data that are not asked for yet wait for a turn of the thread as well, to be stored, but for no core.
     found = mates if mates or kind == "waits" else others
     return sorted(found.items(), key=lambda item: (-item[1], item[0]))

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from archgen.model.architecture import Architecture
 from archgen.simulation.analysis_bounds import find_publish_pauses
-from archgen.simulation.chain_witnesses import ChainWitness, find_witnesses
+from archgen.simulation.chain_witnesses import find_witnesses
 from archgen.simulation.schedule_log import LateSchedule, record_schedule
+from archgen.simulation.seeded_runs import LateRun
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.run_analysis import analyse_architecture
@@ -39,7 +40,7 @@ def analyse(text: str = ROBOT) -> tuple[Architecture, Analysis, dict[str, ChainR
     return model, analysis, bound_all_chains(analysis, model)
 
 
-def record_witnesses(text: str = ROBOT) -> dict[str, tuple[ChainWitness, LateSchedule]]:
+def record_witnesses(text: str = ROBOT) -> dict[str, tuple[LateRun, LateSchedule]]:
     """Find the witnesses of a project's late chains, and what happened in them."""
     _, analysis, results = analyse(text)
     found = {}

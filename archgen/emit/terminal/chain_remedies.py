@@ -8,8 +8,8 @@ from fractions import Fraction
 from archgen.diagnostics.safe_text import make_visible
 from archgen.diagnostics.text_columns import TextRow
 from archgen.simulation.chain_evidence import ChainEvidence
-from archgen.simulation.chain_witnesses import ChainWitness
 from archgen.simulation.drawn_orders import describe_orders
+from archgen.simulation.seeded_runs import LateRun
 from archgen.timing.analysis import ChainResult
 from archgen.timing.chains.chain_advice import ChainAdvice
 from archgen.timing.chains.chain_verdicts import VERDICT_WORDS
@@ -43,7 +43,7 @@ def list_share_rows(result: ChainResult) -> Iterator[TextRow]:
         yield f"  {each.name} of reactions", "", f"deadline {figure_wording.format_duration(each.limit)}", verdict
 
 
-def describe_witness(chain_id: str, witness: ChainWitness | None) -> str:
+def describe_witness(chain_id: str, witness: LateRun | None) -> str:
     """Return how to see a chain late, empty where no run is known."""
     if witness is None:
         return ""
