@@ -12,13 +12,13 @@ from archgen.checking.merged_project import MergedProject, merge_project
 from archgen.checking.project_judging import judge_merged_project
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.suggestions import did_you_mean
-from archgen.findings import finding_limit
+from archgen.findings import instance_findings
 from archgen.frozen import replace
 from archgen.link import mapping_values, slice_merging
 from archgen.link.variants import variant_order
 from archgen.model.variant import BASE_NAME
-from archgen.project.variant_settings import adopt_settings, changes_settings
-from archgen.syntax.remembered_files import RememberedFiles
+from archgen.project.project_loading import adopt_settings, changes_settings
+from archgen.syntax.project_files import RememberedFiles
 from archgen.syntax.yaml_tree import list_spans
 from archgen.timing.run_analysis import AnalysisMemory
 
@@ -65,7 +65,7 @@ def judge_in_variants(
     return replace(
         checked_project,
         loaded_project=loaded_project,
-        findings=finding_limit.limit_findings(joined_findings),
+        findings=instance_findings.limit_findings(joined_findings),
         own_findings=checked_project.findings,
         variants=variants,
     )

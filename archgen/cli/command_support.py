@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NoReturn, TextIO, TypeVar
 import click
 
 from archgen.cli.shared_options import find_asked_variants
-from archgen.diagnostics.diagnostic import Diagnostic, Severity, sort_gravest_first
+from archgen.diagnostics.diagnostic import Diagnostic, Severity, settle_diagnostics, sort_gravest_first
 
 if TYPE_CHECKING:
     from archgen.diagnostics.source_span import SourceTexts
@@ -275,7 +275,6 @@ def require_host(architecture: Architecture, host: str) -> None:
 
 def settle_problems(problems: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
     """Return what is wrong with files that are no part of the project, with the severities of the rules."""
-    from archgen.diagnostics.diagnostic import settle_diagnostics
     from archgen.pipeline import index_all_rules
 
     return settle_diagnostics(problems, index_all_rules(), {})

@@ -12,6 +12,7 @@ import click
 
 from archgen.cli import command_support, shared_options
 from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics.safe_text import make_visible
 from archgen.diagnostics.text_columns import find_width, wrap_line
 
 if TYPE_CHECKING:
@@ -50,7 +51,6 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     the same figures; --seed N repeats one run.
     """
     from archgen import simulation
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.simulation import analysis_bounds, simulation_json
     from archgen.simulation import simulation_text as words
     from archgen.simulation.event_loop import EventFloodError
@@ -138,7 +138,6 @@ def _describe_flood(time: Fraction) -> str:
 
 
 def _require_chains(asked_ids: tuple[str, ...], chain_ids: tuple[str, ...]) -> None:
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.diagnostics.suggestions import did_you_mean
     from archgen.timing.figures.figure_wording import join_first_names
 

@@ -18,6 +18,7 @@ from archgen.cli.timing_printing import (
     print_timing_summary,
     raise_usage_error,
 )
+from archgen.diagnostics.diagnostic import Severity
 
 if TYPE_CHECKING:
     from archgen.model.architecture import Architecture
@@ -98,7 +99,6 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
         msg = "--adopt writes what --measured reads, and goes with no --set"
         raise click.UsageError(msg)
     checked_project = command_support.check_or_exit(project)
-    from archgen.diagnostics.diagnostic import Severity
 
     command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
     request = TimingRequest(
@@ -124,7 +124,7 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
 
 
 def _apply_overrides(architecture: Architecture, overrides: tuple[str, ...]) -> Architecture:
-    from archgen.link.override_values import OverrideError
+    from archgen.link.process_overrides import OverrideError
     from archgen.link.timing_overrides import apply_overrides
 
     try:

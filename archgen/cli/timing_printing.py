@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 import click
 
+from archgen.diagnostics.safe_text import format_json, make_visible
 from archgen.diagnostics.text_columns import find_width, wrap_line
 from archgen.frozen import dataclass
 
@@ -145,7 +146,7 @@ def print_sensitivity(request: TimingRequest, chain_id: str) -> None:
 
 def print_budget(request: TimingRequest, chain_id: str) -> None:
     """Print how long what a chain rests on may take until it misses its deadline (`--budget`)."""
-    from archgen.emit.terminal import budget_text
+    from archgen.emit.terminal import chain_text
     from archgen.emit.terminal.chain_gaps import describe_gaps
     from archgen.link.timing_overrides import apply_overrides
     from archgen.timing.search.chain_budgets import MAX_TRIES, UnknownBudgetError, find_chain_budget
@@ -163,10 +164,10 @@ def print_budget(request: TimingRequest, chain_id: str) -> None:
             + ("" if result.deadline else f"; write `deadline` at `chains: {chain_id}`")
         )
     if request.as_json:
-        _print_json(budget_text.budget_to_json(result, budget))
+        _print_json(chain_text.budget_to_json(result, budget))
     else:
         titles = {partner.id: partner.title for partner in architecture.partners.values()}
-        _print_lines(budget_text.format_budget(result, budget, titles, find_width(sys.stdout)))
+        _print_lines(chain_text.format_budget(result, budget, titles, find_width(sys.stdout)))
 
 
 def _search_beyond(
@@ -204,20 +205,14 @@ def _find_chain(chain_results: dict[str, ChainResult], chain_id: str) -> ChainRe
 
 def raise_usage_error(text: str) -> NoReturn:
     """Raise the error for wrong usage with a text that may hold anything."""
-    from archgen.diagnostics.safe_text import make_visible
-
     raise click.UsageError(make_visible(text))
 
 
 def _print_json(document: object) -> None:
-    from archgen.diagnostics.safe_text import format_json
-
     click.echo(format_json(document), nl=False)
 
 
 def _print_lines(lines: Iterable[str]) -> None:
-    from archgen.diagnostics.safe_text import make_visible
-
     width = find_width(sys.stdout)
     for line in lines:
         click.echo("\n".join(wrap_line(make_visible(line), width)))

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import Literal
 
-from archgen.compare.compared_elements import ComparedElement
 from archgen.compare.comparison import Change
 from archgen.compare.output_heirs import OutputHeir, component_of
-from archgen.compare.version_pair import VersionPair
+from archgen.compare.version_pair import ComparedElement, VersionPair
 from archgen.frozen import dataclass
 
 _FOLLOWING_KEYS = {

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from archgen.compare.compared_elements import ComparedElement
-from archgen.compare.key_phrases import format_value
+from archgen.compare.key_phrases import format_value, name_partner, shown_id, tick_names
 from archgen.compare.normal_values import to_plain_data
 from archgen.compare.output_heirs import OutputHeir, outputs_of, sources_of
-from archgen.compare.partner_titles import name_partner
-from archgen.compare.sentence_words import shown_id, tick_names
 from archgen.compare.text_differences import describe_text_difference
-from archgen.compare.version_pair import VersionPair
+from archgen.compare.version_pair import ComparedElement, VersionPair
 from archgen.diagnostics.common_wording import join_words
 
 _PACE_KEYS = {"timing.behaviour": "behaviour", "timing.rate": "rate"}

@@ -8,8 +8,7 @@ from dataclasses import dataclass, field, replace
 
 from archgen.compare.change_sentences import describe_change
 from archgen.compare.comparison import Change, Comparison
-from archgen.compare.partner_titles import name_partner
-from archgen.compare.sentence_words import tick_names
+from archgen.compare.key_phrases import name_partner, tick_names
 from archgen.compare.type_origins import OriginFinder, TypeKey
 from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.common_wording import join_words

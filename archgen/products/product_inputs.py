@@ -15,11 +15,10 @@ from archgen.products import project_views
 from archgen.products.output_options import OutputOptions
 from archgen.products.project_views import ProjectViews
 from archgen.views import drawing_set
-from archgen.views.chart_shapes import Drawing
-from archgen.views.graph_shapes import Graph, GraphKind
 from archgen.views.lookup import Lookup, add_timing
 from archgen.views.pages import report_outline, site_pages
 from archgen.views.pages.report_outline import DocumentEdition, RosPlace
+from archgen.views.picture_shapes import Drawing, Graph, GraphKind
 from archgen.views.shapes import Figure, Outline, Page
 from archgen.views.timing.timing_lookup import add_late_runs, complete_with_chains
 

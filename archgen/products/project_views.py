@@ -24,11 +24,11 @@ from archgen.products.output_options import OutputOptions
 from archgen.project import ProjectNotFoundError
 from archgen.views import drawing_set
 from archgen.views.agreement.signature_record import SignedTag
-from archgen.views.chart_shapes import Drawing
 from archgen.views.lookup import DocumentScope, Lookup, add_timing, make_lookup
 from archgen.views.pages.report_outline import DetailLevel, DocumentEdition
 from archgen.views.pages.variant_chapter import VariantDifference
-from archgen.views.tables import project_growth, statistics_tables
+from archgen.views.picture_shapes import Drawing
+from archgen.views.tables import statistics_tables
 from archgen.views.timing.timing_lookup import add_late_runs, complete_with_chains
 
 _SHORT_HASH_LENGTH = 10
@@ -91,7 +91,7 @@ def make_views(
     all_drawings = drawing_set.make_drawings(
         lookup, options.selection, options.level or "implementation", undrawn_kinds=undrawn_kinds, depth=options.depth
     )
-    all_drawings |= {chart.id: chart for chart in project_growth.make_growth_charts(project_history)}
+    all_drawings |= {chart.id: chart for chart in statistics_tables.make_growth_charts(project_history)}
     if options.changes:
         from archgen.views.changes.site_changes import mark_drawings
 

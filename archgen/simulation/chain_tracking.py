@@ -8,6 +8,7 @@ from fractions import Fraction
 from itertools import pairwise
 
 from archgen.simulation.chain_series import ChainSeries, ChainTrace, TimeRange, compute_quantiles, measure_chain
+from archgen.simulation.job_activation import list_samplings
 from archgen.simulation.simulation_plan import SimulationPlan
 from archgen.simulation.simulation_result import ChainFigures, DurationDistribution, ObservedChain
 from archgen.simulation.simulation_run import SimulationRun
@@ -35,7 +36,7 @@ class ChainTrack:
     def trace_run(self, run: SimulationRun) -> ChainTrace:
         """Return what one run recorded of the chain."""
         return ChainTrace(
-            run.activities.job_activations[self.activities[0]],
+            list_samplings(run, self.activities[0]),
             [_stalest_sources(run, wires) for wires in self.wires],
             run.activities.job_ends[self.activities[-1]],
             [_jointly_forwarded(run, wires) for wires in self.wires],

@@ -12,7 +12,7 @@ from random import Random
 
 from archgen.model.declared_timing import SchedulingOrder
 from archgen.simulation.run_state import Job
-from archgen.simulation.simulation_plan import Processor, SimulationPlan
+from archgen.simulation.simulation_plan import TIMER, Processor, SimulationPlan
 
 WAIT_SET, FIRST_FIRST, LAST_FIRST, RANDOM_ORDER, FIXED_RANKS, FAVOURED_OTHERS, BY_PRIORITY, BY_DEADLINE, TAKE_TURNS = (
     range(9)
@@ -74,6 +74,13 @@ class CallbackStates:
         self.group = [planned.group for planned in callbacks]
         self.is_storing = [planned.is_storing for planned in callbacks]
         self.depth = [planned.depth for planned in callbacks]
+        self.skips_ticks = [
+            planned.kind == TIMER
+            and plan.executors[planned.executor].order == "ros2_executor"
+            and plan.activities[planned.activity].declared_response is None
+            for planned in callbacks
+        ]
+        """Whether a tick that comes while another one waits makes no job: rcl counts it as done."""
         self.shortest_time = [planned.bcet for planned in callbacks]
         self.time_spread = [planned.wcet - planned.bcet for planned in callbacks]
         self.pending: list[deque[Job]] = [deque() for _ in callbacks]

@@ -9,7 +9,7 @@ Read the folders in this order; each one imports only from those before it and f
 - `load`: event models and response times, in integer ticks. `event_streams` (how many events fit into a window),
   `busy_windows` (how long work holds a core), `thread_work` and `response_times` (activities one by one on one core);
   `inner_triggers`, `level_cascades`, `run_ways` and `cascade_demand` (what an event leads to on its core), `inner_core` and
-  `core_responses` (one core), `queue_orders`, `queue_responses` and `ordered_cores` (orders that are written), `shared_cores`,
+  `core_responses` (one core), `queue_orders` and `queue_responses` (orders that are written), `shared_cores`,
   `core_paths`, `path_work` and `shared_core_responses` (several), `whole_hosts` (several taken as one); then
   `event_models` (what is activated, arrives and leaves), `load_system` (callbacks that store, priorities that count),
   `storing_waits`, `propagation_steps`, `step_updates` and `event_propagation` (all resources, to a fixed point), `link_queueing` (links as well); `host_loads` and

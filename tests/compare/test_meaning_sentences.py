@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.compare.meaning_sentences import is_read_by_others
+from archgen.compare.element_sentences import is_read_by_others
 from tests.compare.conftest import Compared, Told
 
 ROBOT = """\

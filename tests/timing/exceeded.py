@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
 
+from archgen.model.architecture import Architecture
 from archgen.simulation import SimulationResult, simulate_system
 from archgen.simulation.analysis_bounds import bound_data_ages, find_publish_pauses
 from archgen.timing.analysis import Analysis, ChainResult
@@ -17,7 +18,11 @@ from tests.timing.random_systems import architecture
 
 def exceeded(text: str, seconds: int = 2, seeds: int = 6) -> tuple[list[str], int]:
     """Simulate a project; say what exceeded its bound, and how many bounds were held against what was seen."""
-    model = architecture(text)
+    return exceeded_by(architecture(text), seconds, seeds)
+
+
+def exceeded_by(model: Architecture, seconds: int = 2, seeds: int = 6) -> tuple[list[str], int]:
+    """Say the same of an architecture."""
     analysis = analyse_architecture(model)
     if not _kept(analysis):
         return [], 0

@@ -27,7 +27,7 @@ from archgen.emit.graphviz.dot_text import escape_label, wrap_text
 from archgen.emit.graphviz.drawn_legend import add_legend
 from archgen.emit.graphviz.placed_scene import Scene, ScenePart
 from archgen.emit.graphviz.styled_graph import measure_nodes
-from archgen.views.chart_shapes import BarSegment, Chart, ChartBar
+from archgen.views.picture_shapes import BarSegment, Chart, ChartBar
 from archgen.views.short_figures import shorten_text
 
 _CHART_WIDTH = 440.0

@@ -11,7 +11,7 @@ from archgen.emit.graphviz.box_styles import LinkResolver, link_attributes
 from archgen.emit.graphviz.dot_text import escape_label, quote_value, wrap_text
 from archgen.emit.graphviz.placed_scene import DotAttributes, ScenePart
 from archgen.emit.graphviz.styled_graph import measure_nodes
-from archgen.views.chart_shapes import BarSegment
+from archgen.views.picture_shapes import BarSegment
 
 BAR_HEIGHT = 14.0
 """In points, as all lengths here."""

@@ -9,7 +9,7 @@ from typing import Any
 from archgen.diagnostics.safe_text import make_visible
 from archgen.diagnostics.text_columns import TextRow, align_rows, format_section
 from archgen.emit.data import timing_json
-from archgen.emit.terminal.figure_text import format_figure
+from archgen.emit.terminal.timing_text import format_figure
 from archgen.timing.chains.measured_comparison import MeasuredComparison, Observation
 from archgen.timing.chains.sample_statistics import PERCENTILES, SampleStatistics, UnmappedSamples
 from archgen.timing.figures import figure_wording

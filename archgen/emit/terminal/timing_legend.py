@@ -44,6 +44,7 @@ _TIERS = {
     "edf": "the earliest deadline first",
     "cores": "several cores in any order",
     "whole host": "several cores taken as one, in any order",
+    "whole way": "ways over hosts and links as wholes, in any order",
     "unknown": "an execution time, or the number of cores, is not written",
 }
 

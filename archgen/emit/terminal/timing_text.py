@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
 
 from archgen.diagnostics.text_columns import TextRow, format_section
-from archgen.emit.terminal import chain_remedies, timing_legend
+from archgen.emit.terminal import chain_gaps, timing_legend
 from archgen.emit.terminal.chain_gaps import describe_gaps
-from archgen.emit.terminal.figure_text import format_figure, format_missing
 from archgen.simulation.chain_evidence import NO_EVIDENCE, ChainEvidence
 from archgen.timing.analysis import Analysis, ChainResult, HostLoad
 from archgen.timing.chains.chain_advice import advise_on_chain
@@ -17,6 +16,7 @@ from archgen.timing.chains.figure_explanations import describe_behaviour
 from archgen.timing.chains.fused_inputs import find_fused_inputs
 from archgen.timing.chains.loop_rounds import LoopRound
 from archgen.timing.figures import figure_wording
+from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import NO_MATCH_NOTE, is_unfound
 from archgen.timing.load.host_verdicts import name_host_verdict
 from archgen.timing.system.thread_pools import find_joint_nodes
@@ -36,7 +36,7 @@ def format_timing(
             "What is late or not proven to be in time, why, and what to do",
             _advice_rows(analysis, chains.values(), evidence),
         ),
-        (chain_remedies.REMEDY_TITLE, chain_remedies.list_remedy_rows(chains, evidence)),
+        (chain_gaps.REMEDY_TITLE, chain_gaps.list_remedy_rows(chains, evidence)),
         ("Hosts: load (100 % is one core all the time)", _host_rows(analysis)),
         ("Resources: load, and longest time from asking until done", _resource_rows(analysis)),
         ("Links", _link_rows(analysis)),
@@ -70,18 +70,18 @@ def _chain_rows(analysis: Analysis, chains: Iterable[ChainResult], evidence: Cha
             format_figure(result.bound),
             deadline,
             VERDICT_WORDS[result.verdict] if result.deadline else "",
-            chain_remedies.describe_slack(result),
+            chain_gaps.describe_slack(result),
             "; ".join(
                 filter(
                     None,
                     (
-                        chain_remedies.describe_witness(result.id, evidence.witnesses.get(result.id)),
+                        chain_gaps.describe_witness(result.id, evidence.witnesses.get(result.id)),
                         describe_gaps(result, analysis),
                     ),
                 )
             ),
         )
-        yield from chain_remedies.list_share_rows(result)
+        yield from chain_gaps.list_share_rows(result)
 
 
 def _advice_rows(analysis: Analysis, chains: Iterable[ChainResult], evidence: ChainEvidence) -> Iterator[TextRow]:
@@ -90,7 +90,7 @@ def _advice_rows(analysis: Analysis, chains: Iterable[ChainResult], evidence: Ch
         for result in chains:
             advice = advise_on_chain(analysis, result) if result.verdict == verdict else None
             if advice is not None:
-                advice = chain_remedies.replace_advice(advice, evidence.remedies.get(result.id))
+                advice = chain_gaps.replace_advice(advice, evidence.remedies.get(result.id))
                 yield from zip((result.id, "", ""), (sentence for sentence in advice if sentence), strict=False)
 
 
@@ -239,3 +239,19 @@ def _fault_lines(analysis: Analysis) -> Iterator[str]:
         yield f"deadlock: each waits for the other in {' > '.join(ring)}"
     if analysis.diverged:
         yield f"no bound was found for {figure_wording.join_first_names(analysis.diverged)}"
+
+
+def format_missing(value: TimingValue) -> str:
+    """Return which elements' figures a value lacks."""
+    return f"unknown: {figure_wording.join_first_names(value.missing)}" if value.missing and not value.complete else ""
+
+
+def format_figure(value: TimingValue | None, write: Callable[[Fraction], str] = figure_wording.format_duration) -> str:
+    """Format a value: `202 ms`, `>= 468 ms`, `unknown`, `unbounded (overload)`."""
+    if value is None:
+        return ""
+    if value.value is None:
+        reason = figure_wording.name_unknown_reason(value)
+        return f"unbounded ({reason})" if reason == "overload" else reason
+    sign = "" if value.complete else {"at least": ">= ", "at most": "<= "}.get(value.side, ">= ")
+    return sign + write(value.value)

@@ -7,9 +7,8 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import NamedTuple
 
-from archgen.timing.chains import chain_regions
 from archgen.timing.chains.cost_network import CostNetwork, PathAim
-from archgen.timing.chains.path_search import CostedPath, PathSet, find_paths
+from archgen.timing.chains.path_search import CostedPath, PathSet, RouteRegion, find_paths
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
 from archgen.timing.figures.value_arithmetic import (
     is_boundless,
@@ -27,21 +26,19 @@ class ExtremePath(NamedTuple):
     value: TimingValue
 
 
-def find_aimed_paths(network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], aim: PathAim) -> PathSet:
+def find_aimed_paths(network: CostNetwork, regions: Sequence[RouteRegion], aim: PathAim) -> PathSet:
     """Return the paths of a route, with the extreme one for an aim first."""
     graph, start_costs = network.cost_graph(aim)
     return find_paths(graph, start_costs, regions, longest=aim != "best")
 
 
-def find_extreme_value(network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], aim: PathAim) -> TimingValue:
+def find_extreme_value(network: CostNetwork, regions: Sequence[RouteRegion], aim: PathAim) -> TimingValue:
     """Return the extreme figure of a route for an aim."""
     extreme_path = find_extreme_path(network, regions, aim)
     return extreme_path.value if extreme_path else UNKNOWN_VALUE
 
 
-def find_extreme_path(
-    network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], aim: PathAim
-) -> ExtremePath | None:
+def find_extreme_path(network: CostNetwork, regions: Sequence[RouteRegion], aim: PathAim) -> ExtremePath | None:
     """Return the extreme path of a route for an aim, in the view of the network in which it bounds best."""
     if not regions:
         return None
@@ -61,7 +58,7 @@ def _bound_order(extreme_path: ExtremePath) -> tuple[bool, bool, Fraction, bool]
     Of equal ones that by runs: where a step elsewhere loses its bound, the terms of all others stay what they were.
     """
     view, _, bound = extreme_path
-    return is_boundless(bound), not is_known_bound(bound), bound.value or Fraction(0), not view.by_runs
+    return is_boundless(bound), not is_known_bound(bound), bound.value or Fraction(0), not view.runs
 
 
 def sum_path(network: CostNetwork, path: CostedPath, aim: PathAim) -> TimingValue:

@@ -14,8 +14,8 @@ from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture, Waypoint
 from archgen.model.step_connections import ConnectedStep, UseCaseSteps
 from archgen.timing.analysis import Analysis
-from archgen.timing.chains.chain_regions import resolve_points
 from archgen.timing.chains.cost_network import CostNetwork
+from archgen.timing.chains.element_index import ElementIndex
 from archgen.timing.chains.path_search import RouteRegion, find_paths
 from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue
 from archgen.timing.figures.value_arithmetic import (
@@ -53,7 +53,7 @@ def bound_use_cases(analysis: Analysis, architecture: Architecture) -> dict[str,
         for end in (each.step.source, each.step.target)
         if end.kind in {"component", "output"}
     )
-    points = resolve_points(analysis.system, architecture, [Waypoint("component", name) for name in ends])
+    points = ElementIndex(analysis.system, architecture).resolve_points([Waypoint("component", name) for name in ends])
     activities = {name: point.activities for name, point in zip(ends, points, strict=True)}
     arcs_by_port: dict[str, list[int]] = defaultdict(list)
     for index, arc in enumerate(analysis.system.arcs):

@@ -53,9 +53,7 @@ def bound_wholes(analysis: Analysis, architecture: Architecture) -> dict[str, Wh
     network = CostNetwork.of_analysis(analysis)
     waypoints = [Waypoint("component", shell.id) for shell in shells]
     bounds = {}
-    for shell, point in zip(
-        shells, chain_regions.resolve_points(analysis.system, architecture, waypoints), strict=True
-    ):
+    for shell, point in zip(shells, network.index_elements(architecture).resolve_points(waypoints), strict=True):
         # From the activation on, as a deadline counts: the bound of a chain also has the wait of the first sample.
         extreme_path = find_extreme_path(network, chain_regions.lay_out_chain(network, (point,)), "reduced reaction")
         if extreme_path is not None:

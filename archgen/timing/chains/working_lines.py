@@ -65,15 +65,9 @@ class WorkingLines:
             if working.is_hold
             else "the least t > 0 with A + B <= t"
         )
-        all_cores = f"all {working.core_count} cores"
-        if working.full_ids:
-            full_text = ", ".join(working.full_ids)
-            all_cores = (
-                f"all cores but those of {full_text}, which may be busy all the time ({working.core_count} are left),"
-            )
         yield ReasonLine(
             depth, f"{head} is {self._write(working.window)}: A is the work of its own threads, "
-            f"B the time in which {all_cores} may be busy with others"
+            f"B the time in which all {working.core_count} cores may be busy with others"
         )  # fmt: skip
         yield from self.list_terms(working.terms, depth + 1)
         parts = [self._write(term.total) for term in working.terms]

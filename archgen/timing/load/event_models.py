@@ -22,6 +22,7 @@ from archgen.timing.load.event_streams import (
 from archgen.timing.load.match_delays import combine_matched
 from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.run_ways import EntryWay
+from archgen.timing.load.thread_work import DIVERGED_CAUSE
 from archgen.timing.system.thread_pools import is_reentrant
 from archgen.timing.system.timing_system import Activity, Arc, TimingSystem, best_response, calls_per_activation
 
@@ -145,6 +146,14 @@ def leaving_model(state: PropagationState, arc: Arc) -> EventStreams | UnknownCa
     if isinstance(event_model, UnknownCause) or not event_model or (calls is not None and calls <= 0):
         return () if calls is not None and calls <= 0 else event_model
     response = state.responses[arc.source]
+    bounded_ways = (
+        (state.host_ways_to.get(arc.source, ()), state.transaction_ways.get(arc.source, ()))
+        if source.response is None
+        else ()
+    )
+    if arc.source in state.settled_ids and source.response is None:
+        known_ways = state.transaction_ways.get(arc.source, ())
+        return _stream_ways(state, source, known_ways, calls) if known_ways else DIVERGED_CAUSE
     if response.value is None:
         return _downstream_cause(response.cause)
     # What a declared response says goes for its output, whatever may be computed.
@@ -157,12 +166,10 @@ def leaving_model(state: PropagationState, arc: Arc) -> EventStreams | UnknownCa
         if ways
         else _complete_streams(state, source, event_model, calls, response.value)
     )
-    host_ways = state.host_ways_to.get(arc.source, ()) if source.response is None else ()
-    if not host_ways or isinstance(leaving, UnknownCause):
-        return leaving
-    # Over many cores delays add up on the way, while the host as a whole bounds all of them together.
-    leaving_host = _stream_ways(state, source, host_ways, calls)
-    return leaving if isinstance(leaving_host, UnknownCause) else min(leaving, leaving_host, key=_largest_jitter)
+    # Over many cores delays add up on the way, while the host, or the way as a whole, bounds all of them together.
+    others = [_stream_ways(state, source, each, calls) for each in bounded_ways if each]
+    models = [model for model in (leaving, *others) if not isinstance(model, UnknownCause)]
+    return min(models, key=_largest_jitter, default=leaving)
 
 
 def _largest_jitter(streams: EventStreams) -> int:

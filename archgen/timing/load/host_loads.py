@@ -12,9 +12,10 @@ from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue
 from archgen.timing.figures.value_arithmetic import add_values, is_boundless, replace_figure, unknown_value
 from archgen.timing.load.host_verdicts import HostJudge, rate_monotonic_bound
 from archgen.timing.load.propagation_state import PropagationState
+from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.thread_work import WorstResponse
 from archgen.timing.system.core_placement import ProcessingResource
-from archgen.timing.system.timing_system import Activity, TimingSystem, best_response
+from archgen.timing.system.timing_system import Activity, Arc, TimingSystem, best_response
 
 _ONE_CORE_ONLY = TimingValue(None, assumptions=("one core only",))
 _TIER_SENTENCES = {
@@ -29,6 +30,7 @@ _TIER_SENTENCES = {
     "edf": "all that may have an earlier deadline on {0}",
     "cores": "all work of its own thread, and a share of all other work on the {1} cores of {0}",
     "whole host": "the longest time for which all work on {0} can keep one core busy (while anything waits there, one works)",
+    "whole way": "its ways from the event on as wholes: own work, links, and what can hold up one event on all hosts there",
     "unknown": "no execution time is written",
 }
 _OWN_CORE_SENTENCE = "its own work: {0} has no more threads than cores"
@@ -67,12 +69,17 @@ def _build_response_time(
     )
 
 
-def build_run_responses(state: PropagationState, responses: Mapping[str, ResponseTime]) -> dict[str, RunResponse]:
-    """Return how long runs take, for each activity to which one leads from another of its core."""
+def build_run_responses(
+    state: PropagationState,
+    responses: Mapping[str, ResponseTime],
+    ways_to: Mapping[str, tuple[EntryWay, ...]],
+    run_arcs: Mapping[str, tuple[Arc, ...]],
+) -> dict[str, RunResponse]:
+    """Return how long runs take, for each activity to which one leads from another of its core, or of another."""
     runs: dict[str, RunResponse] = {}
-    for name, ways in state.ways_to.items():
+    for name, ways in ways_to.items():
         delays = [way.delay for way in ways if way.delay is not None]
-        arcs = state.run_arcs.get(name, ())
+        arcs = run_arcs.get(name, ())
         if len(delays) == len(ways) and arcs and responses[name].tier != "declared":
             runs[name] = RunResponse(replace(responses[name].worst, value=max(delays) * state.system.tick), arcs)
     return runs

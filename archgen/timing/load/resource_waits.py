@@ -60,13 +60,12 @@ def find_use_time(state: PropagationState, name: str, resource_id: str, budget: 
         return OVERLOAD_CAUSE
     users = [user for user in find_users(state.system, resource_id) if state.event_models[user] != ()]
     in_turn = bound_in_turn(state.system, name, resource_id, users) if order == "fifo" else None
+    if in_turn is not None:
+        return in_turn
     try:
-        by_arrivals = _bound_by_arrivals(state, name, resource_id, budget)
+        return _bound_by_arrivals(state, name, resource_id, budget)
     except DivergedError:
-        by_arrivals = DIVERGED_CAUSE
-    if isinstance(by_arrivals, UnknownCause):
-        return by_arrivals if in_turn is None else in_turn
-    return by_arrivals if in_turn is None else min(in_turn, by_arrivals)
+        return DIVERGED_CAUSE
 
 
 def find_load(state: PropagationState, resource_id: str) -> Fraction:

@@ -11,10 +11,9 @@ from archgen.timing.load.busy_windows import DivergedError, SearchBudget, WorstA
 from archgen.timing.load.core_responses import CoreSolver
 from archgen.timing.load.core_terms import CoreTerms, explain_core_hold, explain_core_window, explain_queue_bound
 from archgen.timing.load.load_system import list_written_priorities
-from archgen.timing.load.lone_work import find_lone_response
 from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.queue_responses import QUEUE_TIERS
-from archgen.timing.load.response_times import AnalysisEffort, find_responses
+from archgen.timing.load.response_times import AnalysisEffort, find_lone_activation, find_responses
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.load.shared_core_terms import SharedCoreTerms
@@ -109,7 +108,7 @@ class ResponseTerms:
         if isinstance(work, UnknownCause):
             return
         in_order = works_in_order(system, system.activities[name])
-        count, arrival, finish = find_lone_response(work, SearchBudget(), in_order=in_order)
+        count, arrival, finish = find_lone_activation(work, SearchBudget(), in_order=in_order)
         events = EventCount(count, str(count)) if in_order else self.formulas.count_events(work.streams, finish)
         term = WorkTerm(((name, work.cost),), events, "its own")
         yield FigureWorking(finish - arrival, finish, group_terms([term]), count, arrival)

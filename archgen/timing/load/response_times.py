@@ -13,6 +13,7 @@ from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, unite_causes
 from archgen.timing.load.busy_windows import (
     NO_DEMAND,
+    ActivityWork,
     DemandFunction,
     DivergedError,
     GrowingLoad,
@@ -25,7 +26,6 @@ from archgen.timing.load.busy_windows import (
     subtract_demand,
 )
 from archgen.timing.load.event_streams import settles_at_full_load
-from archgen.timing.load.lone_work import find_lone_response
 from archgen.timing.load.ranked_threads import RankedThreads
 from archgen.timing.load.thread_work import (
     DIVERGED_CAUSE,
@@ -74,10 +74,17 @@ def find_dedicated_response(
     if work_utilisation(work.cost, work.streams) >= 1:
         return WorstResponse(None, "dedicated", OVERLOAD_CAUSE)
     try:
-        in_order = works_in_order(system, activity)
-        return WorstResponse(find_lone_response(work, budget, in_order=in_order).response, "dedicated")
+        worst = find_lone_activation(work, budget, in_order=works_in_order(system, activity))
+        return WorstResponse(worst.response, "dedicated")
     except DivergedError:
         return WorstResponse(None, "dedicated", DIVERGED_CAUSE)
+
+
+def find_lone_activation(work: ActivityWork, budget: SearchBudget, *, in_order: bool) -> WorstActivation:
+    """Return what takes longest on a core of its own; `in_order` where activations begin in the order in which they come."""
+    if in_order:
+        return find_worst_activation(work, NO_DEMAND, budget)
+    return WorstActivation(0, 0, longest_busy_period(GrowingLoad((work,)).demand_function(), budget))
 
 
 def find_responses(
@@ -192,7 +199,7 @@ def _bound_any_order(
     works = [work for thread in threads for work in thread.works]
     try:
         if len(works) == 1 and works[0].streams and threads[0].in_order:
-            worst = find_worst_activation(works[0], NO_DEMAND, budget)
+            worst = find_lone_activation(works[0], budget, in_order=True)
         else:
             demand = add_demands(GrowingLoad(works).demand_function(), DemandFunction(lambda _: once_cost))
             worst = WorstActivation(0, 0, search(demand, budget, once_cost))

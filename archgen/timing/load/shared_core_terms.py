@@ -40,23 +40,8 @@ class SharedCoreTerms:
     state: PropagationState
     formulas: CountFormulas
 
-    def _find_rest(self, name: str) -> SharedCoreTerms | None:
-        """Return how figures come about on the cores that full threads leave, where an activity has its bound there."""
-        rest_solver = self.solver.rest_solver
-        if rest_solver is None or name not in self.solver.cause_of or name not in rest_solver.cores.unit_of:
-            return None
-        return SharedCoreTerms(rest_solver, self.state, self.formulas)
-
-    def _name_full_threads(self, rest: SharedCoreTerms, workings: Iterable[FigureWorking]) -> Iterator[FigureWorking]:
-        left_ids = rest.solver.cores.unit_of
-        full_ids = tuple(name for name in self.solver.cores.unit_of if name not in left_ids)
-        yield from (replace(working, full_ids=(*full_ids, *working.full_ids)) for working in workings)
-
     def list_responses(self, name: str) -> Iterator[FigureWorking]:
         """Yield how the response of an activity may have been found."""
-        if rest := self._find_rest(name):
-            yield from self._name_full_threads(rest, rest.list_responses(name))
-            return
         value = self.state.responses[name].value or 0
         yield from self._follow_path((name,), value)
         for way in self.solver.cores.ways_to[name]:
@@ -68,9 +53,6 @@ class SharedCoreTerms:
 
     def list_delays(self, name: str, way: EntryWay) -> Iterator[FigureWorking]:
         """Yield how the longest time of a way may have been found, from the event on to the end of an activity."""
-        if rest := self._find_rest(name):
-            yield from self._name_full_threads(rest, rest.list_delays(name, way))
-            return
         yield from self._follow_path(way.steps, way.delay or 0)
         yield from self._list_backlog(way)
         if len(way.steps) > 1:
@@ -115,9 +97,6 @@ class SharedCoreTerms:
 
     def list_holds(self, name: str, hold: int) -> Iterator[FigureWorking]:
         """Yield what may hold up the storing of an activity's inputs for so long."""
-        if rest := self._find_rest(name):
-            yield from self._name_full_threads(rest, rest.list_holds(name, hold))
-            return
         if name in self.solver.cause_of:
             return
         for thread_id in (name, *list_storing_ids(self.solver.cores.system.activities[name])):

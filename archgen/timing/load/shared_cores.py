@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -64,13 +64,8 @@ def prepare_shared_cores(
     """Find the threads of some cores, and the cascades of what enters them."""
     all_units = (*resource.units, *resource.foreign_units)
     foreign_ids = tuple(name for unit in resource.foreign_units for name in unit)
+    inner_triggers, ways_to = find_ways_anew(system, inner_triggers)
     arc_numbers, entering_arcs = number_arcs(inner_triggers)
-    ways_to = find_entry_ways(system, inner_triggers, arc_numbers)
-    crowded_ids = _find_crowded_ids(inner_triggers, ways_to)
-    if crowded_ids:
-        inner_triggers = _begin_anew(inner_triggers, crowded_ids)
-        arc_numbers, entering_arcs = number_arcs(inner_triggers)
-        ways_to = find_entry_ways(system, inner_triggers, arc_numbers)
     cascades = build_level_cascades(system, inner_triggers, arc_numbers, (*resource.members, *foreign_ids), foreign_ids)
     unit_of = {name: unit for unit in all_units for name in unit}
     jobs = tuple(_list_jobs(system, cascades, ways_to, unit_of, foreign_ids))
@@ -104,6 +99,18 @@ def prepare_shared_cores(
     )
 
 
+def find_ways_anew(
+    system: TimingSystem, inner_triggers: InnerTriggers
+) -> tuple[InnerTriggers, dict[str, tuple[EntryWay, ...]]]:
+    """Return the ways to each activity, and the triggers without those into what too many ways lead to."""
+    ways_to = find_entry_ways(system, inner_triggers, number_arcs(inner_triggers)[0])
+    crowded_ids = _find_crowded_ids(inner_triggers, ways_to)
+    if crowded_ids:
+        inner_triggers = begin_anew(inner_triggers, crowded_ids)
+        ways_to = find_entry_ways(system, inner_triggers, number_arcs(inner_triggers)[0])
+    return inner_triggers, ways_to
+
+
 def _find_crowded_ids(inner_triggers: InnerTriggers, ways_to: Mapping[str, tuple[EntryWay, ...]]) -> frozenset[str]:
     """Return the activities to which too many ways lead: they begin ways of their own, with their own event models."""
     return frozenset(
@@ -113,11 +120,11 @@ def _find_crowded_ids(inner_triggers: InnerTriggers, ways_to: Mapping[str, tuple
     )
 
 
-def _begin_anew(inner_triggers: InnerTriggers, crowded_ids: frozenset[str]) -> InnerTriggers:
+def begin_anew(inner_triggers: InnerTriggers, crowded_ids: Collection[str]) -> InnerTriggers:
     """Let some activities be fired as their own event models say."""
     return replace(
         inner_triggers,
-        entry_ids=inner_triggers.entry_ids | crowded_ids,
+        entry_ids=inner_triggers.entry_ids.union(crowded_ids),
         inner_arcs={name: arcs for name, arcs in inner_triggers.inner_arcs.items() if name not in crowded_ids},
         outer_arcs={name: arcs for name, arcs in inner_triggers.outer_arcs.items() if name not in crowded_ids},
     )

@@ -171,8 +171,6 @@ class FigureWorking:
     """How much of the terms is a wait for threads of a container: time, and not work of a core."""
     is_backlog: bool = False
     """Whether all cores may be busy with `beside_terms` and what was pending, less `unfinished` and the own terms."""
-    full_ids: tuple[str, ...] = ()
-    """What may be busy all the time, on cores that are not among `core_count`."""
     core: int | None = None
     """The core that alone gives the figure of what may run on several."""
     is_queue: bool = False

@@ -18,6 +18,7 @@ from archgen.timing.figures.value_arithmetic import (
 from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.rates.rate_table import RateAndGap, RateTable, trigger_span
 from archgen.timing.rates.triggered_rates import find_triggered_rate
+from archgen.timing.system.thread_pools import may_skip_ticks
 from archgen.timing.system.timing_system import Activity, Arc
 
 
@@ -28,8 +29,11 @@ def find_rate_and_gap(rates: RateTable, activity: Activity) -> tuple[RateAndGap,
     """
     state = rates.state
     if activity.behaviour not in {"event", "on_demand"}:
-        rate_and_gap, reason = _own_rate(rates, activity)
-        return rate_and_gap, None, [reason]
+        (rate, gap), reason = _own_rate(rates, activity)
+        if rate.value is not None and may_skip_ticks(state.system, activity, state.responses[activity.id].value):
+            skipping = Reason("skips ticks: the rate is not kept", activity.places.get("wcet", activity.at))
+            return (replace(rate, side="at most"), gap), None, [reason, skipping]
+        return (rate, gap), None, [reason]
     requests = state.triggers.requests[activity.id]
     call_rate = add_values(_call_rate(rates, arc) for arc in requests) if requests else None
     reasons = [_call_reason(rates, arc) for arc in requests]

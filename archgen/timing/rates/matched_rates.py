@@ -22,6 +22,7 @@ from archgen.timing.load.event_streams import max_arrivals
 from archgen.timing.load.match_delays import find_matched_input, has_same_source, queue_length
 from archgen.timing.load.match_windows import MatchedInput, MatchWindows, find_match_windows
 from archgen.timing.rates.rate_table import RateTable, trigger_span
+from archgen.timing.system.thread_pools import may_skip_ticks
 from archgen.timing.system.timing_system import Activity, Arc, best_response
 
 Inputs = Mapping[str, tuple[Arc, ...]]
@@ -83,10 +84,10 @@ def _find_stamp_gap(rates: RateTable, activity: Activity, key: str, arcs: tuple[
         return TimingValue(None, assumptions=("diverged", text))
     arc, source = arcs[0], rates.state.system.activities[arcs[0].source]
     pace = rates.paces.get(source.id)
-    if pace is None or arc.output not in source.conditional:
-        return name_missing_element(pace.gap, source.id) if pace else unknown_value(source.id)
-    # What is promised is how far apart two messages are sent: each was activated between R and B before.
     response = rates.state.responses[source.id].value
+    if pace is None or not (arc.output in source.conditional or may_skip_ticks(rates.state.system, source, response)):
+        return name_missing_element(pace.gap, source.id) if pace else unknown_value(source.id)
+    # What is known is how far apart two messages are sent: each was activated between R and B before.
     sent_gap = name_missing_element(rates.outputs[source.id, arc.output].gap, source.id)
     if response is None or not is_known_bound(sent_gap):
         return sent_gap if response is not None else rates.responses[source.id].worst

@@ -57,19 +57,28 @@ def works_in_order(system: TimingSystem, activity: Activity) -> bool:
     if activity.executor not in system.executors or activity.behaviour == "periodic":
         return True
     # Whether there are several is all that is asked, and this is asked often.
-    entities = ((arc.role, arc.input, arc.topic) for arc in _list_waiting_arcs(system, activity))
+    entities = ((arc.role, arc.input, arc.topic) for arc in list_waiting_arcs(system, activity))
     first_entity = next(entities, None)
     return all(entity == first_entity for entity in entities)
+
+
+def may_skip_ticks(system: TimingSystem, activity: Activity, response: int | None) -> bool:
+    """Whether a tick of an activity may come while another one waits, in an executor of ROS 2: rcl counts it as done."""
+    executor = system.executors.get(activity.executor)
+    if activity.behaviour != "periodic" or executor is None or executor.order != "ros2_executor":
+        return False
+    return response is None or response - (activity.wcet or 0) > (activity.period or 0) - activity.jitter
 
 
 def count_entities(system: TimingSystem, activity: Activity) -> int:
     """Return how many callbacks of an activity wait for their turn: its clock, or each subscription and service."""
     if activity.behaviour == "periodic":
         return 1
-    return len({(arc.role, arc.input, arc.topic) for arc in _list_waiting_arcs(system, activity)})
+    return len({(arc.role, arc.input, arc.topic) for arc in list_waiting_arcs(system, activity)})
 
 
-def _list_waiting_arcs(system: TimingSystem, activity: Activity) -> Iterator[Arc]:
+def list_waiting_arcs(system: TimingSystem, activity: Activity) -> Iterator[Arc]:
+    """Yield the arcs by which what fires an activity comes."""
     for arc in system.arcs_into.get(activity.id, ()):
         if arc.role == "request" or arc.input in activity.triggers:
             yield arc

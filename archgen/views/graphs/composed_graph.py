@@ -11,22 +11,22 @@ from typing import Literal
 from archgen.frozen import dataclass, replace
 from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.component_nesting import find_passed_shell, list_surrounding
-from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 from archgen.views.graphs import element_boxes
-from archgen.views.graphs.component_flows import (
+from archgen.views.graphs.component_graph import port_key
+from archgen.views.graphs.drawn_level import (
     ComponentFlow,
+    DrawnLevel,
     FlowStyle,
     flow_style,
     merge_flows,
     port_style,
 )
-from archgen.views.graphs.component_graph import port_key
-from archgen.views.graphs.drawn_level import DrawnLevel
 from archgen.views.graphs.graph_folding import fold_graph
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.graphs.open_frames import draw_to_depth, find_drawn, list_opened, place_in_frames
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
+from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph
 
 _CALLS = {"service", "action"}
 _MAX_NAMED = 3

@@ -11,11 +11,11 @@ from dataclasses import replace
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 from archgen.model.component_nesting import find_component, list_surrounding
-from archgen.views.graph_shapes import Box, Cluster, Graph
 from archgen.views.graphs import element_boxes
 from archgen.views.graphs.graph_folding import MAX_ARROWS, MAX_BOXES
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
+from archgen.views.picture_shapes import Box, Cluster, Graph
 
 
 def draw_to_depth(architecture: Architecture, draw: Callable[[int], Graph], depth: int) -> Graph:

@@ -26,7 +26,7 @@ from archgen.views.shapes import (
     Table,
     Text,
 )
-from archgen.views.tables import finding_tables, project_growth, requirement_tables
+from archgen.views.tables import finding_tables, requirement_tables, statistics_tables
 from archgen.views.tables.statistics_tables import PROGRESS_STEPS
 from archgen.views.timing import chain_status, timing_tables, value_format
 
@@ -252,7 +252,7 @@ def _change_card(history: History) -> DashboardCard | None:
     pairs = list(pairwise(points))[::-1][:_MAX_CHANGES]
     items = tuple(
         (
-            Text(project_growth.name_point(after, history), ref="page:progress"),
+            Text(statistics_tables.name_point(after, history), ref="page:progress"),
             Text(_describe_step(before, after), muted=True, line_break=True),
         )
         for before, after in pairs
@@ -270,6 +270,6 @@ def _describe_step(before: HistoryPoint, after: HistoryPoint) -> str:
         ("mapped", old.mapped, new.mapped),
         ("timed", old.timed, new.timed),
         ("traced", old.traced, new.traced),
-        ("open points", project_growth.count_findings(before), project_growth.count_findings(after)),
+        ("open points", statistics_tables.count_findings(before), statistics_tables.count_findings(after)),
     )
     return ", ".join(f"{name} {first} → {last}" for name, first, last in figures if first != last) or "same counts"

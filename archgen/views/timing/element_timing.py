@@ -14,7 +14,7 @@ from archgen.timing.system.timing_system import Activity
 from archgen.views import element_references, inline_text
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Fact, Figure, Inlines, Table, Text, show_facts
-from archgen.views.timing import chain_charts, load_charts, rate_phrases, timing_tables, use_tables, value_format
+from archgen.views.timing import chain_charts, load_charts, timing_tables, use_tables, value_format
 from archgen.views.timing.late_run_charts import make_late_run_figures
 from archgen.views.timing.timing_lookup import TimingLookup
 
@@ -177,7 +177,7 @@ def _activity_facts(
 ) -> Iterator[Fact]:
     """Yield rate and response of one activity, as far as they are known."""
     pace, response = timing_lookup.analysis.paces.get(activity.id), timing_lookup.analysis.responses.get(activity.id)
-    if pace and (rate_text := rate_phrases.format_rate_words(pace)) != "?":
+    if pace and (rate_text := value_format.format_rate_words(pace)) != "?":
         # A written rate needs no source here: the fact `Timing` beside it says what was written.
         source = (
             timing_tables.describe_rate_source(lookup, timing_lookup, activity, pace, origin_ids)
@@ -208,7 +208,7 @@ def make_rate_fact(lookup: Lookup, nodes: Iterable[Node], component_id: str) -> 
     lines = []
     for activity in matching_activities:
         pace = timing_lookup.analysis.paces.get(activity.id)
-        if pace and (rate_text := rate_phrases.format_rate_words(pace)) != "?":
+        if pace and (rate_text := value_format.format_rate_words(pace)) != "?":
             name = timing_tables.activity_link(timing_lookup, activity.id) if len(matching_activities) > 1 else ()
             origin_ids = timing_lookup.rate_origins.get(activity.id, ())
             source = (

@@ -10,8 +10,8 @@ from archgen.simulation.drawn_orders import describe_orders
 from archgen.simulation.schedule_log import LateSchedule, TrackSpan
 from archgen.timing.analysis import ChainResult
 from archgen.timing.figures.figure_wording import format_duration
-from archgen.views.chart_shapes import BarSegment, Chart, ChartBar, SegmentKind
 from archgen.views.lookup import Lookup
+from archgen.views.picture_shapes import BarSegment, Chart, ChartBar, SegmentKind
 from archgen.views.shapes import Block, Figure, Paragraph, Text
 from archgen.views.timing.load_charts import to_float
 from archgen.views.timing.timing_lookup import TimingLookup

@@ -7,9 +7,9 @@ from fractions import Fraction
 
 from archgen.timing.analysis import HostLoad
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
-from archgen.views.chart_shapes import BarSegment, Chart, ChartBar, SegmentKind
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
+from archgen.views.picture_shapes import BarSegment, Chart, ChartBar, SegmentKind
 from archgen.views.timing import value_format
 from archgen.views.timing.timing_lookup import TimingLookup
 

@@ -10,10 +10,10 @@ from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.load.host_verdicts import name_host_verdict
 from archgen.timing.system.timing_system import Activity
 from archgen.views import element_references, inline_text, timing_words
-from archgen.views.graph_shapes import PeriodStep as Step
 from archgen.views.lookup import Lookup
+from archgen.views.picture_shapes import PeriodStep as Step
 from archgen.views.shapes import Column, Inlines, Status, Table, Text, drop_empty_columns
-from archgen.views.timing import load_charts, rate_phrases, value_format
+from archgen.views.timing import load_charts, value_format
 from archgen.views.timing.timing_lookup import TimingLookup
 
 TIER_WORDS = {
@@ -28,6 +28,7 @@ TIER_WORDS = {
     "ros2_executor": "by rounds of the executor",
     "cores": "several cores",
     "whole host": "several cores as one",
+    "whole way": "ways over hosts as wholes",
     "unknown": "",
 }
 """How a response time was found, in words; see `Tier` in the timing analysis."""
@@ -92,15 +93,15 @@ def make_period_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | No
         if lookup.scope.shows_node(activity.node)
     ]
     # Every step in the order of the scale, so that the rows need no sorting; empty steps are dropped below.
-    links_by_step: dict[Step, list[Inlines]] = {step: [] for step in rate_phrases.PERIOD_STEP_WORDS}
+    links_by_step: dict[Step, list[Inlines]] = {step: [] for step in value_format.PERIOD_STEP_WORDS}
     for activity in shown_activities:
-        links_by_step[rate_phrases.find_period_step(timing_lookup.analysis.paces.get(activity.id))].append(
+        links_by_step[value_format.find_period_step(timing_lookup.analysis.paces.get(activity.id))].append(
             activity_link(timing_lookup, activity.id)
         )
     rows = tuple(
         (
             inline_text.to_inlines(
-                Text(rate_phrases.PERIOD_STEP_WORDS[step], sort_number=rate_phrases.longest_period(step))
+                Text(value_format.PERIOD_STEP_WORDS[step], sort_number=value_format.longest_period(step))
             ),
             inline_text.to_inlines(str(len(activity_links))),
             inline_text.join_inlines(activity_links),

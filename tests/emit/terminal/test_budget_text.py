@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from archgen.emit.terminal.budget_text import budget_to_json, format_budget
+from archgen.emit.terminal.chain_text import budget_to_json, format_budget
 from archgen.timing.search.chain_budgets import find_chain_budget
 from tests.timing.random_systems import architecture
 from tests.timing.search.trials import start_trials

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import pytest
 
-from archgen.emit.terminal import chain_remedies
+from archgen.emit.terminal import chain_gaps
 from archgen.simulation.seeded_runs import LateRun
 from archgen.timing.chains.chain_advice import ChainAdvice
 from archgen.timing.figures.timing_values import TimingValue
@@ -25,14 +25,14 @@ MS = Fraction(10**6)
 def test_what_is_left_of_a_deadline(deadline: str, text: str) -> None:
     nodes = {"a @p": "period: 96 ms, wcet: 2 ms", "b @p": "wcet: 3 ms"}
     model = read_sketch(nodes, "a>b", f"hosts: {{p: {{cores: 1}}}}\nchains: {{c: {{through: [a, b]{deadline}}}}}")
-    assert chain_remedies.describe_slack(bound_with(model)["c"]) == text
+    assert chain_gaps.describe_slack(bound_with(model)["c"]) == text
 
 
 def test_a_witness_is_told_with_the_command_that_repeats_it() -> None:
-    assert chain_remedies.describe_witness("c", LateRun(17, 60, 163 * MS)) == (
+    assert chain_gaps.describe_witness("c", LateRun(17, 60, 163 * MS)) == (
         "seen in `archgen simulate --seed 17 --chain c --seconds 60`: 163 ms"
     )
-    assert chain_remedies.describe_witness("c", None) == ""
+    assert chain_gaps.describe_witness("c", None) == ""
 
 
 @pytest.mark.parametrize(
@@ -52,7 +52,7 @@ def test_a_witness_is_told_with_the_command_that_repeats_it() -> None:
 def test_what_would_prove_a_chain(changes: tuple[TriedChange, ...], text: tuple[str, ...]) -> None:
     tried = (("priority", ("a", "b", "c", "d", "e")), ("callback_groups", ("n",)), ("reentrant", ("n",)))
     remedy = ChainRemedy("c", changes, TimingValue(40 * MS), tried, is_cut=True)
-    assert chain_remedies.describe_chain_remedy(remedy) == text
+    assert chain_gaps.describe_chain_remedy(remedy) == text
 
 
 @pytest.mark.parametrize(
@@ -70,5 +70,5 @@ def test_the_change_that_proves_a_chain_is_the_one_thing_to_do(
 ) -> None:
     advice = ChainAdvice("It may take long.", "The largest part: all.", "Give it up.")
     remedy = ChainRemedy("c", changes, TimingValue(40 * MS), (), is_cut=False)
-    assert chain_remedies.replace_advice(advice, remedy) == advice._replace(first_step=first_step)
-    assert chain_remedies.replace_advice(advice, None) == advice
+    assert chain_gaps.replace_advice(advice, remedy) == advice._replace(first_step=first_step)
+    assert chain_gaps.replace_advice(advice, None) == advice

@@ -16,10 +16,11 @@ from archgen.timing.chains.chain_bounds import (
     find_unmet_chains,
     list_bounded_paths,
 )
-from archgen.timing.chains.chain_regions import ChainPoint, lay_out_chain, resolve_points
+from archgen.timing.chains.chain_regions import lay_out_chain
 from archgen.timing.chains.chain_verdicts import judge_deadline
 from archgen.timing.chains.cost_network import CostNetwork, PathAim
 from archgen.timing.chains.duerr_bounds import PeriodicTask, bound_periodic_chain, bound_reaction, bound_reduced_age
+from archgen.timing.chains.element_index import ChainPoint, ElementIndex
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.run_analysis import analyse_architecture
 from tests.timing.printed import MS, show_ms
@@ -231,7 +232,7 @@ nodes:
 )
 def test_an_element_stands_for_activities(kind: str, id_: str, activities: tuple[str, ...], output: str | None) -> None:
     system = analyse_architecture(POINTS).system
-    (point,) = resolve_points(system, POINTS, (Waypoint(kind, id_),))  # type: ignore[arg-type]
+    (point,) = ElementIndex(system, POINTS).resolve_points((Waypoint(kind, id_),))  # type: ignore[arg-type]
     assert (point.activities, point.output) == (activities, output)
 
 

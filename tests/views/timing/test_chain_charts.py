@@ -9,8 +9,8 @@ import pytest
 from archgen.timing.analysis import HostLoad
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
 from archgen.timing.load.host_verdicts import name_host_verdict
-from archgen.views.chart_shapes import Chart
 from archgen.views.lookup import make_lookup
+from archgen.views.picture_shapes import Chart
 from archgen.views.timing import chain_charts, load_charts
 from archgen.views.timing.timing_lookup import TimingLookup
 from tests.judged_projects import judge_ramcip
