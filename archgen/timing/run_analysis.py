@@ -157,7 +157,7 @@ def _add_wait_reasons(
             response,
             reasons=(*response.reasons, *explain_waits(resource_loads, system.activities[name], system.tick)),
         )
-        if system.activities[name].uses
+        if system.activities[name].suspends
         else response
         for name, response in responses.items()
     }

@@ -183,7 +183,7 @@ def _write(
     )
 
 
-@dataclass
+@dataclass(eq=False)
 class _Job:
     step: Step
     fired: int
@@ -264,9 +264,12 @@ class Simulation:
         while True:
             for thread, queue in self.queues.items():
                 if thread not in self.running and queue:
-                    place = self.dice.randrange(len(queue)) if self.order in {"dice", "starving"} else 0
-                    place = len(queue) - 1 if self.order == "last come" else place
-                    self.running[thread] = queue.pop(place)
+                    # Jobs of one callback begin in the order in which they came.
+                    firsts = list({job.step.name: job for job in reversed(queue)}.values())
+                    chosen = self.dice.choice(firsts) if self.order in {"dice", "starving"} else queue[0]
+                    chosen = firsts[0] if self.order == "last come" else chosen
+                    queue.remove(chosen)
+                    self.running[thread] = chosen
             taken: dict[tuple[str, int], _Job] = {}
             for thread in sorted(self.running, key=self._rank):
                 job = self.running[thread]

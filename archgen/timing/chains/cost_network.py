@@ -37,6 +37,7 @@ class CostNetwork:
     runs: Mapping[str, RunResponse] = field(default_factory=dict)
     _graphs: dict[PathAim, tuple[CostGraph, list[int]]] = field(default_factory=dict)
     _other_views: list[CostNetwork] = field(default_factory=list)
+    _arcs_by_ends: dict[tuple[str, str], list[int]] = field(default_factory=dict)
     _indices: list[ElementIndex] = field(default_factory=list)
     _bases: list[MeasuredBasis] = field(default_factory=list)
     _arcs_of_output: dict[str, list[int]] = field(default_factory=dict)
@@ -61,6 +62,14 @@ class CostNetwork:
     def arcs(self) -> tuple[Arc, ...]:
         """Return the system's arcs; `Hop.arc` is an index into them."""
         return self.steps.analysis.system.arcs
+
+    def list_parallel(self, arc_index: int) -> Sequence[int]:
+        """Return the arcs that have the ends of an arc, itself among them."""
+        if not self._arcs_by_ends:
+            for index, each in enumerate(self.arcs):
+                self._arcs_by_ends.setdefault((each.source, each.target), []).append(index)
+        arc = self.arcs[arc_index]
+        return self._arcs_by_ends[arc.source, arc.target]
 
     def index_elements(self, architecture: Architecture) -> ElementIndex:
         """Return what the elements of chains stand for in the architecture that was analysed."""

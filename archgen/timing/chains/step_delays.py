@@ -208,6 +208,9 @@ class StepDelays:
     def _reading_wait(self, arc: Arc) -> TimingValue:
         """Return how long the reader leaves a sample that has arrived."""
         reader = self.analysis.system.activities[arc.target]
+        lost_use = self.arrivals.find_lost_use(arc)
+        if lost_use is not None:
+            return lost_use
         if self.arrivals.fires_reader(arc):
             if arc.role == "request":
                 return ZERO_VALUE

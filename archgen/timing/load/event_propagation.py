@@ -124,7 +124,7 @@ class _Propagation(StepUpdates):
                     state.storing_waits[name] = queue.limit_storing_wait(state.system, name, wait)
         for name in sorted(readers.difference(self.resources_of)):
             own_core, budget = ProcessingResource(name, None, 1, ((name,),)), self.budget_of[name]
-            if state.system.activities[name].uses:
+            if state.system.activities[name].suspends:
                 stores = find_waiting_stores(state, own_core, self.waiting_ids, (name,), budget)
                 state.storing_waits[name] = self._limit_response(name, stores[name])
             else:

@@ -9,7 +9,13 @@ from fractions import Fraction
 from archgen.timing.analysis import EventPace, HostLoad, Reason, ResponseTime, RunResponse
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
 from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue
-from archgen.timing.figures.value_arithmetic import add_values, is_boundless, replace_figure, unknown_value
+from archgen.timing.figures.value_arithmetic import (
+    add_values,
+    is_boundless,
+    multiply_value,
+    replace_figure,
+    unknown_value,
+)
 from archgen.timing.load.host_verdicts import HostJudge, rate_monotonic_bound
 from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.run_ways import EntryWay
@@ -142,7 +148,7 @@ def find_host_loads(
 ) -> dict[str, HostLoad]:
     """Return the load of every host, resource by resource."""
     shares = {
-        name: _add_storing_share(system, name, activity_share(system, name, pace), outputs)
+        name: _add_storing_share(system, name, activity_share(system, name, pace), pace.rate, outputs)
         for name, pace in paces.items()
         if name in system.activities
     }
@@ -175,20 +181,25 @@ def activity_share(system: TimingSystem, name: str, pace: EventPace) -> TimingVa
 
 
 def _add_storing_share(
-    system: TimingSystem, name: str, share: TimingValue, outputs: Mapping[tuple[str, str], EventPace]
+    system: TimingSystem,
+    name: str,
+    share: TimingValue,
+    own_rate: TimingValue,
+    outputs: Mapping[tuple[str, str], EventPace],
 ) -> TimingValue:
-    """Return the share of a core that an activity takes, with the callbacks that store its inputs."""
-    storing = system.activities[name].storing
-    if not any(callback.wcet for callback in storing.values()):
-        return share
-    storing_shares = [
-        replace_figure(pace.rate, pace.rate.value * storing[arc.input].wcet * system.tick / NS_PER_SECOND)
-        if (pace := outputs[arc.source, arc.output]).rate.value is not None
-        else pace.rate
-        for arc in system.arcs_into.get(name, ())
-        if arc.role == "data" and arc.input in storing and storing[arc.input].wcet
-    ]
-    return add_values((share, *storing_shares))
+    """Return the share of a core that an activity takes, with the callbacks that store its inputs and take answers."""
+    activity = system.activities[name]
+    storing_shares: list[TimingValue] = []
+    for arc in system.arcs_into.get(name, ()) if activity.storing else ():
+        callback = activity.storing.get(arc.input)
+        if callback is None or not callback.wcet or arc.role == "request":
+            continue
+        # An answer comes for each call.
+        is_answer = arc.role == "answer"
+        rate = own_rate if is_answer else outputs[arc.source, arc.output].rate
+        time = callback.wcet * (activity.calls.get(arc.input, 1) if is_answer else 1)
+        storing_shares.append(multiply_value(rate, Fraction(time * system.tick / NS_PER_SECOND)))
+    return add_values((share, *storing_shares)) if storing_shares else share
 
 
 def _build_host_load(

@@ -14,7 +14,13 @@ from typing import NamedTuple
 from archgen.frozen import dataclass
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.system.core_placement import ProcessingResource
-from archgen.timing.system.timing_system import Activity, Arc, TimingSystem, calls_per_activation
+from archgen.timing.system.timing_system import (
+    Activity,
+    Arc,
+    TimingSystem,
+    calls_per_activation,
+    is_taken_answer,
+)
 from archgen.timing.system.trigger_graph import TriggerGraph, has_own_rate
 
 ONE_CALL = Fraction(1)
@@ -168,6 +174,8 @@ def _is_fired_by_arcs(system: TimingSystem, triggers: TriggerGraph, name: str) -
         return False
     outside_inputs = system.external_inputs.get(name, ())
     inputs = triggers.inputs[name]
+    if any(is_taken_answer(arc) for arcs in inputs.values() for arc in arcs):
+        return False  # as often as its client asks, and not as its server works
     if any(not arcs or key in outside_inputs for key, arcs in inputs.items()):
         return False
     return bool(inputs or triggers.requests[name])

@@ -20,7 +20,7 @@ from archgen.timing.load.waiting_threads import model_roaming_work
 from archgen.timing.load.whole_hosts import HostLimit, find_whole_hosts
 from archgen.timing.system.core_placement import ProcessingResource
 from archgen.timing.system.resource_division import split_resources
-from archgen.timing.system.timing_system import Arc
+from archgen.timing.system.timing_system import Arc, find_request, is_taken_answer
 from archgen.timing.system.trigger_graph import has_own_rate
 
 _MAX_WAITING_ACTIVATIONS = 200
@@ -267,4 +267,6 @@ class PropagationSteps:
         for key, arcs in triggers.inputs[name].items():
             if (name, key) not in triggers.open_inputs:
                 yield from arcs
+                # Answers come as often as their client asks.
+                yield from (find_request(self.state.system, arc) for arc in arcs if is_taken_answer(arc))
         yield from triggers.requests[name]

@@ -14,7 +14,7 @@ from archgen.timing.load.run_ways import EntryWay, find_entry_ways
 from archgen.timing.load.thread_work import ThreadWork
 from archgen.timing.system.core_placement import ProcessingResource
 from archgen.timing.system.core_sets import ThreadUnit
-from archgen.timing.system.thread_pools import find_crowded_pools, find_thread_count, is_reentrant
+from archgen.timing.system.thread_pools import fills_cores, find_crowded_pools, find_thread_count
 from archgen.timing.system.timing_system import TimingSystem
 
 WayKey = tuple[str, int]
@@ -94,7 +94,7 @@ def prepare_shared_cores(
         {
             unit: min(find_thread_count(system, unit[0]) or resource.cores, resource.cores)
             for unit in all_units
-            if is_reentrant(system, system.activities[unit[0]])
+            if fills_cores(system, system.activities[unit[0]])
         },
     )
 
@@ -138,7 +138,7 @@ def _find_crowds(system: TimingSystem, names: Iterable[str], core_count: int) ->
     activities = [system.activities[name] for name in names]
     crowd_of = {name: (pool.key, pool.threads or 1) for name, pool in find_crowded_pools(system, activities).items()}
     for activity in activities:
-        if is_reentrant(system, activity):
+        if fills_cores(system, activity):
             crowd_of.setdefault(activity.id, (f"activity {activity.id}", core_count))
     return crowd_of
 

@@ -60,7 +60,7 @@ class StepUpdates(PropagationSteps):
         state = self.state
         event_model = activation_model(state, step)
         is_same_model = step in state.responses and _is_unchanged(state.event_models.get(step), event_model)
-        is_waiting = step not in self.resources_of and bool(state.system.activities[step].uses)
+        is_waiting = step not in self.resources_of and state.system.activities[step].suspends
         if is_same_model and not is_waiting and step not in self.transaction_step_of:
             return False
         state.event_models[step] = event_model

@@ -14,7 +14,8 @@ once is safe: up to the first instant at which one failed all would have held, a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import NamedTuple
 
@@ -32,6 +33,7 @@ ENDLESS = 1 << 60
 """Longer than any time that is a bound, in ticks."""
 _MAX_SWEEPS = 60
 """Sweeps over all ways before those that still grow are given up."""
+_PATIENT_SWEEPS = 12
 _MAX_WAITING_EVENTS = 20
 """Events of one origin that may come within a delay, before it is said to have run away."""
 _MAX_SPLIT_STEPS = 20
@@ -51,9 +53,21 @@ class JobTerm(NamedTuple):
         number = max_arrivals(self.streams, window + self.lead)
         return number if self.limit is None else min(number, self.limit)
 
+    @property
+    def work_of_each(self) -> int:
+        """Return what each time does; `ENDLESS` where nobody knows how often, or how long."""
+        return ENDLESS if self.job.cost is None or self.lead >= ENDLESS else self.job.cost
+
     def within(self, window: int) -> int:
         """Return all that is to be done in a window."""
-        return ENDLESS if self.job.cost is None or self.lead >= ENDLESS else self.job.cost * self.count(window)
+        return ENDLESS if self.work_of_each >= ENDLESS else self.work_of_each * self.count(window)
+
+
+class _EventJob(NamedTuple):
+    """A job of one event of the transaction of a way: 0 is the way's own event, 1 the next one."""
+
+    job: PlaceJob
+    number: int
 
 
 class TermSum:
@@ -185,14 +199,16 @@ class TransactionWindows:
     def _repeat_sweeps(self) -> list[WayKey]:
         """Sweep until nothing grows; return what still does where the end is not reached."""
         grown_keys: list[WayKey] = []
-        for _ in range(_MAX_SWEEPS):
+        for sweep in range(_MAX_SWEEPS):
             self._forget_sums()
-            grown_keys = [key for key in self.transactions.paths if self._raise_delay(key)]
+            # What goes on growing goes ahead, further and further: what is above the least delays that are safe is so too.
+            steps_ahead = (1 << sweep // _PATIENT_SWEEPS) - 1
+            grown_keys = [key for key in self.transactions.paths if self._raise_delay(key, steps_ahead)]
             if not grown_keys:
                 break
         return grown_keys
 
-    def _raise_delay(self, key: WayKey) -> bool:
+    def _raise_delay(self, key: WayKey, steps_ahead: int) -> bool:
         """Let a delay be no less than the least of its windows, and return whether it grew."""
         delay, least = self.delays[key], ENDLESS
         # What never comes is not late.
@@ -206,6 +222,7 @@ class TransactionWindows:
                 self._last_windows[key] = number
                 return False
             least = min(least, found)
+        least += (least - delay) * steps_ahead
         self.delays[key] = least if least <= self._longest else ENDLESS
         return True
 
@@ -270,23 +287,43 @@ class TransactionWindows:
         return WayWindow(before, 0, path[first:], sum(costs), link_time, tuple(works), int(not costs[-1]))
 
     def _find_work(self, place: Place, visits: Sequence[WayKey], path: tuple[WayKey, ...]) -> PlaceWork:
-        """Return what may hold up some steps of a way at the place that they visit."""
+        """Return what may hold up some steps of a way at the place that they visit.
+
+        On several cores it is held up at a visit by its own thread, or by as many other lanes as there are cores: threads, and
+        the transaction's own other events (where it forks, each job of them). With fewer lanes it is not held up.
+        """
         origin, units = self.transactions.ways[path[-1]].entry, place.list_units(name for name, _ in visits)
         own_units = tuple(dict.fromkeys(place.thread_of[name].unit for name, _ in visits))
         full_units = units if place.core_count == 1 else own_units
-        own_terms: list[JobTerm] = []
-        for job in self._list_own_jobs(place, full_units, origin):
-            met_visits = (key for key in visits if place.core_count == 1 or key[0] in job.unit)
-            event_ids = {each for key in met_visits for each in self._list_met_events(job, key, path)}
-            if event_ids:
-                own_terms.append(self._build_term(place, job)._replace(limit=len(event_ids)))
+        jobs = [job for unit in units for job in place.jobs_of[unit] if job.key is not None and job.origin == origin]
+        counted: dict[_EventJob, None] = {}
+        is_blocked = False
+        for key in visits:
+            met = [_EventJob(job, number) for job in jobs for number in sorted(self._list_met_events(job, key, path))]
+            beside = [each for each in met if key[0] not in each.job.unit]
+            others = [unit for unit in units if key[0] not in unit and self._sum_jobs(place, (unit,), origin).terms]
+            if place.core_count == 1 or len(others) + len({*map(self._name_lane, beside)}) >= place.core_count:
+                is_blocked = True
+                counted |= dict.fromkeys(met)
+            else:
+                counted |= dict.fromkeys(each for each in met if key[0] in each.job.unit)
+        numbers = Counter(each.job for each in counted if each.job.unit in full_units)
+        own_terms = [self._build_term(place, job)._replace(limit=number) for job, number in numbers.items()]
         own_sum = self._sum_jobs(place, full_units, origin)
         work = PlaceWork(place, (own_sum, TermSum(own_terms)) if own_terms else (own_sum,))
-        other_units = [unit for unit in units if unit not in full_units]
-        return self._add_beside(work, other_units, visits, path) if other_units else work
-
-    def _list_own_jobs(self, place: Place, units: Iterable[ThreadUnit], origin: EventOrigin) -> list[PlaceJob]:
-        return [job for unit in units for job in place.jobs_of[unit] if job.key is not None and job.origin == origin]
+        if place.core_count == 1 or not is_blocked:
+            return work
+        event_works: dict[object, int] = {}
+        for each in counted:
+            if each.job.unit not in full_units:
+                term, lane = self._build_term(place, each.job), self._name_lane(each)
+                # Nobody knows how many of an endless one there are: so many keep all cores busy.
+                lanes = [lane] if term.lead < ENDLESS else [(lane, core) for core in range(place.core_count)]
+                event_works |= {name: event_works.get(name, 0) + term.work_of_each for name in lanes}
+        other_sums = [self._sum_jobs(place, (unit,), origin) for unit in units if unit not in full_units]
+        return work._replace(
+            lanes=tuple(each for each in other_sums if each.terms), event_works=tuple(event_works.values())
+        )
 
     def _sum_jobs(self, place: Place, units: tuple[ThreadUnit, ...], origin: EventOrigin) -> TermSum:
         """Return the work of some threads at a place, without that of a transaction."""
@@ -296,37 +333,9 @@ class TransactionWindows:
             self._sums[key] = TermSum([self._build_term(place, job) for job in jobs])
         return self._sums[key]
 
-    def _add_beside(
-        self, work: PlaceWork, units: Iterable[ThreadUnit], visits: Sequence[WayKey], path: tuple[WayKey, ...]
-    ) -> PlaceWork:
-        """Return the work at a place with the time for which all its cores are busy beside a way, if that can be.
-
-        Where the transaction does not fork, each of its other events is a lane, else each job of it. A visit that fewer
-        lanes meet than there are cores is not held up by them.
-        """
-        place, origin = work.place, self.transactions.ways[path[-1]].entry
-        lanes = [each for unit in units if (each := self._sum_jobs(place, (unit,), origin)).terms]
-        jobs = self._list_own_jobs(place, units, origin)
-        counted: dict[tuple[int, PlaceJob], None] = {}
-        is_blocked = False
-        for key in visits:
-            met = [(number, job) for job in jobs for number in sorted(self._list_met_events(job, key, path))]
-            if len(lanes) + len({self._name_lane(each) for each in met}) >= place.core_count:
-                is_blocked = True
-                counted |= dict.fromkeys(met)
-        event_works: dict[object, int] = {}
-        for each in counted:
-            term = self._build_term(place, each[1])
-            cost = ENDLESS if each[1].cost is None or term.lead >= ENDLESS else each[1].cost
-            event_works[self._name_lane(each)] = event_works.get(self._name_lane(each), 0) + cost
-        if any(event_work >= ENDLESS for event_work in event_works.values()):
-            # Nobody knows how many events of these there are.
-            event_works = dict.fromkeys(range(place.core_count), ENDLESS)
-        return work._replace(lanes=tuple(lanes), event_works=tuple(event_works.values())) if is_blocked else work
-
-    def _name_lane(self, number_and_job: tuple[int, PlaceJob]) -> object:
-        number, job = number_and_job
-        return (number, job) if job.origin in self.transactions.forked_origins else number
+    def _name_lane(self, event_job: _EventJob) -> object:
+        job, number = event_job
+        return event_job if job.origin in self.transactions.forked_origins else number
 
     def _build_term(self, place: Place, job: PlaceJob) -> JobTerm:
         """Return the work of a job in a window: nothing is left of what came longer than D before it."""

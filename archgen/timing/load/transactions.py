@@ -85,7 +85,7 @@ def find_transactions(
     places |= {
         name: ProcessingResource(name, None, 1, ((name,),))
         for name, activity in system.activities.items()
-        if name not in placed_ids and not activity.uses
+        if name not in placed_ids and not activity.suspends
     }
     place_of = {name: step for step, resource in places.items() for name in resource.members}
     next_places: dict[str, list[str]] = {step: [] for step in places}

@@ -51,7 +51,7 @@ def find_whole_hosts(
     for resource in resources:
         if resource.host is None or resource.missing:
             continue
-        if any(system.activities[name].uses for name in resource.members):
+        if any(system.activities[name].suspends for name in resource.members):
             hosts_with_waits.add(resource.host)
         if resource.host not in units_by_host and resource.cores == 1 and not resource.undisturbed:
             hosts_of_one_core.add(resource.host)
