@@ -7,7 +7,8 @@ from dataclasses import field, replace
 
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
-from archgen.simulation.chain_witnesses import ChainWitness, find_witnesses
+from archgen.simulation.chain_witnesses import find_witnesses
+from archgen.simulation.seeded_runs import LateRun
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.search.change_trials import ChangeTrials, OverrideLayer
 from archgen.timing.search.proposals import MAX_TRIES, Proposal, find_proposal
@@ -20,7 +21,7 @@ _SMALL_SIZE, _LEAST_TRIES = 150, 12
 class ChainEvidence:
     """The witnesses of missed chains, by chain, and the configurations that were tried; None where all chains are met."""
 
-    witnesses: Mapping[str, ChainWitness] = field(default_factory=dict)
+    witnesses: Mapping[str, LateRun] = field(default_factory=dict)
     proposal: Proposal | None = None
 
 
@@ -45,8 +46,6 @@ def find_evidence(
     return ChainEvidence(find_witnesses(analysis, asked_results), proposal)
 
 
-def apply_witnesses(
-    results: Mapping[str, ChainResult], witnesses: Mapping[str, ChainWitness]
-) -> dict[str, ChainResult]:
+def apply_witnesses(results: Mapping[str, ChainResult], witnesses: Mapping[str, LateRun]) -> dict[str, ChainResult]:
     """Return the chains, those of which a late run was seen as missed."""
     return {key: replace(result, verdict="missed") if key in witnesses else result for key, result in results.items()}
