@@ -15,7 +15,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.component import Component, PerformanceIndicator
 from archgen.model.deployment import Host
 from archgen.timing.analysis import Analysis, ChainTerm, ServiceLoad
-from archgen.timing.chains.chain_bounds import LateChain, find_unmet_chains
+from archgen.timing.chains.chain_bounds import LateChain, find_missed_shares, find_unmet_chains
 from archgen.timing.chains.read_ages import ReadAge, find_read_ages
 from archgen.timing.chains.unfound_bounds import find_overloaded_hosts, find_unfound_places
 from archgen.timing.chains.whole_bounds import WholeBound, WholeLimit, bound_wholes, list_limits
@@ -196,8 +196,8 @@ def _find_long_callbacks(analysis: Analysis, members: Sequence[Activity]) -> Ite
     timed = [(member.period, member) for member in members if member.behaviour == "periodic" and member.period]
     timed.sort(key=lambda pair: pair[0])
     for slow in members:
-        # While it uses a resource, it keeps its thread.
-        held = (slow.wcet or 0) + sum(use.worst for use in slow.uses.values())
+        # While it uses a resource, or waits within its declared response, it keeps its thread.
+        held = max((slow.wcet or 0) + sum(use.worst for use in slow.uses.values()), slow.response or 0)
         delayed = [(period, member) for period, member in timed if period < held and member is not slow]
         if not delayed:
             continue
@@ -209,7 +209,7 @@ def _find_long_callbacks(analysis: Analysis, members: Sequence[Activity]) -> Ite
         yield Diagnostic(
             "long-callback",
             f"`{slow.id}`, {held_text}, shares the thread of `{first.id}`, which is due every {period_text}{more_text}",
-            slow.places.get("wcet", slow.at),
+            slow.places.get("response", slow.places.get("wcet", slow.at)),
             labels=(Label(period_span, "due in the meantime"),) if period_span != NO_SPAN else (),
             help=f"`archgen timing --why {first.id}` shows how late it may come, `archgen timing --propose` what helps chains "
             "that are late for it",
@@ -219,8 +219,17 @@ def _find_long_callbacks(analysis: Analysis, members: Sequence[Activity]) -> Ite
 
 def late_chain(architecture: Architecture, analysis: Analysis, *, margin: Fraction) -> Iterator[Diagnostic]:
     """A chain misses its deadline, or nothing proves that it meets it."""
-    if not any(chain.deadline for chain in architecture.chains.values()):
+    if not any(chain.deadline_text for chain in architecture.chains.values()):
         return
+    for chain, share, best in find_missed_shares(analysis, architecture):
+        yield Diagnostic(
+            "late-chain",
+            f"the chain `{chain.id}` misses its deadline of {figure_wording.format_duration(share.limit)} for {share.name} of its "
+            f"reactions: each takes at least {figure_wording.format_duration(best.value or 0)}",
+            chain.deadline_places[share.name],
+            help=f"`archgen timing --sensitivity {chain.id}` shows which figure shortens it most",
+            element=chain.id,
+        )
     for late_result in find_unmet_chains(analysis, architecture, margin):
         chain_id, chain = late_result.chain.id, late_result.chain
         deadline = f"its deadline of {chain.deadline}"

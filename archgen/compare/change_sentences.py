@@ -123,8 +123,8 @@ def _describe_concerned(change: Change, versions: VersionPair) -> str:
     match change.element_kind, change.key:
         case "output", "description":
             return describe_readers(change.element_id, versions)
-        case "chain", "deadline":
-            return _describe_weaker_promise(change, versions)
+        case "chain", str(key) if key.startswith("deadline"):
+            return _describe_weaker_promise(change, key, versions)
         case "component", "requirements":
             return _describe_unserved(change.element_id, versions)
         case "output" | "type" | "message", _:
@@ -161,19 +161,20 @@ def _describe_unserved(component_id: str, versions: VersionPair) -> str:
     return f"no component serves {tick_names(unserved)} any more" if unserved else ""
 
 
-def _describe_weaker_promise(change: Change, versions: VersionPair) -> str:
+def _describe_weaker_promise(change: Change, key: str, versions: VersionPair) -> str:
     """Describe what a chain no longer promises: its deadline is relaxed, or gone."""
     old_chain, new_chain = (
         elements.get(("chain", change.element_id)) for elements in (versions.elements_before, versions.elements_after)
     )
-    old_deadline, new_deadline = (chain and chain.values.get("deadline") for chain in (old_chain, new_chain))
+    old_deadline, new_deadline = (chain and chain.values.get(key) for chain in (old_chain, new_chain))
     if old_chain is None or not isinstance(old_deadline, Quantity):
         return ""
     requirements = old_chain.values.get("requirements")
     served_note = f" to {tick_names(sorted(requirements))}" if isinstance(requirements, frozenset) else ""
-    if not isinstance(new_deadline, Quantity):
+    if not isinstance(new_deadline, Quantity) and key == "deadline":
         return f"nothing is promised{served_note} any more"
-    return f"a weaker promise{served_note} than before" if new_deadline.value > old_deadline.value else ""
+    is_weaker = not isinstance(new_deadline, Quantity) or new_deadline.value > old_deadline.value
+    return f"a weaker promise{served_note} than before" if is_weaker else ""
 
 
 def _describe_new_owner(change: Change, versions: VersionPair) -> str:

@@ -138,7 +138,10 @@ def _results_differ(old_result: ChainResult | None, new_result: ChainResult | No
         return True
     # The words of a bound (what it lacks, where it is from) may change without the figure: they are left out.
     bounds = [(result.bound.value, result.bound.complete, result.bound.side) for result in (old_result, new_result)]
-    return bounds[0] != bounds[1] or old_result.deadline != new_result.deadline
+    limits = [
+        (result.deadline, *((each.share, each.limit) for each in result.shares)) for result in (old_result, new_result)
+    ]
+    return bounds[0] != bounds[1] or limits[0] != limits[1]
 
 
 def _is_negligible(old_result: ChainResult | None, new_result: ChainResult | None) -> bool:

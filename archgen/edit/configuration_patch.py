@@ -9,6 +9,7 @@ from fractions import Fraction
 from archgen import pipeline
 from archgen.edit.edit_proof import first_file_of, list_new_errors
 from archgen.edit.element_edit import (
+    BYTE_ORDER_MARK,
     CannotInsertError,
     EditRefusedError,
     FileEdit,
@@ -16,12 +17,13 @@ from archgen.edit.element_edit import (
     find_holder,
     find_place_in_braces,
     parse_text,
+    read_editable,
 )
 from archgen.model.node import Node
 from archgen.pipeline import CheckedProject
 from archgen.project.project_loading import load_from_files
 from archgen.syntax import yaml_parser
-from archgen.syntax.project_files import FileRefusal, OverlaidFiles
+from archgen.syntax.project_files import OverlaidFiles
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, YamlNode, node_to_data
 from archgen.syntax.yaml_writer import format_flow, format_scalar
 from archgen.timing.chains.chain_bounds import bound_all_chains
@@ -148,18 +150,13 @@ def _list_component_paths(component: str) -> Iterator[_Path]:
 
 
 def _edit_file(checked_project: CheckedProject, file: str, changes: Sequence[ValueChange]) -> FileEdit:
-    data = checked_project.loaded_project.files.fetch_bytes(file)
-    if isinstance(data, FileRefusal):
-        message = f"{file} cannot be read: {data.message}"
-        raise EditRefusedError(message)
+    content, text = read_editable(checked_project, file)
+    plain_text = text.removeprefix(BYTE_ORDER_MARK)
     try:
-        mark, text = ("\ufeff", data.decode()[1:]) if data.startswith(b"\xef\xbb\xbf") else ("", data.decode())
-        return FileEdit(file, data, (mark + change_values(file, text, changes)).encode(), 0)
-    except UnicodeDecodeError:
-        message = f"{file} is not UTF-8"
-        raise EditRefusedError(message) from None
+        new_text = text[: len(text) - len(plain_text)] + change_values(file, plain_text, changes)
     except CannotInsertError as error:
         raise EditRefusedError(str(error)) from None
+    return FileEdit(file, content, new_text.encode(), 0)
 
 
 def _prove(

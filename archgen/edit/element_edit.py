@@ -64,12 +64,14 @@ class FileEdit:
 def plan_edit(checked_project: CheckedProject, place: ElementPlace, element: NewElement, element_id: str) -> FileEdit:
     """Return the edit that adds an element; `element_id` is its complete id. Raise EditRefusedError."""
     old_content, text = (
-        (None, _schema_line(checked_project, place)) if place.is_new_file else _read_file(checked_project, place)
+        (None, _schema_line(checked_project, place))
+        if place.is_new_file
+        else read_editable(checked_project, place.file)
     )
     new_text = _insert_element(place, element, text)
     # Two proofs: `adds_only_element` looks at the file alone, this one at the whole project with it.
     consequences = edit_proof.find_consequences(
-        checked_project, place.file, new_text.removeprefix(_BYTE_ORDER_MARK), element_id
+        checked_project, place.file, new_text.removeprefix(BYTE_ORDER_MARK), element_id
     )
     if consequences.errors:
         message = "with it the project would have errors that it does not have now"
@@ -84,19 +86,19 @@ def plan_edit(checked_project: CheckedProject, place: ElementPlace, element: New
     return FileEdit(place.file, old_content, new_text.encode(), line, consequences.renamed_nodes)
 
 
-_BYTE_ORDER_MARK = codecs.BOM_UTF8.decode()
+BYTE_ORDER_MARK = codecs.BOM_UTF8.decode()
 
 
-def _read_file(checked_project: CheckedProject, place: ElementPlace) -> tuple[bytes, str]:
+def read_editable(checked_project: CheckedProject, file: str) -> tuple[bytes, str]:
     """Read a file of the project. Raise EditRefusedError."""
-    data = checked_project.loaded_project.files.fetch_bytes(place.file)
+    data = checked_project.loaded_project.files.fetch_bytes(file)
     if isinstance(data, FileRefusal):
-        message = f"{place.file} cannot be read: {data.message}"
+        message = f"{file} cannot be read: {data.message}"
         raise EditRefusedError(message)
     try:
         return data, data.decode()
     except UnicodeDecodeError:
-        message = f"{place.file} is not UTF-8"
+        message = f"{file} is not UTF-8"
         raise EditRefusedError(message) from None
 
 
@@ -116,8 +118,8 @@ def _schema_line(checked_project: CheckedProject, place: ElementPlace) -> str:
 
 def _insert_element(place: ElementPlace, element: NewElement, text: str) -> str:
     """Return the text with the element inserted, the first proposal that proves right. Raise EditRefusedError."""
-    byte_order_mark = _BYTE_ORDER_MARK if text.startswith(_BYTE_ORDER_MARK) else ""
-    plain_text = text.removeprefix(_BYTE_ORDER_MARK)
+    byte_order_mark = BYTE_ORDER_MARK if text.startswith(BYTE_ORDER_MARK) else ""
+    plain_text = text.removeprefix(BYTE_ORDER_MARK)
     try:
         for candidate in propose_texts(place.file, plain_text, place.path, element):
             if edit_proof.adds_only_element(plain_text, candidate, place.path, element):

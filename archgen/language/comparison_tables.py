@@ -411,6 +411,7 @@ KEY_FACTS: Mapping[str, Mapping[str, KeyFacts]] = {
             "new_verb": "leads through",
         },
         "deadline": {"worse": "less", "verb": "must end within", "new_verb": "must end within"},
+        "deadline.": {"form": "mapping", "worse": "less"},
         "title": {"form": "title", "effect": "text"},
         "requirements": {
             "form": "set", "names": "requirement", "effect": "system", "verbs": ("now serves", "no longer serves"),

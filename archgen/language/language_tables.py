@@ -357,31 +357,31 @@ KEYS: Mapping[str, Mapping[str, str]] = {
         "best": "duration", "worst": "duration",
     },
     "chain": {
-        "through": "chain.through", "deadline": "duration", "title": "text", "requirements": "chain.requirements",
+        "through": "chain.through", "deadline": "chain_deadline", "title": "text", "requirements": "chain.requirements",
         "properties": "properties", "hints": "hints",
     },
 }
 """The part that stands at each key of each kind."""
 ENTRIES: Mapping[str, str] = {
     "actors": "actor", "agreements": "agreement", "callback_groups": "group_components", "calls": "call_use",
-    "chains": "chain", "changed_component_types": "component_type", "component_parameters": "parameter",
-    "component_types": "component_type", "components": "component", "constants": "constant", "containers": "container",
-    "definitions": "definitions.*", "fields": "field", "frames": "frame", "glossary": "text", "groups": "group",
-    "host_scheduling": "host_order", "hosts": "host", "inputs": "input", "inner_nodes": "inner_nodes.*",
-    "internal_calls": "call_use", "internal_topics": "topic_use", "libraries": "library", "links": "link",
-    "message_part": "field", "nodes": "node", "operation_fields": "operation_fields.*", "operations": "operation",
-    "outputs": "output", "parameter_commands": "parameter_commands.*", "parameter_set": "parameter",
-    "parameter_texts": "parameter_texts.*", "partners": "partner", "policies": "policy", "policy_exceptions": "text",
-    "port_conditions": "port_conditions.*", "properties": "text", "property_declarations": "property_declaration",
-    "remaps": "remaps.*", "requirements": "requirement", "resources": "resource",
-    "start_environment": "start_environment.*", "timing_calls": "timing_calls.*", "timing_inputs": "timing_input",
-    "timing_outputs": "timing_output", "timing_uses": "timing_use", "topics": "topic_use", "type_inputs": "type_input",
-    "types": "type", "urls": "urls.*", "use_cases": "use_case", "variants": "variant", "views": "view",
-    "agreement.interfaces": "interface_terms", "signature.by": "text", "signature.versions.*": "version_digits",
-    "signature.versions": "signature.versions.*", "rules": "rules.*", "report.abbreviations": "text",
-    "report.texts": "report.texts.*", "report.pictures": "report.pictures.*", "review.accepted": "accepted",
-    "performance": "indicator", "operation.request": "operation.request.*",
-    "operation.response": "operation.response.*", "parameter": "parameter",
+    "chain_deadline": "duration", "chains": "chain", "changed_component_types": "component_type",
+    "component_parameters": "parameter", "component_types": "component_type", "components": "component",
+    "constants": "constant", "containers": "container", "definitions": "definitions.*", "fields": "field",
+    "frames": "frame", "glossary": "text", "groups": "group", "host_scheduling": "host_order", "hosts": "host",
+    "inputs": "input", "inner_nodes": "inner_nodes.*", "internal_calls": "call_use", "internal_topics": "topic_use",
+    "libraries": "library", "links": "link", "message_part": "field", "nodes": "node",
+    "operation_fields": "operation_fields.*", "operations": "operation", "outputs": "output",
+    "parameter_commands": "parameter_commands.*", "parameter_set": "parameter", "parameter_texts": "parameter_texts.*",
+    "partners": "partner", "policies": "policy", "policy_exceptions": "text", "port_conditions": "port_conditions.*",
+    "properties": "text", "property_declarations": "property_declaration", "remaps": "remaps.*",
+    "requirements": "requirement", "resources": "resource", "start_environment": "start_environment.*",
+    "timing_calls": "timing_calls.*", "timing_inputs": "timing_input", "timing_outputs": "timing_output",
+    "timing_uses": "timing_use", "topics": "topic_use", "type_inputs": "type_input", "types": "type", "urls": "urls.*",
+    "use_cases": "use_case", "variants": "variant", "views": "view", "agreement.interfaces": "interface_terms",
+    "signature.by": "text", "signature.versions.*": "version_digits", "signature.versions": "signature.versions.*",
+    "rules": "rules.*", "report.abbreviations": "text", "report.texts": "report.texts.*",
+    "report.pictures": "report.pictures.*", "review.accepted": "accepted", "performance": "indicator",
+    "operation.request": "operation.request.*", "operation.response": "operation.response.*", "parameter": "parameter",
 }
 """Mappings by id: the part of their values."""
 ITEMS: Mapping[str, str] = {
@@ -515,7 +515,8 @@ ATTRIBUTES: Mapping[str, tuple[str, ...]] = {
     "policy.forbid": ("forbid_from", "forbid_to", "from_at", "to_at"),
     "policy.accepted": ("accepted", "accepted_places"), "forbid.from": ("forbid_from",), "forbid.to": ("forbid_to",),
     "timing.wcet": ("wcet", "measured_times"), "timing_input.stored": ("stored_at_once",),
-    "chain.through": ("through", "unresolved"), "chain.requirements": ("requirements", "requirement_places"),
+    "chain.through": ("through", "unresolved"), "chain.deadline": ("deadline", "deadline_shares", "deadline_places"),
+    "chain.requirements": ("requirements", "requirement_places"),
 }
 """The fields of the model that hold what stands at a key, or keys of a type, where they are not called as it."""
 PLACED_KEYS: Mapping[str, tuple[str, ...]] = {

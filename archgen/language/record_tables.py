@@ -116,7 +116,7 @@ RECORD_KEYS: Mapping[str, Mapping[str, str]] = {
     },
     "chain": {
         "title": "", "requirements": "", "through": "waypoint[]", "deadline": "ns", "properties": "annotations",
-        "hints": "annotations",
+        "hints": "annotations", "deadline_shares": "ns{}",
     },
     "variant": {
         "title": "", "description": "", "of": "", "without": "", "drop": "", "changes": "",

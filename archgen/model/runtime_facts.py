@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
-from archgen.model.declared_timing import InputTiming
+from archgen.model.declared_timing import InputTiming, SchedulingOrder
 from archgen.model.deployment import Container
 from archgen.model.node import Endpoint, Node
 from archgen.model.port_media import ROS
@@ -41,6 +41,16 @@ RCLPY = ClientLibrary(computes_at_once=False, serves_by_kind=False)
 def find_library(nodes: Sequence[Node]) -> ClientLibrary:
     """Return how a process of some nodes works: as Python does, where all of them are written in it."""
     return RCLPY if nodes and all(node.language == "python" for node in nodes) else RCLCPP
+
+
+def find_usual_order(architecture: Architecture) -> SchedulingOrder | None:
+    """Return the order in which a process takes callbacks where none is written; None where the middleware tells none.
+
+    ROS 2 works through wait sets, in C++ and in Python; ROS 1 has a queue.
+    """
+    if architecture.project.middleware != ROS:
+        return None
+    return "fifo" if is_ros_1(architecture.distro) else "ros2_executor"
 
 
 def find_container_threads(architecture: Architecture, container: Container) -> int | None:

@@ -29,7 +29,7 @@ from archgen.views.pages.report_outline import DetailLevel, DocumentEdition
 from archgen.views.pages.variant_chapter import VariantDifference
 from archgen.views.picture_shapes import Drawing
 from archgen.views.tables import statistics_tables
-from archgen.views.timing.timing_lookup import complete_with_chains
+from archgen.views.timing.timing_lookup import add_late_runs, complete_with_chains
 
 _SHORT_HASH_LENGTH = 10
 """Digits of a commit's hash that are printed: enough to be unique in a repository of this size."""
@@ -82,7 +82,7 @@ def make_views(
 
     There is no drawing of the `undrawn_kinds`.
     """
-    timing_lookup = complete_with_chains(checked_project.analysis, checked_project.architecture)
+    timing_lookup = add_late_runs(complete_with_chains(checked_project.analysis, checked_project.architecture))
     lookup = replace(
         add_timing(make_scoped_lookup(checked_project, options), timing_lookup),
         repository=locate_repository(checked_project),

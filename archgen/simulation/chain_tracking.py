@@ -31,21 +31,32 @@ class ChainTrack:
 
     def add_run(self, run: SimulationRun) -> None:
         """Add the figures of one run."""
-        trace = ChainTrace(
+        trace = self.trace_run(run)
+        self.all_series.append(measure_chain(trace))
+        if self.is_selective:
+            self.forwarded_series.append(measure_chain(trace, forwarded_only=True))
+
+    def trace_run(self, run: SimulationRun) -> ChainTrace:
+        """Return what one run recorded of the chain."""
+        return ChainTrace(
             list_samplings(run, self.activities[0]),
             [_stalest_sources(run, wires) for wires in self.wires],
             run.activities.job_ends[self.activities[-1]],
             [_jointly_forwarded(run, wires) for wires in self.wires],
             self.samples_world,
         )
-        self.all_series.append(measure_chain(trace))
-        if self.is_selective:
-            self.forwarded_series.append(measure_chain(trace, forwarded_only=True))
 
-    def to_observed(self, through: Sequence[str], unit: Fraction) -> ObservedChain:
-        """Summarise all runs. `through` are the ids of the activities, `unit` is in ns."""
+    def to_observed(self, through: Sequence[str], unit: Fraction, seeds: Sequence[int]) -> ObservedChain:
+        """Summarise all runs, which had these seeds. `through` are the ids of the activities, `unit` is in ns."""
         forwarded = _summarise_series(self.forwarded_series, unit) if self.is_selective else None
-        return ObservedChain(tuple(through), _summarise_series(self.all_series, unit), forwarded)
+        held_series = self.forwarded_series if self.is_selective else self.all_series
+        lengths = [
+            max((high for _, high in (*each.reactions, *(each.ages if self.samples_world else ()))), default=-1)
+            for each in held_series
+        ]
+        longest = max(lengths, default=-1)
+        latest_seed = seeds[lengths.index(longest)] if longest >= 0 else None
+        return ObservedChain(tuple(through), _summarise_series(self.all_series, unit), forwarded, latest_seed)
 
 
 def unobserved_chain(through: Sequence[str]) -> ObservedChain:
@@ -112,4 +123,6 @@ def _summarise_ranges(ranges: Sequence[TimeRange], unit: Fraction) -> DurationDi
         Fraction(median).limit_denominator(1000) * unit,
         Fraction(percentile_95).limit_denominator(1000) * unit,
         max(high for _, high in ranges) * unit,
+        ranges,
+        unit,
     )

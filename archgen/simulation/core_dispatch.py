@@ -79,6 +79,8 @@ def _interrupt_thread(run: SimulationRun, now: int, thread: int) -> None:
     threads.end_version[thread] += 1
     threads.time_left[thread] = threads.end_time[thread] - now + threads.time_after_slice[thread]
     threads.time_after_slice[thread] = 0
+    if run.log is not None:
+        run.log.enter_state(run, thread, "ready")
 
 
 def _start_thread(run: SimulationRun, now: int, thread: int, running: list[int]) -> None:
@@ -102,6 +104,8 @@ def _start_thread(run: SimulationRun, now: int, thread: int, running: list[int])
         threads.time_after_slice[thread] = max(remaining - slice_time, 0)
         remaining = min(remaining, slice_time)
     running.append(thread)
+    if run.log is not None:
+        run.log.enter_state(run, thread, "runs")
     threads.end_time[thread] = now + remaining
     heappush(run.heap, (now + remaining << 2 | JOB_END, thread, threads.end_version[thread]))
 

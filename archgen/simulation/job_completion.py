@@ -36,6 +36,8 @@ def complete_callback(run: SimulationRun, now: int, thread: int) -> None:
     """Complete what ran on a thread: publish its results, or store its sample, and let the thread go on."""
     threads, callbacks, executors = run.threads, run.callbacks, run.executors
     callback = threads.callback[thread]
+    if run.log is not None:
+        run.log.leave_state(run, thread)
     activity, wire = callbacks.activity[callback], threads.firing_wire[thread]
     if callbacks.is_storing[callback]:
         store_sample(run, wire, threads.job_number[thread])

@@ -38,6 +38,8 @@ def enter_resource(run: SimulationRun, now: int, thread: int) -> None:
         urgency = draw_urgency(run, order, activity, now, run.resources.victim[resource])
     heappush(run.resources.queue[resource], (urgency, run.sequence, thread, use_time))
     run.changed_resources.add(resource)
+    if run.log is not None:
+        run.log.enter_state(run, thread, "awaits", resource)
 
 
 def _wait_outside(run: SimulationRun, now: int, thread: int, wait_time: int) -> None:
@@ -55,6 +57,8 @@ def grant_resource(run: SimulationRun, now: int, resource: int) -> None:
     if queue and run.resources.user[resource] < 0:
         _, _, thread, use_time = heappop(queue)
         run.resources.user[resource] = thread
+        if run.log is not None:
+            run.log.enter_state(run, thread, "uses", resource)
         heappush(run.heap, (now + use_time << 2 | JOB_END, -1 - len(run.plan.activities) - resource, 0))
 
 

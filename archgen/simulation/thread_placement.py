@@ -106,7 +106,9 @@ class ThreadPlacement:
         if executor is None:
             return PlannedExecutor(key, 1, "fifo")
         threads = executor.threads or len(self.members[key])
-        return PlannedExecutor(key, threads, executor.order, executor.is_serial, executor.library.serves_by_kind)
+        return PlannedExecutor(
+            key, threads, executor.order or executor.usual_order, executor.is_serial, executor.library.serves_by_kind
+        )
 
 
 def _executor_key(system: TimingSystem, activity: Activity) -> str:

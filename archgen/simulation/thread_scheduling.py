@@ -70,6 +70,8 @@ def queue_thread(run: SimulationRun, thread: int) -> None:
         order += LARGEST_KEY
     threads.urgency[thread], threads.ready_order[thread] = urgency, order
     heappush(processors.ready[processor], (urgency, order, thread))
+    if run.log is not None:
+        run.log.enter_state(run, thread, "ready")
     run.changed_processors.add(processor)
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
 from archgen.model.declared_timing import ActivityBehaviour, SchedulingOrder
+from archgen.model.quantity import write_share
 from archgen.timing.figures.figure_wording import describe_timing_value, format_duration
 from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
@@ -123,6 +124,8 @@ class HostLoad:
     Cores that nobody wrote the number of are left out.
     """
     earliest_deadline_bound: TimingValue = UNKNOWN_VALUE
+    unproven: tuple[str, ...] = ()
+    """The activities that nothing proves to be done by their deadline, or before they are activated again."""
 
     @property
     def share_of_cores(self) -> TimingValue | None:
@@ -250,6 +253,20 @@ class ChainTerm:
 
 
 @dataclass(frozen=True, slots=True)
+class ShareDeadline:
+    """How long a share of a chain's reactions may take, in ns. Only what holds for all of them is proven: else it is open."""
+
+    share: Fraction
+    limit: Fraction
+    verdict: Literal["met", "missed", "open"]
+
+    @property
+    def name(self) -> str:
+        """Return the share as it is written: `95 %`."""
+        return write_share(self.share)
+
+
+@dataclass(frozen=True, slots=True)
 class ChainResult:
     """A chain: its safe bound (reaction time = data age), best case, the reduced figures and the verdict; in ns."""
 
@@ -262,6 +279,13 @@ class ChainResult:
     reduced_age: TimingValue
     deadline: TimingValue | None
     verdict: ChainVerdict
+    shares: tuple[ShareDeadline, ...] = ()
+    """What is asked of shares of its reactions, the smallest first."""
+
+    def find_limit(self, share: Fraction) -> Fraction | None:
+        """Return how long a share of the reactions may take at most, as is asked of it or of more of them; None for any time."""
+        always = [self.deadline.value] if self.deadline and self.deadline.value is not None else []
+        return min((*always, *(each.limit for each in self.shares if each.share >= share)), default=None)
 
     @property
     def spread(self) -> Fraction | None:

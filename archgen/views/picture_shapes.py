@@ -52,7 +52,21 @@ class SequenceChart:
     alt: str = ""
 
 
-SegmentKind = Literal["sampling", "response", "link", "load", "other_load", "met", "missed", "unproven", "open", "best"]
+SegmentKind = Literal[
+    "sampling",
+    "response",
+    "link",
+    "load",
+    "other_load",
+    "met",
+    "missed",
+    "late_wait",
+    "unproven",
+    "open",
+    "best",
+    "gap",
+]
+"""What a piece of a bar is; nothing is drawn for a `gap`."""
 
 
 @dataclass(frozen=True, slots=True)

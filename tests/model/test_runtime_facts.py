@@ -16,6 +16,7 @@ from archgen.model.runtime_facts import (
     count_node_threads,
     find_container_threads,
     find_library,
+    find_usual_order,
     keeps_each_source,
 )
 from archgen.timing.system.system_builder import build_system
@@ -82,3 +83,15 @@ def test_whose_messages_an_input_keeps() -> None:
     assert keeps_each_source(topic, InputTiming(memory="each_source"))
     assert keeps_each_source(replace(topic, message=TRANSFORM_MESSAGE), InputTiming())
     assert keeps_each_source(replace(topic, medium="orocos"), InputTiming())
+
+
+@pytest.mark.parametrize(
+    ("project", "order"),
+    [
+        ("ros: {distro: jazzy}", "ros2_executor"),
+        ("ros: {distro: noetic}", "fifo"),
+        ("project: {id: r, middleware: zenoh}", None),
+    ],
+)
+def test_the_order_of_callbacks_is_that_of_the_middleware(project: str, order: str | None) -> None:
+    assert find_usual_order(architecture(project)) == order

@@ -177,6 +177,11 @@ def _read_core_orders(host: Host, _context: ReadContext) -> Mapping[str, str]:
     return {str(core): order for core, order in host.core_scheduling.items()}
 
 
+def _read_deadline_shares(chain: Chain, _context: ReadContext) -> Mapping[str, object]:
+    """Return how long shares of the reactions may take."""
+    return chain.deadline_shares
+
+
 def _find_latency(link: Link, _context: ReadContext) -> Link:
     """Return the link: it has the keys below `latency` itself."""
     return link
@@ -343,6 +348,7 @@ READERS: Mapping[tuple[str, str], Reader] = {
     ("timing", "cores"): _read_cores,
     ("timing_input", "stored"): _read_stored,
     ("chain", "through"): _read_way,
+    ("chain", "deadline."): _read_deadline_shares,
     ("view", "show"): _make_selector_reader("show"),
     ("variant", "without"): _make_selector_reader("without"),
     ("variant", "changes"): _read_variant_changes,

@@ -196,32 +196,41 @@ def find_weakened_deadlines(
     """
     for chain_change in chains:
         old_result = chain_change.before
-        if old_result is None or old_result.deadline is None or old_result.deadline.value is None:
+        if old_result is None or old_result.find_limit(Fraction(0)) is None:
             continue
         parts = _parts_by_owner(context, causes, old_result)
-        for indices, reason_text in _find_weakenings(context, causes, chain_change, old_result.deadline):
+        for indices, reason_text in _find_weakenings(context, causes, chain_change, old_result):
             if len(parts) > 1 or "" in parts:
                 owned_parts = {owner: names for owner, names in parts.items() if owner}
                 yield from context.shared_losses(indices, owned_parts, reason_text + "; {} on it", "is")
 
 
 def _find_weakenings(
-    context: ChangeContext, causes: TimingCauses, chain_change: ChainChange, old_deadline: TimingValue
+    context: ChangeContext, causes: TimingCauses, chain_change: ChainChange, old_result: ChainResult
 ) -> Iterator[tuple[list[int], str]]:
     """Yield what a change of a chain takes from its promise, with the indices of the changes that do so."""
     chain_id, new_result = chain_change.id, chain_change.after
-    old_limit = format_duration(old_deadline.value or 0)
+    asked = [(each.share, f" for {each.name} of its reactions") for each in old_result.shares]
+    if old_result.deadline is not None and old_result.deadline.value is not None:
+        asked = [(Fraction(1), ""), *asked]
     if new_result is None:
         common_id = context.matched_ids.common_id("chain", chain_id)
         removal_indices = context.indices_by_change_kind("chain", common_id, "removed")
-        yield removal_indices, f"takes away the chain `{chain_id}` with its deadline of {old_limit}"
+        limit_text = format_duration(old_result.find_limit(asked[0][0]) or 0)
+        yield removal_indices, f"takes away the chain `{chain_id}` with its deadline of {limit_text}{asked[0][1]}"
         return
-    deadline_indices = context.change_indices("chain", chain_id, "deadline")
-    if new_result.deadline is None or new_result.deadline.value is None:
-        yield deadline_indices, f"takes the deadline of {old_limit} from the chain `{chain_id}`"
-    elif new_result.deadline.value > (old_deadline.value or 0):
-        new_limit = format_duration(new_result.deadline.value)
-        yield deadline_indices, f"relaxes the deadline of the chain `{chain_id}` from {old_limit} to {new_limit}"
+    keys = ("deadline", *(f"deadline.{each.name}" for each in (*old_result.shares, *new_result.shares)))
+    deadline_indices = context.change_indices("chain", chain_id, *dict.fromkeys(keys))
+    for share, share_text in asked:
+        old_limit, new_limit = old_result.find_limit(share) or Fraction(0), new_result.find_limit(share)
+        if new_limit is None:
+            yield (
+                deadline_indices,
+                f"takes the deadline of {format_duration(old_limit)}{share_text} from the chain `{chain_id}`",
+            )
+        elif new_limit > old_limit:
+            limits_text = f"from {format_duration(old_limit)} to {format_duration(new_limit)}"
+            yield deadline_indices, f"relaxes the deadline of the chain `{chain_id}`{share_text} {limits_text}"
     passed_names = _find_passed_parts(causes, chain_change) if new_result.terms else []
     if passed_names:
         through_indices = context.change_indices("chain", chain_id, "through")

@@ -129,6 +129,9 @@ def chain_to_json(result: ChainResult, evidence: ChainEvidence = NO_EVIDENCE) ->
         "reduced_age": duration_to_json(result.reduced_age),
         "terms": [term_to_json(chain_term) for chain_term in result.terms],
         "deadline": duration_to_json(result.deadline)["value"] if result.deadline else None,
+        "deadline_shares": [
+            {"share": each.name, "limit": float(each.limit / _MS), "verdict": each.verdict} for each in result.shares
+        ],
         "slack": None if result.slack is None else float(result.slack / _MS),
         "verdict": result.verdict,
         **_evidence_to_json(result.id, evidence),
@@ -144,6 +147,7 @@ def _evidence_to_json(chain_id: str, evidence: ChainEvidence) -> JsonObject:
             "seed": witness.seed,
             "seconds": witness.seconds,
             "longest": float(witness.longest / _MS),
+            "orders": [order._asdict() for order in witness.orders],
         }
     if proposal and chain_id in proposal.tried[0].late:
         best = proposal.best

@@ -151,9 +151,9 @@ def _draw_bar(bar: ChartBar, index: int, scale: _ChartScale, middle: float) -> I
     for number, (each, width) in enumerate(
         zip(known_stretches, _stretch_widths(known_stretches, scale.factor), strict=True)
     ):
-        if width:
+        if width and each.kind != "gap":
             yield ScenePart(f"b{index}.{number}", style_stretch(each, width), x + width / 2, middle, width, BAR_HEIGHT)
-            x += width
+        x += width
     if unknown_stretches:
         question_mark = BarSegment(
             None, unknown_stretches[0].kind, "?", "\n".join(each.tooltip for each in unknown_stretches if each.tooltip)

@@ -26,6 +26,7 @@ STRETCH_FORMS: dict[str, tuple[str, str, str]] = {
     "other_load": ("filled,dotted", "#9ecae1", ""),
     "met": ("filled", palette.OK, ""),
     "missed": ("filled", palette.ERROR, ""),
+    "late_wait": ("filled,dotted", "#f8d7d4", "waits"),
     "unproven": ("filled", palette.WARNING, ""),
     "open": ("filled", palette.NEIGHBOUR_FRAME, ""),
     "best": ("filled", "#e3e6e9", ""),

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 from archgen.diagnostics.common_wording import join_words
-from archgen.simulation.chain_witnesses import ChainWitness
+from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics.text_columns import TextRow
+from archgen.simulation.drawn_orders import describe_orders
+from archgen.simulation.seeded_runs import LateRun
 from archgen.timing.analysis import Analysis, ChainResult
+from archgen.timing.chains.chain_verdicts import VERDICT_WORDS
 from archgen.timing.chains.unfound_bounds import describe_unfound_places, find_overloaded_hosts, find_unfound_places
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
@@ -107,9 +111,20 @@ def describe_slack(result: ChainResult) -> str:
     return f"{text} left" if result.slack >= 0 else f"{text} above it"
 
 
-def describe_witness(chain_id: str, witness: ChainWitness | None) -> str:
+def list_share_rows(result: ChainResult) -> Iterator[TextRow]:
+    """Yield the deadlines of shares of a chain's reactions, and what bounds say of them."""
+    for each in result.shares:
+        verdict = (
+            VERDICT_WORDS[each.verdict] if each.verdict != "open" else "only `archgen simulate` and recordings judge it"
+        )
+        yield f"  {each.name} of reactions", "", f"deadline {figure_wording.format_duration(each.limit)}", verdict
+
+
+def describe_witness(chain_id: str, witness: LateRun | None) -> str:
     """Return how to see a chain late, empty where no run is known."""
     if witness is None:
         return ""
     command = f"archgen simulate --seed {witness.seed} --chain {chain_id} --seconds {witness.seconds}"
-    return f"seen in `{command}`: {figure_wording.format_duration(witness.longest)}"
+    orders_text = describe_orders(witness.orders)
+    longest_text = figure_wording.format_duration(witness.longest)
+    return make_visible(f"seen in `{command}`: {longest_text}{f' ({orders_text})' if orders_text else ''}")

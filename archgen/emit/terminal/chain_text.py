@@ -81,6 +81,7 @@ def format_chain(  # noqa: PLR0913, PLR0917 - what is shown of one chain
     if result.deadline:
         verdict_text = ", ".join(filter(None, (VERDICT_WORDS[result.verdict], chain_gaps.describe_slack(result))))
         rows.append(("deadline", format_figure(result.deadline), verdict_text))
+    rows += [(share.strip(), limit, verdict) for share, _, limit, verdict in chain_gaps.list_share_rows(result)]
     yield from align_rows(rows, width)
     if result.id in evidence.witnesses:
         yield f"  {chain_gaps.describe_witness(result.id, evidence.witnesses[result.id])}"

@@ -18,7 +18,7 @@ from archgen.timing.chains.loop_rounds import LoopRound
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import NO_MATCH_NOTE, is_unfound
-from archgen.timing.load.host_verdicts import is_done_in_time
+from archgen.timing.load.host_verdicts import name_host_verdict
 from archgen.timing.system.thread_pools import find_joint_nodes
 
 
@@ -37,19 +37,28 @@ def format_timing(
             _advice_rows(analysis, chains.values()),
         ),
         (chain_remedies.REMEDY_TITLE, chain_remedies.list_remedy_rows(evidence.proposal)),
-        ("Hosts", _host_rows(analysis)),
+        ("Hosts: load (100 % is one core all the time)", _host_rows(analysis)),
         ("Resources: load, and longest time from asking until done", _resource_rows(analysis)),
         ("Links", _link_rows(analysis)),
-        ("Services and actions: longest time from a call until it is worked off", _service_rows(analysis)),
-        ("Elements", _element_rows(analysis)),
-        ("Messages that are used together: how old, and how far apart in time", _fused_rows(analysis)),
+        (
+            "Services and actions: longest time from a call until it is worked off, for one call of each that calls",
+            _service_rows(analysis),
+        ),
+        (
+            "Elements: largest time between two activations (gap), and from an activation to its end (response)",
+            _element_rows(analysis),
+        ),
+        (
+            "Messages that are used together: age since each source began, and how far apart these beginnings are",
+            _fused_rows(analysis),
+        ),
         ("Execution times that were measured: no bound rests on percentiles", _percentile_rows(analysis)),
         ("Loops: latency of one round", _loop_rows(loops)),
         ("What is taken for granted", _assumption_rows(analysis)),
     )
     lines = [line for title, rows in sections for line in format_section(title, rows, width)]
     yield from lines
-    yield from format_section("Words", timing_legend.list_legend(analysis, chains, "\n".join(lines)), width)
+    yield from timing_legend.format_legend(analysis, chains, "\n".join(lines), width)
     yield from _fault_lines(analysis)
 
 
@@ -72,6 +81,7 @@ def _chain_rows(analysis: Analysis, chains: Iterable[ChainResult], evidence: Cha
                 )
             ),
         )
+        yield from chain_gaps.list_share_rows(result)
 
 
 def _advice_rows(analysis: Analysis, chains: Iterable[ChainResult]) -> Iterator[TextRow]:
@@ -97,11 +107,8 @@ def _host_rows(analysis: Analysis) -> Iterator[TextRow]:
             name,
             cores,
             load_text,
-            load.verdict,
-            missing_text
-            or _count_unfound(analysis, load)
-            or _describe_undecided(analysis, load)
-            or _format_bounds(load),
+            name_host_verdict(load),
+            missing_text or _count_unfound(analysis, load) or _describe_unproven(load) or _format_bounds(load),
         )
 
 
@@ -112,16 +119,11 @@ def _count_unfound(analysis: Analysis, load: HostLoad) -> str:
     return f"no bound found for {len(unfound_ids)} of {len(names)} elements" if unfound_ids else ""
 
 
-def _describe_undecided(analysis: Analysis, load: HostLoad) -> str:
-    """Say of an undecided host which of its elements may be activated again before they are done."""
-    if load.verdict != "undecided":
+def _describe_unproven(load: HostLoad) -> str:
+    """Say of a host that can do its work which of its elements are not proven to be done in time."""
+    if load.verdict != "undecided" or not load.unproven:
         return ""
-    names = tuple(
-        name
-        for name, _ in load.activity_shares
-        if not is_done_in_time(analysis.system, name, analysis.paces[name], analysis.responses[name])
-    )
-    return f"not proven to be done before they are due again: {figure_wording.join_first_names(names)}" if names else ""
+    return f"the cores can do it; not proven to be done in time: {figure_wording.join_first_names(load.unproven)}"
 
 
 def _format_bounds(load: HostLoad) -> str:
@@ -212,7 +214,9 @@ def _assumption_rows(analysis: Analysis) -> Iterator[TextRow]:
     clocked = [activity for activity in analysis.system.activities.values() if activity.behaviour == "periodic"]
     unwritten_count = sum("jitter" not in activity.places for activity in clocked)
     if unwritten_count:
-        yield (f"no jitter is written for {unwritten_count} of {len(clocked)} periodic elements: taken as none",)
+        yield (
+            f"no jitter is written for {unwritten_count} of {len(clocked)} periodic elements: taken to start exactly by their clocks",
+        )
     measured_ids = tuple(activity.id for activity in analysis.system.activities.values() if activity.wcet_measured)
     if measured_ids:
         names = figure_wording.join_first_names(measured_ids)

@@ -74,11 +74,18 @@ def _describe_lateness(analysis: Analysis, result: ChainResult, deadline: Fracti
     if result.verdict == "open":
         known = f"What is known of it adds up to {_write(bound)}" if bound else "Nothing is known of how long it takes"
         return f"{known}, and figures are missing: nobody can say whether it meets {deadline_text}."
+    # Missed although its best case is in time: a simulated run was too late.
+    is_seen = result.verdict == "missed"
     if bound is not None and bound > deadline:
-        # Missed although its best case is in time: a simulated run was too late.
-        evidence = "a simulated run was late" if result.verdict == "missed" else "nothing shows that it ever does"
-        return f"It may take up to {_write(bound)}, {_write(bound - deadline)} longer than {deadline_text} allows; {evidence}."
-    return f"Nobody can say how long it takes at most, and so not whether it meets {deadline_text}: no bound was found."
+        head = "It may take up to" if result.bound.complete else "What is known of it adds up to"
+        evidence = "a simulated run was late" if is_seen else "nothing shows that it ever does"
+        return f"{head} {_write(bound)}, {_write(bound - deadline)} longer than {deadline_text} allows; {evidence}."
+    unsure = (
+        f"A simulated run took longer than {deadline_text} allows"
+        if is_seen
+        else f"Nothing says whether it meets {deadline_text}"
+    )
+    return f"{unsure}; nobody can say how long it takes at most: no bound was found."
 
 
 def _describe_parts(analysis: Analysis, parts: list[_ChainPart]) -> str:

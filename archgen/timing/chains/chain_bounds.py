@@ -12,9 +12,9 @@ from itertools import pairwise
 
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture, Chain, Waypoint
-from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, ChainVerdict
+from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, ChainVerdict, ShareDeadline
 from archgen.timing.chains import chain_regions
-from archgen.timing.chains.chain_verdicts import judge_deadline, may_be_late
+from archgen.timing.chains.chain_verdicts import judge_deadline, judge_shares, may_be_late
 from archgen.timing.chains.cost_network import CostNetwork, PathAim
 from archgen.timing.chains.element_index import ChainPoint
 from archgen.timing.chains.extreme_paths import find_aimed_paths, find_extreme_path, find_extreme_value, sum_path
@@ -107,6 +107,17 @@ def find_unmet_chains(analysis: Analysis, architecture: Architecture, margin: Fr
                 yield LateChain(asked_chain, bound, best, verdict, build_terms(view, path))
 
 
+def find_missed_shares(
+    analysis: Analysis, architecture: Architecture
+) -> Iterator[tuple[Chain, ShareDeadline, TimingValue]]:
+    """Yield the deadlines of shares that no reaction of a chain can meet, each with the best case."""
+    asked_chains = [each for each in architecture.chains.values() if each.deadline_shares and not each.unresolved]
+    network = CostNetwork.of_analysis(analysis) if asked_chains else None
+    for asked_chain in asked_chains if network else ():
+        result = bound_chain(analysis, architecture, asked_chain, network)
+        yield from ((asked_chain, share, result.best) for share in result.shares if share.verdict == "missed")
+
+
 def find_paths_between(
     network: CostNetwork, architecture: Architecture, source: Waypoint, target: Waypoint, aim: PathAim = "bound"
 ) -> PathSet | None:
@@ -168,7 +179,10 @@ def _build_result(
             if asked_chain.unresolved
             else _unconnected_value(network, asked_chain, chain_points)
         )
-        return ChainResult(asked_chain.id, waypoint_ids, (), no_bound, no_bound, no_bound, no_bound, deadline, "open")
+        shares = judge_shares(no_bound, no_bound, asked_chain)
+        return ChainResult(
+            asked_chain.id, waypoint_ids, (), no_bound, no_bound, no_bound, no_bound, deadline, "open", shares
+        )
     view, path, path_bound = extreme_path
     bound = _note_event_start(network, path, _note_reentrant_end(network, path, path_bound))
     bound = _note_measured(network, path, bound)
@@ -184,6 +198,7 @@ def _build_result(
         reduced_age=_limit_reduced_age(find_extreme_value(network, regions, "reduced age"), bound, event_ages),
         deadline=deadline,
         verdict=judge_deadline(bound, best, deadline),
+        shares=judge_shares(bound, best, asked_chain),
     )
 
 

@@ -226,4 +226,5 @@ def _build_host_load(
         activity_shares=tuple(shares.items()),
         core_loads=loads,
         earliest_deadline_bound=TimingValue(Fraction(1)) if cores == 1 else _ONE_CORE_ONLY,
+        unproven=judge.find_unproven(shares),
     )

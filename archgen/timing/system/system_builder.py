@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node
 from archgen.model.port_media import is_physical
-from archgen.model.runtime_facts import count_node_threads, find_container_threads, find_library
+from archgen.model.runtime_facts import count_node_threads, find_container_threads, find_library, find_usual_order
 from archgen.timing.analysis import Reason
 from archgen.timing.figures.figure_wording import join_first_names
 from archgen.timing.figures.tick_unit import choose_tick_unit
@@ -85,6 +85,7 @@ def build_system(
 
 def _build_executors(architecture: Architecture, activities_by_id: Mapping[str, Activity]) -> Iterator[Executor]:
     """Yield the processes: each container, and each node outside of one."""
+    usual_order = find_usual_order(architecture)
     suspending = {activity.executor for activity in activities_by_id.values() if activity.suspends}
     nodes_in: dict[str, list[Node]] = {container: [] for container in architecture.containers}
     for node in architecture.nodes.values():
@@ -96,12 +97,14 @@ def _build_executors(architecture: Architecture, activities_by_id: Mapping[str, 
         node_hosts = dict.fromkeys(node.host for node in nodes)
         host = container.host or (next(iter(node_hosts)) if len(node_hosts) == 1 else None)
         threads = find_container_threads(architecture, container)
-        yield Executor(key, threads, host, container.scheduling, find_library(nodes), key in suspending)
+        yield Executor(key, threads, host, container.scheduling, find_library(nodes), key in suspending, usual_order)
     for node in architecture.nodes.values():
         if not node.container:
             key = executor_key(node)
             threads = count_node_threads(node)
-            yield Executor(key, threads, node.host, node.scheduling, find_library([node]), key in suspending)
+            yield Executor(
+                key, threads, node.host, node.scheduling, find_library([node]), key in suspending, usual_order
+            )
 
 
 def _note_languages(architecture: Architecture) -> Iterator[Reason]:

@@ -39,7 +39,8 @@ class Executor:
     """What runs the callbacks of a process: those of a container, or of a node outside of one.
 
     `threads` is None where nobody wrote how many a container has; a node outside of a container has one if nothing is
-    written. `order` is the order in which a thread takes what is ready, None where it may be any.
+    written. `order` is the order in which a thread takes what is ready, None where nobody wrote it: bounds hold for any
+    then, and what is simulated keeps to `usual_order`, that of its middleware, where it is known.
     """
 
     id: str
@@ -50,6 +51,7 @@ class Executor:
     library: ClientLibrary = RCLCPP
     suspends: bool = False
     """Whether something in it keeps its thread for some time without needing a core."""
+    usual_order: SchedulingOrder | None = None
 
     @property
     def is_serial(self) -> bool:

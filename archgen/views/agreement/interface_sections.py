@@ -303,7 +303,7 @@ class SectionWriter:
         rows = tuple(
             (
                 inline_text.to_inlines(Text(self.lookup.architecture.chains[chain.id].title, ref=f"chain:{chain.id}")),
-                timing_tables.duration_cell(chain.deadline) if chain.deadline else (),
+                timing_tables.deadline_cell(chain),
                 timing_tables.duration_cell(chain.bound),
                 inline_text.to_inlines(Text(chain.verdict, strong=chain.verdict != "met")),
             )

@@ -112,14 +112,12 @@ def _chain_figure(lookup: Lookup) -> KeyFigure:
 
 def _host_figure(lookup: Lookup) -> KeyFigure:
     hosts = timing_tables.rank_hosts(lookup.timing) if lookup.timing else []
-    words = {"overload": "overloaded", "undecided": "undecided", "unknown": "unknown"}
+    words = {"overload": "overloaded", "undecided": "not proven", "unknown": "unknown"}
     counts = {verdict: sum(load.verdict == verdict for _, load in hosts) for verdict in words}
     worst = next((timing_tables.LOAD_STATES[name] for name, count in counts.items() if count), "met")
     note = join_words([f"{count} {words[name]}" for name, count in counts.items() if count]) or "all of them"
     proven_count = len(hosts) - sum(counts.values())
-    return KeyFigure(
-        "Hosts proven schedulable", str(proven_count), str(len(hosts)), _make_note(worst, note), "page:hosts"
-    )
+    return KeyFigure("Hosts proven in time", str(proven_count), str(len(hosts)), _make_note(worst, note), "page:hosts")
 
 
 def _chains_without_finding(lookup: Lookup) -> list[str]:
@@ -135,7 +133,7 @@ def _chain_card(lookup: Lookup) -> DashboardCard | None:
             inline_text.to_inlines(Text(lookup.architecture.chains[result.id].title, ref=f"chain:{result.id}")),
             chain_status.chain_meter(result),
             timing_tables.duration_cell(result.bound),
-            timing_tables.duration_cell(result.deadline) if result.deadline else (),
+            timing_tables.deadline_cell(result),
             chain_status.margin_cell(result),
             chain_status.verdict_chip(result),
         )

@@ -342,7 +342,9 @@ class PageMaker:
                 continue
             waterfall = make_waterfall(self.lookup, timing_lookup, result)
             # The waterfall says the same at a glance; the chart has a page of the report, which has no waterfall.
-            shown = ({}, WATERFALL_FACTS) if waterfall else (graphs, ())
+            late_name = f"chains/{result.id}.late"
+            late_pictures = {late_name: graphs[late_name]} if result.id in timing_lookup.late_runs else {}
+            shown = (late_pictures, WATERFALL_FACTS) if waterfall else (graphs, ())
             section = timing_chapter.make_chain_section(self.lookup, timing_lookup, result, *shown)
             path, lead = f"chains/{result.id}.html", "Chain of effect"
             yield Page(path, section.anchor, section.title, "chains", section, crumbs, lead, waterfall=waterfall)

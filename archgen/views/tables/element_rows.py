@@ -238,7 +238,7 @@ def _chain_rows(lookup: Lookup) -> Iterator[TextRow]:
             chain.id,
             chain.title,
             " > ".join(point.id for point in chain.through),
-            str(chain.deadline or ""),
+            chain.deadline_text,
             str(chain.at),
         )
 

@@ -95,7 +95,9 @@ def make_chain_table(lookup: Lookup, selected_chains: Iterable[Chain]) -> Table 
         (
             inline_text.to_inlines(Text(chain.title, ref=f"chain:{chain.id}")),
             inline_text.join_inlines((waypoint_link(lookup, point.kind, point.id) for point in chain.through), " → "),
-            inline_text.quantity_to_inlines(chain.deadline),
+            inline_text.to_inlines(chain.deadline_text)
+            if chain.deadline_shares
+            else inline_text.quantity_to_inlines(chain.deadline),
             inline_text.join_inlines(
                 inline_text.requirement_link(architecture, name)[:1] for name in chain.requirements
             ),

@@ -15,6 +15,7 @@ from archgen.views import element_references, inline_text
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Fact, Figure, Inlines, Table, Text, show_facts
 from archgen.views.timing import chain_charts, load_charts, timing_tables, use_tables, value_format
+from archgen.views.timing.late_run_charts import make_late_run_figures
 from archgen.views.timing.timing_lookup import TimingLookup
 
 _ACTIVITY_NAME = re.compile(r"(?<![a-z0-9.])([a-z0-9.]++(?:_[a-z0-9.]++)++)")
@@ -96,6 +97,7 @@ def make_chain_blocks(
     return (
         show_facts((fact for fact in facts if fact.value and not timing_tables.is_blank(fact.value)), without),
         Figure(f"figure:{name}", name, title, chain_charts.describe_chain_verdict(result, timing_lookup)),
+        *make_late_run_figures(lookup, timing_lookup, result),
         *([Table(f"table:{name}", f"{chain.title}: parts of the bound", columns, rows)] if rows else []),
     )
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from archgen.timing.analysis import EventPace, HostLoad
+from archgen.timing.analysis import ChainResult, EventPace, HostLoad
+from archgen.timing.figures.figure_wording import format_duration
 from archgen.timing.figures.timing_values import TimingValue
+from archgen.timing.load.host_verdicts import name_host_verdict
 from archgen.timing.system.timing_system import Activity
 from archgen.views import element_references, inline_text, timing_words
 from archgen.views.lookup import Lookup
@@ -38,12 +40,6 @@ _SHORT_TIER_WORDS = {
     "priorities": "priorities",
 }
 """Shorter words for the table of all activities, where a longer line in each row makes the table a page longer."""
-_VERDICT_WORDS = {
-    "schedulable": "in time",
-    "overload": "overloaded",
-    "undecided": "open: load alone does not decide",
-    "unknown": "unknown",
-}
 LOAD_STATES: Mapping[str, Status] = {
     "overload": "missed",
     "undecided": "not proven",
@@ -65,6 +61,13 @@ def figure_cell(text: str, value: TimingValue) -> Inlines:
 def duration_cell(value: TimingValue) -> Inlines:
     """Return a table cell for the upper bound of a duration."""
     return figure_cell(value_format.display_duration(value), value)
+
+
+def deadline_cell(result: ChainResult) -> Inlines:
+    """Return a table cell for all deadlines of a chain: `400 ms, 95 % in 150 ms`."""
+    always = duration_cell(result.deadline) if result.deadline else ()
+    shares = ", ".join(f"{each.name} in {format_duration(each.limit)}" for each in result.shares)
+    return (*always, Text(f"{', ' if always else ''}{shares}")) if shares else always
 
 
 def share_cell(value: TimingValue) -> Inlines:
@@ -208,7 +211,7 @@ def make_load_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | None
             # Both bounds hold for a single core only.
             share_cell(load.rate_monotonic_bound) if load.cores == 1 else (),
             share_cell(load.earliest_deadline_bound) if load.cores == 1 else (),
-            inline_text.to_inlines(Text(_VERDICT_WORDS[load.verdict], status=LOAD_STATES[load.verdict])),
+            inline_text.to_inlines(Text(name_host_verdict(load), status=LOAD_STATES[load.verdict])),
             inline_text.to_inlines(value_format.describe_missing(load.utilisation, timing_lookup.analysis, 3)),
         )
         for name, load in rank_hosts(timing_lookup)

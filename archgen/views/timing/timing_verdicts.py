@@ -133,7 +133,7 @@ def make_bound_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | Non
             timing_tables.duration_cell(result.bound),
             timing_tables.figure_cell(value_format.display_lower_bound(result.best), result.best),
             _largest_step(timing_lookup, result),
-            timing_tables.duration_cell(result.deadline) if result.deadline else (),
+            timing_tables.deadline_cell(result),
             chain_status.margin_cell(result),
             chain_status.verdict_chip(result),
             inline_text.to_inlines(value_format.describe_missing(result.bound, timing_lookup.analysis, 3)),

@@ -7,7 +7,7 @@ from fractions import Fraction
 import pytest
 
 from archgen.emit.terminal import chain_gaps, chain_remedies
-from archgen.simulation.chain_witnesses import ChainWitness
+from archgen.simulation.seeded_runs import LateRun
 from archgen.timing.search.change_trials import TriedChange
 from archgen.timing.search.proposals import Proposal, TriedConfiguration
 from tests.timing.search.trials import bound_with
@@ -27,7 +27,7 @@ def test_what_is_left_of_a_deadline(deadline: str, text: str) -> None:
 
 
 def test_a_witness_is_told_with_the_command_that_repeats_it() -> None:
-    assert chain_gaps.describe_witness("c", ChainWitness(17, 60, 163 * MS)) == (
+    assert chain_gaps.describe_witness("c", LateRun(17, 60, 163 * MS)) == (
         "seen in `archgen simulate --seed 17 --chain c --seconds 60`: 163 ms"
     )
     assert chain_gaps.describe_witness("c", None) == ""
