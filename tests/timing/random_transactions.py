@@ -48,7 +48,9 @@ class System:
     load: float
 
 
-def draw_system(seed: int, *, pinned: bool = False, gates: bool = False, ranked: bool = False) -> System:
+def draw_system(  # noqa: C901, PLR0912 - one branch for each feature that is drawn
+    seed: int, *, pinned: bool = False, gates: bool = False, ranked: bool = False
+) -> System:
     """Draw a system by a seed."""
     dice = random.Random(seed)  # noqa: S311 - a test's dice
     hosts = {f"h{at}": dice.randint(1, 3) for at in range(dice.randint(2, 4))}
@@ -219,7 +221,7 @@ class Simulation:
                 for number, nominal in enumerate(range(phase, self.until, step.period)):
                     late = step.jitter if number == 0 and self.together else self._draw(0, step.jitter)
                     late = 0 if self.together and number else late
-                    self._post(nominal + late - (phase if self.together else 0) * 0, "fire", (step, (), ""))
+                    self._post(nominal + late, "fire", (step, (), ""))
         now = 0
         while self.events and now <= self.until * 2:
             now = self.events[0][0]
@@ -255,11 +257,11 @@ class Simulation:
             "last come": -job.number,
             "ranks": self.ranks[thread],
             "dice": self.dice.random(),
-            "starving": float(any(job.step.name.startswith(self.victim[:2]) for _ in "1")) * 2 + self.ranks[thread],
+            "starving": 2.0 * job.step.name.startswith(self.victim[:2]) + self.ranks[thread],
         }
         return (urgency, key[self.order])
 
-    def _work(self, now: int) -> int:
+    def _work(self, now: int) -> int:  # noqa: C901 - threads, cores and time in one loop
         """Let the cores work until the next event, and return when that is."""
         while True:
             for thread, queue in self.queues.items():

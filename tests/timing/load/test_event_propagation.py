@@ -115,7 +115,7 @@ def test_jitter_goes_round_two_hosts() -> None:
         "b g.b.out event inferred: 50 Hz, gap 29, jitter 9, apart 11",
         "c g.c.out periodic written: 100/3 Hz, gap 34, jitter 4, apart 26",
         "d g.d.out event inferred: 100/3 Hz, gap 38, jitter 8, apart 22",
-        "e g.e.out event inferred: 50 Hz, gap 35, jitter 10, apart 10",
+        "e g.e.out event inferred: 50 Hz, gap 35, jitter 15, apart 5",
         "f g.f.out event inferred: 50 Hz, gap 40, jitter 15, apart 5",
         "g g.g.out periodic written: 25 Hz, gap 49, jitter 9, apart 31",
         "h g.h.out event inferred: 100/3 Hz, gap 43, jitter 13, apart 17",
