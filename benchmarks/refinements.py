@@ -85,8 +85,8 @@ REFINEMENTS = (
     Refinement(
         "what leaves a host as a whole",
         "load.event_models:leaving_model",
-        "if not host_ways or isinstance(leaving, UnknownCause):",
-        "if True:",
+        "(state.host_ways_to.get(arc.source, ()), state.transaction_ways",
+        "((), state.transaction_ways",
     ),
     Refinement(
         "each of several cores that others are pinned to",
@@ -165,6 +165,13 @@ REFINEMENTS = (
         "load.path_work:PathWork._find_block",
         "if time < block.time else block",
         "if False else block",
+    ),
+    # Hosts that fire one another.
+    Refinement(
+        "ways over hosts as wholes",
+        "load.transactions:find_transactions",
+        "if len(group) > 1 else None",
+        "if False else None",
     ),
     # Orders.
     *(

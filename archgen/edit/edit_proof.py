@@ -1,6 +1,6 @@
 """Prove an insertion: the file says what it said plus the new element, and no other element of the project changed.
 
-Whether an element changed is the comparison's answer: its normal form (`compare.compared_elements`) is equal or not.
+Whether an element changed is the comparison's answer: its normal form (`compare.version_pair`) is equal or not.
 
 The element to be written, as the lines of a block or in braces.
 """

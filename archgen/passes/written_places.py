@@ -13,7 +13,7 @@ from archgen.model.component import Component
 from archgen.model.selector_keys import find_component_status
 from archgen.passes.linked_tree import LinkedTree
 from archgen.passes.project_tree import ProjectTree
-from archgen.project.shipped_library import SHIPPED_ID
+from archgen.project.library_reading import SHIPPED_ID
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode
 
 MAX_DEPTH = 60

@@ -1,4 +1,4 @@
-"""What is mended in a template so that python-docx opens what Word opens: content types, and relationships (`template_relations`).
+"""What is mended in a template so that python-docx opens what Word opens: content types, and relationships.
 
 python-docx refuses .dotx files, and raises KeyError for a part without a content type.
 """

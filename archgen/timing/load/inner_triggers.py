@@ -75,29 +75,23 @@ def find_inner_triggers(
         return None
     members = dict.fromkeys(resource.members)
     arcs_into = {
-        name: tuple(_firing_arcs(system, triggers, name))
+        name: _divide_arcs(system, _firing_arcs(system, triggers, name), members, over_links=over_links)
         for name in members
         if _is_fired_by_arcs(system, triggers, name)
         # While several cores work, what has come to a gate is never known: its own event model says what leaves it.
         and (resource.cores == 1 or not _is_gate(system, triggers, name))
     }
     successors: dict[str, list[str]] = {name: [] for name in members}
-    for name, firing_arcs in arcs_into.items():
-        for firing_arc in firing_arcs:
-            if _is_inside(system, firing_arc.arc, members, over_links=over_links):
-                successors[firing_arc.arc.source].append(name)
+    for name, (inner_arcs, _) in arcs_into.items():
+        for firing_arc in inner_arcs:
+            successors[firing_arc.arc.source].append(name)
     if resource.cores == 1 and not any(successors.values()):
         return None
     components = find_strong_components(members, successors.__getitem__)
     # Events that go round have no last one: their own event models, found by repetition, say how many there are.
     ring_ids = {name for ring in components for name in ring if len(ring) > 1 or name in successors[name]}
     return _build_inner_triggers(
-        system,
-        triggers,
-        tuple(name for ring in components for name in ring),
-        arcs_into,
-        ring_ids,
-        over_links=over_links,
+        system, triggers, tuple(name for ring in components for name in ring), arcs_into, ring_ids
     )
 
 
@@ -113,12 +107,10 @@ def _build_inner_triggers(
     system: TimingSystem,
     triggers: TriggerGraph,
     inner_order: tuple[str, ...],
-    arcs_into: Mapping[str, tuple[FiringArc, ...]],
+    arcs_into: Mapping[str, tuple[tuple[FiringArc, ...], tuple[FiringArc, ...]]],
     ring_ids: Iterable[str],
-    *,
-    over_links: bool,
 ) -> InnerTriggers:
-    """Divide what fires each activity, in order, into what comes from the core and from elsewhere."""
+    """Return what fires each activity, in order, from the core and from elsewhere."""
     members = dict.fromkeys(inner_order)
     entry_ids = frozenset(members).difference(arcs_into).union(ring_ids)
     fired_ids = [name for name in inner_order if name not in entry_ids]
@@ -131,24 +123,23 @@ def _build_inner_triggers(
     return InnerTriggers(
         inner_order,
         entry_ids,
-        {
-            name: tuple(
-                each for each in arcs_into[name] if _is_inside(system, each.arc, members, over_links=over_links)
-            )
-            for name in fired_ids
-        },
-        {
-            name: tuple(
-                each for each in arcs_into[name] if not _is_inside(system, each.arc, members, over_links=over_links)
-            )
-            for name in fired_ids
-        },
+        {name: arcs_into[name][0] for name in fired_ids},
+        {name: arcs_into[name][1] for name in fired_ids},
         {name: tuple(tuple(map(FiringArc, arcs)) for arcs in inputs.values()) for name, inputs in known_inputs.items()},
         frozenset(name for name, inputs in known_inputs.items() if len(inputs) == len(needed_inputs[name])),
         frozenset(
             name for name in members if name in triggers.never_firing or system.activities[name].behaviour == "once"
         ),
     )
+
+
+def _divide_arcs(
+    system: TimingSystem, firing_arcs: Iterable[FiringArc], members: Mapping[str, None], *, over_links: bool
+) -> tuple[tuple[FiringArc, ...], tuple[FiringArc, ...]]:
+    """Return the arcs that come from the core, and those from elsewhere."""
+    arcs = tuple(firing_arcs)
+    inner_arcs = tuple(each for each in arcs if _is_inside(system, each.arc, members, over_links=over_links))
+    return inner_arcs, tuple(each for each in arcs if not _is_inside(system, each.arc, members, over_links=over_links))
 
 
 def _is_inside(system: TimingSystem, arc: Arc, members: Mapping[str, None], *, over_links: bool) -> bool:

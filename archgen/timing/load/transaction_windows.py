@@ -27,6 +27,7 @@ from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.shared_cores import WayKey
 from archgen.timing.load.transactions import Place, PlaceJob, Transactions
+from archgen.timing.load.work_terms import ONCE, CountFormulas, EventCount, FigureWorking, WorkTerm, group_terms
 from archgen.timing.system.core_sets import ThreadUnit
 
 ENDLESS = 1 << 60
@@ -375,3 +376,32 @@ class TransactionWindows:
                 yield number
             if number and own_end - apart > begin and own_begin - latest < end:
                 yield -number
+
+
+def explain_way_window(
+    window: WayWindow, windows: TransactionWindows, key: WayKey, formulas: CountFormulas
+) -> FigureWorking:
+    """Return how the time of a way comes about: of the step that has ended before, own work and links, place by place."""
+    before = 0 if window.before is None else windows.delays[window.before]
+    length, steps = windows.delays[key] - before, tuple(name for name, _ in windows.transactions.paths[key])
+    own_parts = tuple((name, windows.transactions.system.activities[name].wcet or 0) for name, _ in window.steps)
+    terms = [WorkTerm(own_parts, ONCE, "its own"), WorkTerm((("links", window.link_time),), ONCE, "on the way")]
+    if window.before is not None:
+        terms.insert(
+            0, WorkTerm(((window.before[0], before),), ONCE, "the time until it has ended, looked at by itself")
+        )
+    span = length + window.closing_tick
+    for work in window.works:
+        place = windows.transactions.system.activities[next(iter(work.place.thread_of))].host or work.place.step
+        for term in (term for each in work.own_sums for term in each.terms):
+            count = formulas.count_events(term.streams, span + term.lead)
+            reason = f"on {place}, those of {formulas.write_duration(term.lead)} before included"
+            if term.limit is not None and term.limit <= count.number:
+                count = EventCount(term.limit, str(term.limit))
+                reason = f"on {place}, of its own events: so many can be there at the same time"
+            terms.append(WorkTerm(((term.job.name, term.job.cost or 0),), count, reason))
+        lane_works = [*(lane.within(span) for lane in work.lanes), *work.event_works]
+        texts = " + ".join(map(formulas.write_duration, sorted(lane_works, reverse=True)))
+        reason = f"all {work.place.core_count} cores of {place} busy with others: {texts}, none for longer than that"
+        terms.append(WorkTerm((("others", work.find_block(span)),), ONCE, reason))
+    return FigureWorking(before + length, before + length, group_terms(terms), steps=steps)

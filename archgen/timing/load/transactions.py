@@ -15,7 +15,7 @@ from archgen.timing.load.shared_cores import WayKey, begin_anew, find_ways_anew
 from archgen.timing.load.thread_work import ThreadWork
 from archgen.timing.system.core_placement import ProcessingResource
 from archgen.timing.system.core_sets import ThreadUnit
-from archgen.timing.system.thread_pools import find_crowded_pools, is_reentrant
+from archgen.timing.system.thread_pools import find_crowded_pools, find_serial_process, is_reentrant
 from archgen.timing.system.timing_system import Arc, TimingSystem
 from archgen.timing.system.trigger_graph import TriggerGraph
 
@@ -141,7 +141,7 @@ def _build_place(
     is_one = (
         resource.joined
         or any((pool.threads or 1) < resource.cores for pool in find_crowded_pools(system, members).values())
-        or any(is_reentrant(system, activity) for activity in members)
+        or any(is_reentrant(system, each) or find_serial_process(system, each.id) for each in members)
     )
     keys_of: dict[str, list[WayKey]] = {}
     for key in ways:
