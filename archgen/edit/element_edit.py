@@ -64,7 +64,9 @@ class FileEdit:
 def plan_edit(checked_project: CheckedProject, place: ElementPlace, element: NewElement, element_id: str) -> FileEdit:
     """Return the edit that adds an element; `element_id` is its complete id. Raise EditRefusedError."""
     old_content, text = (
-        (None, _schema_line(checked_project, place)) if place.is_new_file else read_editable(checked_project, place.file)
+        (None, _schema_line(checked_project, place))
+        if place.is_new_file
+        else read_editable(checked_project, place.file)
     )
     new_text = _insert_element(place, element, text)
     # Two proofs: `adds_only_element` looks at the file alone, this one at the whole project with it.
