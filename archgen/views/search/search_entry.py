@@ -40,7 +40,9 @@ def to_plain_text(*texts: str | None) -> str:
     return " ".join(_MARKS.sub(" ", " ".join(text for text in texts if text)).split())
 
 
-_HEADING = re.compile(r"^ {0,3}#{1,6}[ \t]++(.*?)(?:(?<![ \t])[ \t]++)?+(?:(?<!#)#++)?+(?:(?<![ \t])[ \t]++)?+$", re.MULTILINE)
+_HEADING = re.compile(
+    r"^ {0,3}#{1,6}[ \t]++(.*?)(?:(?<![ \t])[ \t]++)?+(?:(?<!#)#++)?+(?:(?<![ \t])[ \t]++)?+$", re.MULTILINE
+)
 
 
 def make_finding_entries(lookup: Lookup) -> Iterator[SearchEntry]:
