@@ -1,7 +1,8 @@
-"""Do components, services and chains answer in the time that they have, and is what is read as fresh as its reader needs it?"""
+"""Do components, services, callbacks and chains answer in the time that they have, and is what is read as fresh as needed?"""
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import NamedTuple
@@ -21,6 +22,7 @@ from archgen.timing.chains.use_case_times import WholeBound, WholeLimit, bound_w
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.figure_wording import format_duration, join_first_names
 from archgen.timing.figures.value_arithmetic import is_boundless, is_known_bound, is_unfound
+from archgen.timing.system.thread_pools import name_lane
 from archgen.timing.system.timing_system import Activity
 
 
@@ -89,8 +91,7 @@ def _report_slow_host(host: Host, slow_answers: Sequence[_SlowAnswer], margin: F
         f"with all that works on `{host.id}`, {len(slow_answers)} promises may not be kept: {join_words([*phrases, *more_text])}{_describe_margin(margin)}",
         host.at,
         labels=tuple(Label(answer.indicator.at, "asks for less") for answer in slow_answers[:_MAX_NAMED_ANSWERS]),
-        help="give what is urgent a priority or a core, move something to another host, or correct what the performances "
-        "promise",
+        help="`archgen timing --why` with one of them shows what gets in its way; or correct what the performances promise",
         element=host.id,
     )
 
@@ -107,7 +108,9 @@ def _report_slow_component(slow_answer: _SlowAnswer, margin: Fraction) -> Diagno
         labels=(Label(span, "takes longer" if is_undisturbed else "takes longer with what gets in its way"),)
         if span != NO_SPAN
         else (),
-        help="make the node quicker, give it a priority or a core, or correct what the performance promises",
+        help="make the node quicker, or correct what the performance promises"
+        if is_undisturbed
+        else f"`archgen timing --why {activity.id}` shows what gets in its way; or correct what the performance promises",
         element=component.id,
     )
 
@@ -175,6 +178,43 @@ def _report_slow_service(
 def _describe_margin(margin: Fraction) -> str:
     """Say how much of a time must stay free, where any must."""
     return f"; {format_percentage(margin)} of it must stay free" if margin else ""
+
+
+def long_callback(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
+    """A callback takes longer than the period of another one that waits for the same thread."""
+    members_by_thread: dict[str, list[Activity]] = defaultdict(list)
+    for activity in analysis.system.activities.values():
+        members_by_thread[name_lane(analysis.system, activity)].append(activity)
+    for members in members_by_thread.values():
+        if len(members) > 1:
+            yield from _find_long_callbacks(analysis, members)
+
+
+def _find_long_callbacks(analysis: Analysis, members: Sequence[Activity]) -> Iterator[Diagnostic]:
+    """Yield a finding for each callback of a thread that lets another one miss a tick, with the most frequent of these."""
+    # What others fire is due whenever they do: how late it may come is for chains to say.
+    timed = [(member.period, member) for member in members if member.behaviour == "periodic" and member.period]
+    timed.sort(key=lambda pair: pair[0])
+    for slow in members:
+        # While it uses a resource, it keeps its thread.
+        held = (slow.wcet or 0) + sum(use.worst for use in slow.uses.values())
+        delayed = [(period, member) for period, member in timed if period < held and member is not slow]
+        if not delayed:
+            continue
+        period, first = delayed[0]
+        more_count = len(delayed) - 1
+        more_text = f", and of {more_count} more timer{'s' if more_count > 1 else ''}" if more_count else ""
+        period_span = first.places.get("period", first.places.get("rate", NO_SPAN))
+        held_text, period_text = (format_duration(Fraction(ticks * analysis.system.tick)) for ticks in (held, period))
+        yield Diagnostic(
+            "long-callback",
+            f"`{slow.id}`, {held_text}, shares the thread of `{first.id}`, which is due every {period_text}{more_text}",
+            slow.places.get("wcet", slow.at),
+            labels=(Label(period_span, "due in the meantime"),) if period_span != NO_SPAN else (),
+            help=f"`archgen timing --why {first.id}` shows how late it may come, `archgen timing --propose` what helps chains "
+            "that are late for it",
+            element=slow.node,
+        )
 
 
 def late_chain(architecture: Architecture, analysis: Analysis, *, margin: Fraction) -> Iterator[Diagnostic]:
@@ -301,6 +341,7 @@ RULES = (
         Severity.WARNING,
         (RuleOption("margin", 0, 0, 99, "The share of the caller's period that must stay free."),),
     ),
+    (long_callback, Severity.WARNING),
     (
         late_chain,
         Severity.WARNING,

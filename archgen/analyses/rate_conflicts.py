@@ -18,6 +18,7 @@ from archgen.timing.figures.figure_wording import format_number, format_rate
 from archgen.timing.figures.tick_unit import NS_PER_SECOND, written_period
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.rates.edge_fit import fires_each_time
+from archgen.timing.system.thread_pools import name_lane
 from archgen.timing.system.timing_system import Activity
 
 
@@ -206,6 +207,25 @@ def deadlocked_trigger(_: Architecture, analysis: Analysis) -> Iterator[Diagnost
         )
 
 
+def deadlocked_call(architecture: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
+    """A callback waits, and the server that it calls has no other thread: the answer never comes."""
+    system = analysis.system
+    for arc in system.arcs:
+        caller, server = system.activities[arc.source], system.activities[arc.target]
+        # What a component asks another one of its node for is a function that it calls, unless ROS carries it.
+        is_call = arc.role == "request" and arc.topic in architecture.topics
+        if is_call and caller.wait and name_lane(system, caller) == name_lane(system, server):
+            yield Diagnostic(
+                "deadlocked-call",
+                f"`{caller.id}` waits in its callback and calls `{arc.topic}` of `{server.id}`, which has the same thread: "
+                "if it waits for that answer, it waits for ever",
+                caller.places.get("response", caller.at),
+                labels=(Label(server.at, "the server"),) if server.at != NO_SPAN else (),
+                help="move one of them into another process, or do not wait: an answer comes in a callback of its own",
+                element=caller.id,
+            )
+
+
 def _find_arriving_keys(analysis: Analysis) -> dict[str, set[str]]:
     """Return the input keys at which something arrives, from other activities or from outside, by activity id."""
     arriving_keys = defaultdict[str, set[str]](set)
@@ -239,4 +259,5 @@ RULES = (
     ),
     (endless_trigger, Severity.ERROR),
     (deadlocked_trigger, Severity.ERROR),
+    (deadlocked_call, Severity.WARNING),
 )

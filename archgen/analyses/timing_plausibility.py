@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 
@@ -180,20 +180,25 @@ def _find_idle_measurement(node: Node, timing: Timing) -> Iterator[Diagnostic]:
 
 
 def _find_idle_inputs(architecture: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
-    """Yield execution times for storing what is not stored: inputs that fire, and those of services and actions."""
+    """Yield what is said of storing at inputs that fire, whose messages are worked on, and of services, which answer."""
     for activity in analysis.system.activities.values():
         timing = architecture.nodes[activity.node].timing.get(activity.component or "")
-        called_inputs = {arc.input for arc in analysis.system.arcs_into.get(activity.id, ()) if arc.role == "answer"}
+        arcs = analysis.system.arcs_into.get(activity.id, ())
+        called_inputs = {arc.input for arc in arcs if arc.role == "answer"}
+        source_counts = Counter((arc.input, arc.topic) for arc in arcs if arc.role == "data")
         for port, input_timing in timing.inputs.items() if timing else ():
-            if port in activity.triggers:
-                reason, cure = f"it fires `{activity.id}`", "its time is a part of `wcet`: add it there"
-            elif port in called_inputs:
-                reason, cure = "it is a service or an action, of which no message is stored", "leave it out"
+            is_timed = input_timing.wcet is not None or input_timing.bcet is not None
+            if port in activity.triggers and (is_timed or input_timing.stored_at_once):
+                idle_key = "the time" if is_timed else "`stored`"
+                reason = f"it fires `{activity.id}`"
+            elif port in called_inputs and input_timing.stored_at_once:
+                idle_key, reason = "`stored`", "it is a service or an action, of which no message is stored"
+            elif input_timing.memory and all(count == 1 for (key, _), count in source_counts.items() if key == port):
+                idle_key, reason = "`memory`", "no topic of it has several sources"
             else:
                 continue
-            is_timed = not input_timing.stored_at_once
-            message = f"{'the time' if is_timed else '`stored`'} below `inputs` of `{port}` has no effect: {reason}"
-            advice = cure if is_timed else "leave it out"
+            message = f"{idle_key} below `inputs` of `{port}` has no effect: {reason}"
+            advice = "its time is a part of `wcet`: add it there" if idle_key == "the time" else "leave it out"
             yield Diagnostic("idle-timing", message, input_timing.at, help=advice, element=activity.node)
 
 

@@ -17,6 +17,7 @@ from archgen.diagnostics.diagnostic import Diagnostic, Severity, settle_diagnost
 
 if TYPE_CHECKING:
     from archgen.diagnostics.source_span import SourceTexts
+    from archgen.edit.element_edit import FileEdit
     from archgen.model.architecture import Architecture
     from archgen.model.selector_evaluation import Selection
     from archgen.model.selector_parser import SelectorProblem
@@ -225,6 +226,20 @@ def choose_format(
         msg = f"the ending of `{output}` names no format: end it in {', '.join(others)} or {last}, or give --format"
         raise click.UsageError(make_visible(msg))
     return formats[ending]
+
+
+def write_edit(root: Path, edit: FileEdit, detail: str) -> None:
+    """Write an edited file of the project in a folder, and print that."""
+    from archgen.emit import file_tree
+
+    target = (root / edit.file).resolve()
+    with explain_write_errors():
+        # `write_file` puts a new file in place of the old one, which would lose its permissions.
+        mode = target.stat().st_mode if edit.old_content is not None else None
+        file_tree.write_file(target, edit.new_content)
+        if mode is not None:
+            target.chmod(mode)
+    print_written(root / edit.file, detail)
 
 
 def print_written(path: Path, detail: str = "") -> None:

@@ -18,7 +18,7 @@ from archgen.compare.match_elements import match_elements
 from archgen.compare.review_facts import ReviewFacts
 from archgen.compare.timing_changes import add_chain_causes, compare_chains, find_link_users, find_load_changes
 from archgen.compare.timing_pair import analyse_timing_pair
-from archgen.compare.type_origins import trace_origins
+from archgen.compare.type_edits import trace_origins
 from archgen.diagnostics.diagnostic import Severity
 from archgen.model.review_settings import AcceptedChange
 

@@ -9,7 +9,7 @@ from archgen.compare.comparison import Change
 from archgen.compare.field_changes import compare_field_lines
 from archgen.compare.kinds import ELEMENT_KINDS, find_key
 from archgen.compare.kinds.promise_keys import NO_DAY
-from archgen.compare.text_differences import cut_text, describe_text_difference
+from archgen.compare.text_meaning import cut_text, describe_text_difference
 from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.common_wording import join_words
 from archgen.model.architecture import Architecture

@@ -7,7 +7,6 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Literal
 
-from archgen.compare.activity_owners import find_activity_owners
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.comparison import ChainChange, Change, LoadChange
 from archgen.compare.interface_figures import is_close_value, is_smaller
@@ -15,7 +14,7 @@ from archgen.compare.kinds import Worsening, find_key
 from archgen.compare.losses.change_context import ChangeContext
 from archgen.compare.losses.timing_causes import TimingCauses
 from archgen.compare.matched_ids import MatchedIds
-from archgen.compare.timing_pair import TimingPair, can_affect_timing
+from archgen.compare.timing_pair import TimingPair, can_affect_timing, find_activity_owners
 from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains import chain_bounds as timing_chains

@@ -35,6 +35,9 @@ class EditRefusedError(Exception):
         self.errors = errors
 
 
+_LINE_FEEDS = re.compile(r"[^\n]*\n|[^\n]+")
+
+
 @dataclass(frozen=True, slots=True)
 class FileEdit:
     """One file's bytes before (None: the file is new) and after, and the line at which the element begins.
@@ -49,12 +52,13 @@ class FileEdit:
     renamed_nodes: tuple[tuple[str, str], ...] = ()
 
     def unified_diff(self) -> Iterator[str]:
-        """Yield a unified diff, as git writes it."""
-        old_lines = (self.old_content or b"").decode().splitlines()
-        name = "/dev/null" if self.old_content is None else f"a/{self.file}"
-        return difflib.unified_diff(
-            old_lines, self.new_content.decode().splitlines(), name, f"b/{self.file}", lineterm=""
+        """Yield the lines of a unified diff, with their ends, as `git apply` takes it."""
+        old_lines, new_lines = (
+            _LINE_FEEDS.findall(each.decode()) for each in (self.old_content or b"", self.new_content)
         )
+        name = "/dev/null" if self.old_content is None else f"a/{self.file}"
+        for line in difflib.unified_diff(old_lines, new_lines, name, f"b/{self.file}"):
+            yield line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n"
 
 
 def plan_edit(checked_project: CheckedProject, place: ElementPlace, element: NewElement, element_id: str) -> FileEdit:
@@ -156,7 +160,7 @@ class CannotInsertError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class _ParsedText:
+class ParsedText:
     """A file's text as lines with their line endings, and its tree."""
 
     lines: tuple[str, ...]
@@ -164,10 +168,12 @@ class _ParsedText:
 
     @property
     def line_ending(self) -> str:
+        """Return how the first line ends."""
         first = self.lines[0] if self.lines else "\n"
         return first[len(first.rstrip("\r\n")) :] or "\n"
 
     def offset_of(self, line: int, column: int) -> int:
+        """Return how many characters stand before a place."""
         return sum(len(text) for text in self.lines[: line - 1]) + column - 1
 
     def text_from(self, value: YamlNode) -> str:
@@ -183,31 +189,33 @@ def propose_texts(file: str, text: str, path: tuple[str, ...], element: NewEleme
 
     Raise CannotInsertError.
     """
+    parsed = parse_text(file, text)
+    holder, missing_keys = find_holder(parsed, path)
+    entry = holder.entries.get(missing_keys[0]) if missing_keys else None
+    if entry is not None:
+        yield from _insert_below_empty(parsed, holder, entry, element.nested_below(missing_keys[1:]))
+    elif parsed.text_from(holder).startswith("{") and holder.span != Span.of_file(file):
+        compact_element = element.without_empty_keys().nested_below(missing_keys)
+        position, insertion = find_place_in_braces(parsed, holder, compact_element.to_flow())
+        yield text[:position] + insertion + text[position:]
+    else:
+        yield from _insert_in_block(parsed, holder, element.nested_below(missing_keys))
+
+
+def parse_text(file: str, text: str) -> ParsedText:
+    """Return a text that can be edited by its places. Raise CannotInsertError."""
     document, _ = yaml_parser.parse_yaml(file, text)
     if document is None:
         msg = f"{file} cannot be parsed: `archgen check` says where"
         raise CannotInsertError(msg)
     # YAML takes a lone carriage return for a line break and editors mostly do not: line numbers would not fit.
-    if _has_bare_returns(text):
+    if re.search(r"\r(?!\n)", text):
         msg = f"{file} holds line breaks that editors and parsers see differently"
         raise CannotInsertError(msg)
-    parsed = _ParsedText(tuple(_LINE_PATTERN.findall(text)), document.root)
-    holder, missing_keys = _find_holder(parsed, path)
-    entry = holder.entries.get(missing_keys[0]) if missing_keys else None
-    if entry is not None:
-        yield from _insert_below_empty(parsed, holder, entry, element.nested_below(missing_keys[1:]))
-    elif parsed.text_from(holder).startswith("{") and holder.span != Span.of_file(file):
-        yield _insert_in_braces(parsed, holder, element.without_empty_keys().nested_below(missing_keys))
-    else:
-        yield from _insert_in_block(parsed, holder, element.nested_below(missing_keys))
+    return ParsedText(tuple(_LINE_PATTERN.findall(text)), document.root)
 
 
-def _has_bare_returns(text: str) -> bool:
-    """Return whether a text has line breaks that are a carriage return only."""
-    return re.search(r"\r(?!\n)", text) is not None
-
-
-def _find_holder(parsed: _ParsedText, path: tuple[str, ...]) -> tuple[MappingNode, tuple[str, ...]]:
+def find_holder(parsed: ParsedText, path: tuple[str, ...]) -> tuple[MappingNode, tuple[str, ...]]:
     """Follow a path as far as its mappings are written; return the last of them and the keys that are left."""
     table = parsed.root
     for depth, key in enumerate(path):
@@ -223,7 +231,7 @@ def _find_holder(parsed: _ParsedText, path: tuple[str, ...]) -> tuple[MappingNod
 
 
 def _insert_below_empty(
-    parsed: _ParsedText, holder: MappingNode, entry: MappingEntry, element: NewElement
+    parsed: ParsedText, holder: MappingNode, entry: MappingEntry, element: NewElement
 ) -> Iterator[str]:
     """Insert the element below a key without a value."""
     line = parsed.lines[entry.key_span.end_line - 1].rstrip("\r\n")
@@ -245,7 +253,7 @@ def _insert_below_empty(
     )
 
 
-def _insert_in_block(parsed: _ParsedText, table: MappingNode, element: NewElement) -> Iterator[str]:
+def _insert_in_block(parsed: ParsedText, table: MappingNode, element: NewElement) -> Iterator[str]:
     """Insert the element behind the last one of a block."""
     entries = list(table)
     if not entries:
@@ -273,7 +281,7 @@ def _insert_in_block(parsed: _ParsedText, table: MappingNode, element: NewElemen
         yield _join_lines(parsed, line, lines, is_spaced=is_spaced)
 
 
-def _is_all_braces(parsed: _ParsedText, entries: list[MappingEntry]) -> bool:
+def _is_all_braces(parsed: ParsedText, entries: list[MappingEntry]) -> bool:
     """Return whether everything in a block is written in braces or in short form, each on one line."""
     return all(
         not isinstance(entry.value, MappingNode)
@@ -282,26 +290,23 @@ def _is_all_braces(parsed: _ParsedText, entries: list[MappingEntry]) -> bool:
     )
 
 
-def _insert_in_braces(parsed: _ParsedText, table: MappingNode, element: NewElement) -> str:
-    """Insert the element before a closing brace, on a line of its own where the others have one."""
+def find_place_in_braces(parsed: ParsedText, table: MappingNode, element_text: str) -> tuple[int, str]:
+    """Return where an element goes before a closing brace, and its text, on a line of its own where the others have one."""
     text = "".join(parsed.lines)
-    element_text = element.to_flow()
     entries = list(table)
     if not entries:
-        opening = parsed.offset_of(table.span.line, table.span.column) + text[
-            parsed.offset_of(table.span.line, table.span.column) :
-        ].index("{")
-        return text[: opening + 1] + element_text + text[opening + 1 :]
+        opening = parsed.offset_of(table.span.line, table.span.column)
+        return text.index("{", opening) + 1, element_text
     last_entry = entries[-1]
     end = parsed.offset_of(last_entry.value.span.end_line, last_entry.value.span.end_column)
     comma = _UNTIL_COMMA.match(text, end)
     position = comma.end() if comma else end
     indentation = parsed.lines[last_entry.key_span.line - 1][: last_entry.key_span.column - 1]
     separator = f"{parsed.line_ending}{indentation}" if not indentation.strip() else " "
-    return text[:position] + ("" if comma else ",") + separator + element_text + text[position:]
+    return position, ("" if comma else ",") + separator + element_text
 
 
-def _end_of_comments(parsed: _ParsedText, line: int, column: int) -> int:
+def _end_of_comments(parsed: ParsedText, line: int, column: int) -> int:
     """Return the line behind which to insert: comments that are indented as far belong to what is above them."""
     end = line
     for number in range(line, len(parsed.lines)):
@@ -315,7 +320,7 @@ def _end_of_comments(parsed: _ParsedText, line: int, column: int) -> int:
     return end
 
 
-def _has_blank_lines(parsed: _ParsedText, entries: list[MappingEntry]) -> bool:
+def _has_blank_lines(parsed: ParsedText, entries: list[MappingEntry]) -> bool:
     """Return whether blank lines separate the elements of a block."""
     number = entries[-1].key_span.line - 1
     while number > 0 and parsed.lines[number - 1].lstrip().startswith("#"):
@@ -333,7 +338,7 @@ def _indent_width(table: MappingNode, default_width: int = _DEFAULT_INDENT) -> i
     return default_width
 
 
-def _join_lines(parsed: _ParsedText, line_count: int, lines: list[str], *, is_spaced: bool) -> str:
+def _join_lines(parsed: ParsedText, line_count: int, lines: list[str], *, is_spaced: bool) -> str:
     """Return the text with lines inserted behind a line."""
     ending = parsed.line_ending
     before, after = "".join(parsed.lines[:line_count]), "".join(parsed.lines[line_count:])

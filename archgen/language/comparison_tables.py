@@ -395,6 +395,7 @@ KEY_FACTS: Mapping[str, Mapping[str, KeyFacts]] = {
         "wcet": {},
         "bcet": {},
         "stored": {"attribute": "stored_at_once"},
+        "memory": {},
     },
     "timing_output": {
         "conditional": {"form": "flag"},

@@ -338,7 +338,7 @@ KEYS: Mapping[str, Mapping[str, str]] = {
         "response": "duration",
     },
     "timing_input": {
-        "wcet": "duration", "bcet": "duration", "stored": "timing_input.stored",
+        "wcet": "duration", "bcet": "duration", "stored": "timing_input.stored", "memory": "timing_input.memory",
     },
     "timing_output": {
         "conditional": "flag", "max_gap": "duration",
@@ -482,7 +482,7 @@ WORDS: Mapping[str, tuple[str, ...]] = {
     "view.colour": ("group", "owner", "role", "status", "host", "package", "tag"),
     "operation.call": ("synchronous", "asynchronous"),
     "parameter_declaration.type": ("boolean", "integer", "float", "string", "boolean[]", "integer[]", "float[]", "string[]"),
-    "timing_input.stored": ("at_once",),
+    "timing_input.stored": ("at_once",), "timing_input.memory": ("each_source",),
 }
 """The words of which one stands at a part."""
 PART_TYPES: Mapping[str, str] = {

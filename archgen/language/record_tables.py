@@ -189,7 +189,7 @@ RECORD_KEYS: Mapping[str, Mapping[str, str]] = {
         "mode": "", "inputs": "", "within": "ns",
     },
     "timing_input": {
-        "wcet": "ns", "bcet": "ns", "stored": "",
+        "wcet": "ns", "bcet": "ns", "stored": "", "memory": "",
     },
     "timing_output": {
         "conditional": "flag", "max_gap": "ns",

@@ -13,6 +13,9 @@ from archgen.simulation.simulation_plan import SimulationPlan
 from archgen.simulation.simulation_result import ChainFigures, DurationDistribution, ObservedChain
 from archgen.simulation.simulation_run import SimulationRun
 
+_REPLACED = 1 << 61
+"""More than the number of any job."""
+
 
 @dataclass(frozen=True, slots=True)
 class ChainTrack:
@@ -66,13 +69,17 @@ def track_chain(plan: SimulationPlan, activity_ids: Sequence[str]) -> ChainTrack
 
 def _stalest_sources(run: SimulationRun, wires: Sequence[int]) -> list[int]:
     """Return for each job of an activity the oldest job of the one before it whose data it read on any of several
-    wires.
+    wires. A wire brought nothing where the message of a rival lay in its memory.
     """
-    return (
-        list(map(min, *(run.wires.source_log[wire] for wire in wires)))
-        if len(wires) > 1
-        else run.wires.source_log[wires[0]]
+    if len(wires) == 1:
+        return run.wires.source_log[wires[0]]
+    logs = (
+        [job if job >= 0 else _REPLACED for job in run.wires.source_log[wire]]
+        if run.wires.rivals[wire]
+        else run.wires.source_log[wire]
+        for wire in wires
     )
+    return [-1 if job == _REPLACED else job for job in map(min, *logs)]
 
 
 def _jointly_forwarded(run: SimulationRun, wires: Sequence[int]) -> frozenset[int] | None:

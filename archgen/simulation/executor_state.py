@@ -31,6 +31,8 @@ _WRITTEN_ORDERS: dict[SchedulingOrder, int] = {
     "round_robin": TAKE_TURNS,
 }
 _ORDERS_BY_PRIORITY = (None, "fixed_priority", "non_preemptive")
+_SWITCH_NS = 5_000_000
+"""After so long a thread of CPython lets another one compute (`sys.getswitchinterval`)."""
 _SLICES_NS = (100_000, 1_000_000, 5_000_000, 20_000_000)
 """Time slices of a scheduler that takes turns, of which each run draws one."""
 
@@ -101,8 +103,13 @@ class ExecutorStates:
         # A wait set lists timers first, then subscriptions, services and clients, each in the order of creation, which
         # nobody writes.
         self.callbacks = [
-            tuple(sorted(dice.sample(callbacks, len(callbacks)), key=lambda callback: plan.callbacks[callback].kind))
-            for callbacks in members
+            tuple(
+                sorted(
+                    dice.sample(callbacks, len(callbacks)),
+                    key=lambda callback: plan.callbacks[callback].kind if executor.serves_by_kind else 0,
+                )
+            )
+            for callbacks, executor in zip(members, plan.executors, strict=True)
         ]
         self.order = _draw_orders([executor.order for executor in plan.executors], _ANY_EXECUTOR, dice, last_turn)
         self.ranks = {callback: dice.random() for callbacks in self.callbacks for callback in callbacks}
@@ -116,6 +123,11 @@ class ExecutorStates:
             for callbacks, executor in zip(self.callbacks, plan.executors, strict=True)
         ]
         """The callback of an executor that has nothing to choose; -1 for all others."""
+        self.is_serial = [executor.is_serial for executor in plan.executors]
+        self.computing_thread = [-1] * count
+        """The thread that computes where one does at a time; -1 for none."""
+        self.held_threads: list[list[int]] = [[] for _ in range(count)]
+        """The threads that would like to compute meanwhile."""
         self.waiting_count = [0] * count
         """Jobs and samples that no thread has begun."""
         self.idle_threads: list[list[int]] = [[] for _ in range(count)]
@@ -189,7 +201,8 @@ class ProcessorStates:
             for index, (processor, scheduler) in enumerate(zip(processors, self.scheduler, strict=True))
         ]
         slice_time = max(1, int(dice.choice(_SLICES_NS) / plan.unit))
-        self.has_slices = TAKE_TURNS in self.scheduler
+        self.has_slices = TAKE_TURNS in self.scheduler or any(executor.is_serial for executor in plan.executors)
+        self.switch_time = max(1, int(_SWITCH_NS / plan.unit))
         self.slice_time = [slice_time if scheduler == TAKE_TURNS else 0 for scheduler in self.scheduler]
         self.ready: list[list[tuple[int, int, int]]] = [[] for _ in processors]
         self.running: list[list[int]] = [[] for _ in processors]

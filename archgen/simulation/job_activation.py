@@ -105,7 +105,7 @@ def read_inputs(run: SimulationRun, now: int, activity: int, job: Job) -> None:
         if wires.newest_job[wire] > job[2]:
             dropped_samples = _take_sample(run, wire, job[2])
         else:
-            wires.newest_job[wire] = job[2]
+            keep_sample(run, wire, job[2])
     elif wire == ALL_WIRES:
         dropped_samples = _take_joint_samples(run, now, activity, job[2])
     for queue in wires.sampled_queues[activity]:
@@ -123,7 +123,7 @@ def read_inputs(run: SimulationRun, now: int, activity: int, job: Job) -> None:
             wires.source_log[wire].append(wires.newest_job[wire])
     activities.started[activity] += 1
     for wire, sample in dropped_samples:
-        wires.newest_job[wire] = sample
+        keep_sample(run, wire, sample)
 
 
 def _record_read_ages(run: SimulationRun, now: int, activity: int) -> None:
@@ -139,8 +139,8 @@ def _take_sample(run: SimulationRun, wire: int, sample: int) -> Sequence[tuple[i
     """Let a job that starts read the sample that fired it. Return the wire and what `every` or `throttle` has dropped there
     since then: that came later, and stays for the next job.
     """
-    newest_job = run.wires.newest_job
-    newest, newest_job[wire] = newest_job[wire], sample
+    newest = run.wires.newest_job[wire]
+    keep_sample(run, wire, sample)
     return ((wire, newest),) if newest > sample and run.wires.keeps_order[wire] else ()
 
 
@@ -160,9 +160,12 @@ def _take_joint_samples(
     ]
 
 
-def keep_dropped(run: SimulationRun, wire: int, sample: int) -> None:
-    """Store a sample that `every` or `throttle` has dropped, for the next job."""
-    run.wires.newest_job[wire] = sample
+def keep_sample(run: SimulationRun, wire: int, sample: int) -> None:
+    """Keep a sample for the jobs to come, in place of what came to the same memory before."""
+    newest_job = run.wires.newest_job
+    newest_job[wire] = sample
+    for rival in run.wires.rivals[wire]:
+        newest_job[rival] = -1
 
 
 def stamp_of(run: SimulationRun, wire: int, sample: int) -> int:

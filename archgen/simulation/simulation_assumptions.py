@@ -54,9 +54,7 @@ def list_random_choices(system: TimingSystem) -> tuple[str, ...]:
     callback_counts = Counter(
         key for activity in activities for key in (activity.executor, *(activity.executor for _ in activity.storing))
     )
-    is_order_open = any(
-        executor.order is None and callback_counts[key] > 1 for key, executor in executors.items()
-    ) or any(threads == 1 for name, threads in system.threads.items() if f"container {name}" not in executors)
+    is_order_open = any(executor.order is None and callback_counts[key] > 1 for key, executor in executors.items())
     # In the wait set of rclcpp the order of creation counts, and nobody writes that.
     is_creation_open = any(executor.order == "ros2_executor" for executor in executors.values())
     used_resources = {key for activity in activities for key in activity.uses}

@@ -20,8 +20,8 @@ Read the folders in this order; each one imports only from those before it and f
 - `chains`: end to end. `trigger_arrivals`, `step_delays` (what a step adds), `cost_network` and `path_search` (which
   path is worst), `chain_bounds` (the result); then what is asked about it: reasons (`figure_explanations`, `gap_formulas`,
   `working_lines`), `chain_advice`, sensitivity, measurements.
-- `search`: what is found by analysing changes. `change_trials` (tries them), `largest_step`, `tried_figures`; then `change_candidates`
-  and `proving_changes` (what would prove a chain), `chain_budgets` (how much each element may take).
+- `search`: what is found by analysing changes. `change_trials` (tries them), `run_configurations` and `proposals` (how things
+  would have to run for chains to be in time), `chain_budgets` (how much each element may take).
 
 `analysis` holds the results of one run, `run_analysis` makes them. docs/timing.md has the formulas and their sources.
 """

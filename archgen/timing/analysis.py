@@ -98,7 +98,8 @@ class MatchFigures:
 class RunResponse:
     """How long a run takes at most, in ns: from the event that enters a core until an activity there has ended.
 
-    `arcs` are the arcs by which a run comes to the activity: it starts at the end of the one before, on the same core.
+    `arcs` are the arcs by which a run comes to the activity: it starts at the end of the one before, on the same core, or
+    behind a link.
     """
 
     worst: TimingValue
@@ -221,6 +222,8 @@ class Analysis:
     services: Mapping[str, ServiceLoad] = field(default_factory=dict)
     runs: Mapping[str, RunResponse] = field(default_factory=dict)
     """The runs that end at each activity that something on its own core fires."""
+    host_runs: Mapping[str, RunResponse] = field(default_factory=dict)
+    """The same over hosts that fire one another in turn, pinned cores and links."""
     matches: Mapping[str, MatchFigures] = field(default_factory=dict)
     """What is sure of those whose inputs are matched by time."""
     resources: Mapping[str, ResourceLoad] = field(default_factory=dict)

@@ -62,7 +62,6 @@ class _Maker:
             self.cores,
             resources=self.resources,
             executors=self.executors,
-            threads=self.threads,
             bandwidths={"l": None},
         )
 

@@ -66,7 +66,6 @@ def test_several_threads_of_a_container_that_waits_keep_several_cores_busy() -> 
         {"pc": 2},
         resources={"gpu": SharedResource("gpu", "pc", None)},
         executors={"box": Executor("box", 2, "pc"), "x": Executor("x", 1, "pc")},
-        threads={"box": 2},
         bandwidths={},
     )
     bound = analyse_system(of).responses["x"].worst.value

@@ -92,4 +92,4 @@ def _list_advice(analysis: Analysis, chains: Mapping[str, ChainResult]) -> Itera
             yield f"{result.id}: {basis}"
         if result.spread is not None:
             yield f"{result.id}: its end may jitter by {format_duration(result.spread)}"
-        yield from (f"{result.id}: {sentence}" for sentence in advise_on_chain(analysis, result) or ())
+        yield from (f"{result.id}: {sentence}" for sentence in advise_on_chain(analysis, result) or () if sentence)

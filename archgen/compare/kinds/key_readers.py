@@ -11,7 +11,7 @@ from fractions import Fraction
 from typing import Any
 
 from archgen.bringup.start_plan import resolve_conditions
-from archgen.compare.kinds import component_keys, promise_keys, type_readers
+from archgen.compare.kinds import component_keys, promise_keys
 from archgen.compare.kinds.key_spec import ReadContext, Reader
 from archgen.compare.normal_values import freeze_value, last_part, parameter_leaves, unordered_values
 from archgen.frozen import replace
@@ -20,6 +20,7 @@ from archgen.model.component import PATTERN_GROUP
 from archgen.model.coordinate_frames import Frame
 from archgen.model.declared_timing import InputTiming, OutputTiming, Timing
 from archgen.model.deployment import Host, Link
+from archgen.model.message_types import ConceptualType, DataField
 from archgen.model.node import Node
 from archgen.model.quantity import Quantity
 from archgen.model.requirement import Requirement
@@ -27,6 +28,34 @@ from archgen.model.start_up import StartTarget, StartUp
 from archgen.model.use_case_steps import StepEnd
 from archgen.model.variant import Variant
 from archgen.timing.figures.figure_wording import format_rate
+
+
+def is_own_type(conceptual_type: ConceptualType) -> bool:
+    """Whether the project declares a type."""
+    return conceptual_type.origin == "project" and bool(conceptual_type.at.file)
+
+
+def _read_fields(conceptual_type: ConceptualType, context: ReadContext) -> Mapping[str, str]:
+    """Return the conceptual types that fields hold, by the field; of a generic type all that is written."""
+    if not is_own_type(conceptual_type):
+        return {}
+    types = context.architecture.types
+    values = {
+        f"{part}.{field.name}" if part else field.name: _describe_field(field, context)
+        for part, field in conceptual_type.list_fields()
+        if conceptual_type.generic or field.element_type in types
+    }
+    if conceptual_type.generic:
+        values |= {each.name: f"{each.type} {each.value}" for each in conceptual_type.constants}
+        values |= {name: str(number) for number, name in enumerate(conceptual_type.values)}
+    return values
+
+
+def _describe_field(field: DataField, context: ReadContext) -> str:
+    if field.element_type in context.architecture.types:
+        return f"{context.common_id('type', field.element_type)}{field.array}"
+    default = field.default if isinstance(field.default, str | None) else f"[{', '.join(field.default)}]"
+    return " ".join(filter(None, (field.type, default, field.meaning)))
 
 
 def _read_ros_name(node: Node, _context: ReadContext) -> str | None:
@@ -279,7 +308,7 @@ READERS: Mapping[tuple[str, str], Reader] = {
     ("input", "medium"): component_keys.read_medium,
     ("output", "medium"): component_keys.read_medium,
     ("output", "deprecated."): promise_keys.find_output_deprecation,
-    ("type", "fields."): type_readers.read_fields,
+    ("type", "fields."): _read_fields,
     ("type", "deprecated."): promise_keys.find_type_deprecation,
     ("frame", "by"): _read_writer,
     ("promise", "range"): promise_keys.read_range,

@@ -10,6 +10,7 @@ from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.element_likeness import letter_pairs
 from archgen.compare.element_relations import ElementRelations, project_messages
 from archgen.compare.kinds.element_owners import CO_OWNERS, find_type_owner, read_owner
+from archgen.compare.kinds.key_readers import is_own_type
 from archgen.compare.kinds.key_spec import Effect, KeySpec, ReadContext, Worsening
 from archgen.compare.kinds.kind_spec import (
     NAME_FEATURES,
@@ -20,7 +21,6 @@ from archgen.compare.kinds.kind_spec import (
     text_feature,
     value_feature,
 )
-from archgen.compare.kinds.type_readers import is_own_type
 from archgen.compare.normal_values import unordered_values
 from archgen.derivation.wire.remap_rules import NodeNames
 from archgen.derivation.writing_endpoints import flow_of_use

@@ -6,6 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
 
+from archgen.compare.agreements import hash_fallen_limit
 from archgen.compare.asked_limits import (
     AskedLimits,
     LimitKey,
@@ -15,7 +16,6 @@ from archgen.compare.asked_limits import (
     list_reliers,
     read_limits,
 )
-from archgen.compare.change_hashes import hash_fallen_limit
 from archgen.compare.comparison import LimitChange
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
 from archgen.compare.losses.separated_causes import CauseSeparator, SeparatedCauses

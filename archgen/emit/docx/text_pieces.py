@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from archgen.emit.docx.docx_writer import ContentsEntry, DocxWriter
-from archgen.emit.docx.heading_numbers import format_heading_number
+from archgen.emit.docx.list_numbering import format_heading_number
 from archgen.emit.docx.page_flow import FlowPiece
 from archgen.emit.docx.style_table import HEADING_LEVELS
 from archgen.emit.docx.text_metrics import CODE_SCALE, measure_code, measure_word, split_name

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from archgen.emit.graphviz import layout_engine
 from archgen.emit.graphviz.box_styles import style_box
 from archgen.emit.graphviz.framed_layout import find_rank_distance, read_frames, write_frames
+from archgen.emit.graphviz.group_order import WrappedRanks, route_between_rows, wrap_ranks
 from archgen.emit.graphviz.label_places import clear_titles, declutter_labels, sample_line
 from archgen.emit.graphviz.placed_scene import (
     DotAttributes,
@@ -17,7 +18,6 @@ from archgen.emit.graphviz.placed_scene import (
     format_attributes,
     read_scene,
 )
-from archgen.emit.graphviz.rank_wrapping import WrappedRanks, route_between_rows, wrap_ranks
 from archgen.emit.graphviz.styled_graph import (
     StyledGraph,
     frame_attributes,

@@ -1,22 +1,16 @@
-"""What is said of chains without a bound or beyond it: what the bound lacks, the run in which one is late, what would prove it."""
+"""What is said of chains without a bound or beyond it: what the bound lacks, what is left, the run in which one is late."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from fractions import Fraction
+from collections.abc import Iterable
 
 from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.safe_text import make_visible
-from archgen.diagnostics.text_columns import TextRow
-from archgen.simulation.chain_evidence import ChainEvidence
 from archgen.simulation.chain_witnesses import ChainWitness
 from archgen.timing.analysis import Analysis, ChainResult
-from archgen.timing.chains.chain_advice import ChainAdvice
 from archgen.timing.chains.unfound_bounds import describe_unfound_places, find_overloaded_hosts, find_unfound_places
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import NO_MATCH_NOTE, NO_USE_NOTE, UNLINKED_NOTE
-from archgen.timing.search.proving_changes import ChainRemedy
 from archgen.timing.system.core_placement import is_missing_cores
 from archgen.timing.system.timing_system import TimingSystem
 
@@ -105,16 +99,6 @@ def _describe_basis(result: ChainResult) -> str:
     return "(what is known) " if any(value.value for value in values) else "(periods only) "
 
 
-REMEDY_TITLE = "What would prove them, found by trying"
-_MAX_NAMED = 4
-_KIND_WORDS = {
-    "wcet": "execution time",
-    "period": "rate",
-    "callback_groups": "callback group",
-    "reentrant": "callback group",
-}
-
-
 def describe_slack(result: ChainResult) -> str:
     """Return how much of its deadline a chain's bound leaves, or by how much it is above it: `252.1 ms left`."""
     if result.slack is None:
@@ -129,44 +113,3 @@ def describe_witness(chain_id: str, witness: ChainWitness | None) -> str:
         return ""
     command = f"archgen simulate --seed {witness.seed} --chain {chain_id} --seconds {witness.seconds}"
     return f"seen in `{command}`: {figure_wording.format_duration(witness.longest)}"
-
-
-def list_remedy_rows(results: Mapping[str, ChainResult], evidence: ChainEvidence) -> Iterator[TextRow]:
-    """Yield for each chain that is not met the change that would prove it, or what was tried."""
-    yield from ((key, *describe_chain_remedy(remedy)) for key, remedy in evidence.remedies.items() if key in results)
-
-
-def describe_chain_remedy(remedy: ChainRemedy) -> tuple[str, ...]:
-    """Return the change that proves a chain as `--set` writes it, and the bound then; or what was tried."""
-    if remedy.changes:
-        options = " ".join(f"--set {_quote_option(str(change))}" for change in remedy.changes)
-        return make_visible(
-            options
-        ), f"then at most {figure_wording.format_duration(remedy.bound.value or Fraction(0))}"
-    more_text = "; more could be tried" if remedy.is_cut else ""
-    return (f"nothing of what was tried: {_describe_tried(remedy)}{more_text}",)
-
-
-def replace_advice(advice: ChainAdvice, remedy: ChainRemedy | None) -> ChainAdvice:
-    """Return the sentences on a chain, with the change that proves it as what to do, where one was found."""
-    if remedy is None or not remedy.changes:
-        return advice
-    change, bound = describe_chain_remedy(remedy)
-    return advice._replace(first_step=f"This would prove it, found by trying: {change} ({bound}).")
-
-
-def _describe_tried(remedy: ChainRemedy) -> str:
-    """Return what was tried to prove a chain: `priority of a, b; core of a`."""
-    names_by_word: dict[str, dict[str, None]] = {}
-    for kind, names in remedy.tried:
-        names_by_word.setdefault(_KIND_WORDS.get(kind, kind), {}).update(dict.fromkeys(names))
-    phrases = [
-        f"{word} of {figure_wording.join_first_names(tuple(names), _MAX_NAMED)}"
-        for word, names in names_by_word.items()
-    ]
-    return "; ".join(phrases) or "nothing there can be changed"
-
-
-def _quote_option(text: str) -> str:
-    """Return an option's value as a shell takes it."""
-    return text if all(letter.isalnum() or letter in "._-=,/:" for letter in text) else f"'{text}'"

@@ -8,7 +8,7 @@ from typing import Any
 
 from archgen.diagnostics.text_columns import TextRow, align_rows
 from archgen.emit.data import timing_json
-from archgen.emit.terminal import chain_gaps
+from archgen.emit.terminal import chain_gaps, chain_remedies
 from archgen.emit.terminal.chain_gaps import describe_gaps, describe_slack
 from archgen.emit.terminal.timing_text import format_figure, format_missing
 from archgen.simulation.chain_evidence import NO_EVIDENCE, ChainEvidence
@@ -84,12 +84,13 @@ def format_chain(  # noqa: PLR0913, PLR0917 - what is shown of one chain
     yield from align_rows(rows, width)
     if result.id in evidence.witnesses:
         yield f"  {chain_gaps.describe_witness(result.id, evidence.witnesses[result.id])}"
-    advice, remedy = advise_on_chain(analysis, result), evidence.remedies.get(result.id)
+    advice, proposal = advise_on_chain(analysis, result), evidence.proposal
     if advice is not None:
         yield ""
-        yield from (f"  {sentence}" for sentence in chain_gaps.replace_advice(advice, remedy) if sentence)
-    if remedy is not None and (advice is None or not remedy.changes):
-        yield f"  what would prove it: {', '.join(chain_gaps.describe_chain_remedy(remedy))}"
+        yield from (f"  {sentence}" for sentence in advice if sentence)
+    if proposal is not None and result.id in proposal.tried[0].late:
+        head = f" ({proposal.best.words}: `archgen timing --propose`)" if proposal.best.changes else ""
+        yield f"  what would prove it{head}: {chain_remedies.describe_remedy(proposal, result.id)}"
     for assumption in list_assumptions(result.bound) if result.terms else ():
         yield f"  assumes: {assumption}"
 

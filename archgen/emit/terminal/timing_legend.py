@@ -40,6 +40,7 @@ _TIERS = {
     "edf": "the earliest deadline first",
     "cores": "several cores, holds for any order of their work",
     "whole host": "several cores taken as one, holds for any order of their work",
+    "whole way": "ways over hosts and links as wholes, holds for any order of their work",
     "unknown": "an execution time, or the number of cores, is not written",
 }
 _SIGNS = {

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
 
 from archgen.diagnostics.text_columns import TextRow, format_section
-from archgen.emit.terminal import chain_gaps, timing_legend
+from archgen.emit.terminal import chain_gaps, chain_remedies, timing_legend
 from archgen.emit.terminal.chain_gaps import describe_gaps
 from archgen.simulation.chain_evidence import NO_EVIDENCE, ChainEvidence
 from archgen.timing.analysis import Analysis, ChainResult, HostLoad
@@ -33,10 +33,10 @@ def format_timing(
     sections = (
         ("Chains: largest reaction time (= largest data age)", _chain_rows(analysis, chains.values(), evidence)),
         (
-            "What is late or not proven to be in time, why, and what to do",
-            _advice_rows(analysis, chains.values(), evidence),
+            "What is late or not proven to be in time, and why",
+            _advice_rows(analysis, chains.values()),
         ),
-        (chain_gaps.REMEDY_TITLE, chain_gaps.list_remedy_rows(chains, evidence)),
+        (chain_remedies.REMEDY_TITLE, chain_remedies.list_remedy_rows(evidence.proposal)),
         ("Hosts", _host_rows(analysis)),
         ("Resources: load, and longest time from asking until done", _resource_rows(analysis)),
         ("Links", _link_rows(analysis)),
@@ -74,13 +74,12 @@ def _chain_rows(analysis: Analysis, chains: Iterable[ChainResult], evidence: Cha
         )
 
 
-def _advice_rows(analysis: Analysis, chains: Iterable[ChainResult], evidence: ChainEvidence) -> Iterator[TextRow]:
-    """Yield three sentences on each chain that does not surely meet its deadline, misses first."""
+def _advice_rows(analysis: Analysis, chains: Iterable[ChainResult]) -> Iterator[TextRow]:
+    """Yield what is known of each chain that does not surely meet its deadline, misses first."""
     for verdict in ("missed", "not proven", "open"):
         for result in chains:
             advice = advise_on_chain(analysis, result) if result.verdict == verdict else None
             if advice is not None:
-                advice = chain_gaps.replace_advice(advice, evidence.remedies.get(result.id))
                 yield from zip((result.id, "", ""), (sentence for sentence in advice if sentence), strict=False)
 
 
@@ -114,7 +113,7 @@ def _count_unfound(analysis: Analysis, load: HostLoad) -> str:
 
 
 def _describe_undecided(analysis: Analysis, load: HostLoad) -> str:
-    """Say of an undecided host which of its elements may be activated again before they are done, and what helps."""
+    """Say of an undecided host which of its elements may be activated again before they are done."""
     if load.verdict != "undecided":
         return ""
     names = tuple(
@@ -122,12 +121,7 @@ def _describe_undecided(analysis: Analysis, load: HostLoad) -> str:
         for name, _ in load.activity_shares
         if not is_done_in_time(analysis.system, name, analysis.paces[name], analysis.responses[name])
     )
-    return (
-        f"may not be done before they are due again: {figure_wording.join_first_names(names)}; shorten them, pin them "
-        "(`core:`), or give them a priority"
-        if names
-        else ""
-    )
+    return f"not proven to be done before they are due again: {figure_wording.join_first_names(names)}" if names else ""
 
 
 def _format_bounds(load: HostLoad) -> str:

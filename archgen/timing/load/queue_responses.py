@@ -31,7 +31,6 @@ from archgen.timing.system.core_placement import ProcessingResource
 from archgen.timing.system.thread_pools import (
     count_entities,
     find_crowded_pools,
-    find_pool,
     is_reentrant,
     list_waiting_arcs,
 )
@@ -173,13 +172,11 @@ def _find_order(
     system: TimingSystem, resource: ProcessingResource, members: Sequence[Activity]
 ) -> tuple[SchedulingOrder | None, bool]:
     """Return the order of a queue, and whether it is that of a core."""
-    if any(activity.uses for activity in members):
+    if any(activity.suspends for activity in members):
         return None, False  # who waits for a resource leaves the core to others
     if len(resource.units) == 1:
-        pool = find_pool(system, members[0])
         executor = system.executors.get(members[0].executor)
-        is_thread = pool is not None and pool.threads == 1
-        return (executor.order if executor is not None and is_thread else None), False
+        return (executor.order if executor is not None and executor.threads == 1 else None), False
     is_plain = all(len(unit) == 1 for unit in resource.units) and not any(is_reentrant(system, a) for a in members)
     if not is_plain or find_crowded_pools(system, members) or resource.host is None or len(resource.core_set) != 1:
         return None, False

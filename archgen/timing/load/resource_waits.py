@@ -47,10 +47,15 @@ def find_users(system: TimingSystem, resource_id: str) -> tuple[str, ...]:
 
 
 def find_use_times(state: PropagationState, name: str, budget: SearchBudget) -> int | UnknownCause:
-    """Return how long an activation waits for all resources that it uses, and uses them, in ticks."""
+    """Return how long an activation waits for all resources and uses them, and waits for the world outside, in ticks."""
     times = [find_use_time(state, name, resource_id, budget) for resource_id in state.system.activities[name].uses]
     causes = [time for time in times if isinstance(time, UnknownCause)]
-    return unite_causes(causes) if causes else sum(time for time in times if not isinstance(time, UnknownCause))
+    own_wait = state.system.activities[name].wait
+    return (
+        unite_causes(causes)
+        if causes
+        else sum((time for time in times if not isinstance(time, UnknownCause)), own_wait)
+    )
 
 
 def find_use_time(state: PropagationState, name: str, resource_id: str, budget: SearchBudget) -> int | UnknownCause:
@@ -83,13 +88,13 @@ def _find_order(system: TimingSystem, resource_id: str) -> SchedulingOrder | Non
 
 
 def thread_key(activity: Activity) -> str:
-    """Return what runs an activity: its executor, its container, or itself."""
-    return activity.executor or activity.container or activity.id
+    """Return what runs an activity: its executor, or itself."""
+    return activity.executor or activity.id
 
 
 def find_turn_times(system: TimingSystem, name: str) -> int | None:
     """Return how long the uses of an activation take if each comes in the order of arrival; None where one does not."""
-    total = 0
+    total = system.activities[name].wait
     for resource_id in system.activities[name].uses:
         is_fifo = _find_order(system, resource_id) == "fifo"
         time = bound_in_turn(system, name, resource_id, find_users(system, resource_id)) if is_fifo else None
@@ -126,10 +131,8 @@ def bound_in_turn(system: TimingSystem, name: str, resource_id: str, users: Iter
 
 
 def _count_threads(system: TimingSystem, key: str) -> int | None:
-    """Return the threads of an executor or container; None where there is one for each member."""
-    if key in system.executors:
-        return system.executors[key].threads
-    return system.threads.get(key) if key in system.threads else 1
+    """Return the threads of an executor; None where there is one for each member."""
+    return system.executors[key].threads if key in system.executors else 1
 
 
 def _bound_by_arrivals(

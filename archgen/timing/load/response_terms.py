@@ -149,7 +149,7 @@ class ResponseTerms:
     def _list_holds(self, name: str, hold: int, tier: ResponseTier) -> Iterator[FigureWorking]:
         step = self._find_step(name)
         resource = ProcessingResource(name, None, 1, ((name,),)) if step is None else self._steps.resources[step]
-        if resource.waits or self.state.system.activities[name].uses:
+        if resource.waits or self.state.system.activities[name].suspends:
             return
         terms = None
         if step is not None and tier == "whole host":

@@ -52,7 +52,7 @@ class SharedCoreLimits:
         """Return the limit of a way."""
         if key not in self._delays:
             limit = self.of_host.get(key[0])
-            delays = [limit.delay] if limit else []
+            delays = [limit.delay] if limit and limit.delay is not None else []
             if self.backlog and key in self.backlog.delays:
                 delays.append(self.backlog.delays[key])
             self._delays[key] = min(delays, default=None)

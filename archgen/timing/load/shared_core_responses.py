@@ -275,8 +275,10 @@ class SharedCoreSolver:
         response_limit = self.limits.limit_response(name)
         if response_limit is not None and name in self.raised_names:
             self.step_responses[name] = response_limit
-            for number in range(len(self.cores.ways_to[name])):
-                delays[name, number] = self.limits.limit_delay((name, number)) or 0
+            for number, way in enumerate(self.cores.ways_to[name]):
+                before = delays[self.way_before[name, number]] if len(way.steps) > 1 else 0
+                limit = self.limits.limit_delay((name, number))
+                delays[name, number] = before + response_limit if limit is None else limit
             return
         response = self.find_worst(self.paths.look_up((name,)), spend, response_limit).response
         # What a declared response says may be more than is computed: so long it may be pending.
@@ -418,5 +420,5 @@ class SharedCoreSolver:
         if name in self.cause_of:
             return WorstResponse(None, tier, cause)
         response = min(self.step_responses[name], max((way.delay or 0) - way.best_before for way in ways))
-        is_limited = name in self.limits.of_host and response >= self.limits.of_host[name].response
-        return WorstResponse(response, "whole host" if is_limited else tier)
+        limit = self.limits.of_host.get(name)
+        return WorstResponse(response, tier if limit is None or response < limit.response else limit.tier)

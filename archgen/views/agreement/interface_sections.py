@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field
+from typing import TYPE_CHECKING
 
 from archgen.bringup.plan_shapes import StartStep
 from archgen.diagnostics.common_wording import join_words
@@ -17,7 +18,6 @@ from archgen.views.agreement.interface_record import InterfaceRecord
 from archgen.views.agreement.interface_terms import InterfaceEnd, InterfaceTerms
 from archgen.views.agreement.promise_rows import write_promise_table
 from archgen.views.agreement.signature_record import SignatureRecord
-from archgen.views.agreement.term_changes import AgreementChanges, TermChange
 from archgen.views.element_references import message_link
 from archgen.views.elements.element_names import join_surrounding_titles
 from archgen.views.graphs.element_boxes import join_owner_titles
@@ -25,6 +25,9 @@ from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Facts, Inlines, Paragraph, Section, Table, Text, show_facts
 from archgen.views.shapes import drop_empty_columns as tidy
 from archgen.views.timing import timing_tables
+
+if TYPE_CHECKING:
+    from archgen.views.agreement.term_changes import AgreementChanges, TermChange
 
 _STAMP_TYPES = {"builtin_interfaces/msg/Time": "", "time": "", "std_msgs/msg/Header": ".stamp"}
 """Types of fields that are time stamps, or hold one."""

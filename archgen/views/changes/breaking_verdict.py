@@ -8,8 +8,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from archgen.compare import Change, Comparison, PartnerBreak
-from archgen.compare.agreements import AgreementJudge, AgreementTarget, find_partner_id, list_agreement_targets
-from archgen.compare.change_hashes import agreement_key
+from archgen.compare.agreements import (
+    AgreementJudge,
+    AgreementTarget,
+    agreement_key,
+    find_partner_id,
+    list_agreement_targets,
+)
 from archgen.compare.key_phrases import tick_names
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Severity

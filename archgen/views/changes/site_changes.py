@@ -10,7 +10,7 @@ from functools import cached_property
 from typing import Literal, get_args
 
 from archgen.compare import Change, Comparison
-from archgen.compare.text_differences import find_differences
+from archgen.compare.text_meaning import find_differences
 from archgen.views import inline_text
 from archgen.views.changes.change_wording import CHANGE_SIGNS, choose_mark, text_runs
 from archgen.views.changes.comparison_document import ComparisonDocument

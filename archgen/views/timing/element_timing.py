@@ -105,11 +105,12 @@ def _spread_cell(result: ChainResult) -> Inlines:
 
 
 def _list_advice(timing_lookup: TimingLookup, result: ChainResult) -> Iterator[Fact]:
-    """Yield what takes most of a chain that does not surely meet its deadline, and what to do first."""
+    """Yield what takes most of a chain that does not surely meet its deadline, and what is missing."""
     advice = advise_on_chain(timing_lookup.analysis, result)
     if advice is not None:
         yield Fact("why", "Why", inline_text.message_to_inlines(advice.largest_parts))
-        yield Fact("advice", "What to do", inline_text.message_to_inlines(advice.first_step))
+        if advice.first_step:
+            yield Fact("advice", "What to do", inline_text.message_to_inlines(advice.first_step))
 
 
 def describe_assumptions(timing_lookup: TimingLookup, result: ChainResult) -> Iterator[str]:

@@ -26,6 +26,7 @@ TIER_WORDS = {
     "ros2_executor": "by rounds of the executor",
     "cores": "several cores",
     "whole host": "several cores as one",
+    "whole way": "ways over hosts as wholes",
     "unknown": "",
 }
 """How a response time was found, in words; see `Tier` in the timing analysis."""

@@ -70,7 +70,7 @@ def list_late_elements(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator[
 
 
 def _describe_late_chain(result: ChainResult, timing_lookup: TimingLookup) -> Iterator[str]:
-    """Yield by how much a chain is late, what takes most and why, and one thing to do."""
+    """Yield by how much a chain is late, what takes most and why, and what is missing."""
     advice = advise_on_chain(timing_lookup.analysis, result)
     if advice is None:
         yield chain_charts.describe_chain_verdict(result, timing_lookup)

@@ -277,8 +277,8 @@ groups: {g: {components: {
   a: {outputs: {out: std_msgs/msg/Empty}, inputs: {back: a.out}},
   b: {inputs: {i: a.out}}}}}
 nodes:
-  one: {implements: a, publishes: {out: /t}, subscribes: {back: /t}, timing: {period: 10 ms, wcet: 1 ms}}
-  two: {implements: a, publishes: {out: /t}, subscribes: {back: /t}, timing: {period: 10 ms, wcet: 1 ms}}
+  one: {implements: a, publishes: {out: /t}, subscribes: {back: /t}, timing: {period: 10 ms, wcet: 1 ms, inputs: {back: {memory: each_source}}}}
+  two: {implements: a, publishes: {out: /t}, subscribes: {back: /t}, timing: {period: 10 ms, wcet: 1 ms, inputs: {back: {memory: each_source}}}}
   b: {implements: b, timing: {wcet: 1 ms}}
 chains: {output: {through: [a.out, b]}, component: {through: [a, b]}}
 """)

@@ -165,7 +165,8 @@ def test_what_works_only_at_the_start_is_in_nobodys_way(derived: Derived) -> Non
 def test_a_declared_response_is_used_as_it_is(derived: Derived) -> None:
     rows = {"a": periodic("10", "2", "response: 7 ms"), "b": periodic("20", "4", "")}
     found = analyse_architecture(derived(tasks(rows)))
-    assert worst(found) == {"a": 7, "b": 6}
+    # While a waits it is no busy core: what it does then may come together with the next time.
+    assert worst(found) == {"a": 7, "b": 8}
     assert found.responses["a"].worst.assumptions == ("assumed",)
 
 
