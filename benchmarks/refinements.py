@@ -83,10 +83,10 @@ REFINEMENTS = (
     # Several cores.
     Refinement("a host as a whole", "load.whole_hosts:find_whole_hosts", "return whole_hosts", "return {}"),
     Refinement(
-        "what leaves a host as a whole",
+        "what leaves a host, or a way over hosts, as a whole",
         "load.event_models:leaving_model",
-        "if not host_ways or isinstance(leaving, UnknownCause):",
-        "if True:",
+        "for each in bounded_ways if each]",
+        "for each in () if each]",
     ),
     Refinement(
         "each of several cores that others are pinned to",
@@ -259,7 +259,7 @@ REFINEMENTS = (
     ),
     Refinement(
         "messages of one job",
-        "load.match_windows:find_match_windows",
+        "load.match_delays:find_match_windows",
         "if same_source or",
         "if",
     ),

@@ -119,7 +119,7 @@ def find_floors(analysis: Analysis, architecture: Architecture) -> dict[str, Fra
 def _clear_the_way(system: TimingSystem) -> TimingSystem:
     """Return a system in which nothing waits for anything else to be done; links stay as they are."""
     activities = {name: _give_own_core(activity) for name, activity in system.activities.items()}
-    return replace(system, activities=activities, executors={}, resources={}, threads={})
+    return replace(system, activities=activities, executors={}, resources={})
 
 
 def _give_own_core(activity: Activity) -> Activity:
