@@ -83,10 +83,10 @@ REFINEMENTS = (
     # Several cores.
     Refinement("a host as a whole", "load.whole_hosts:find_whole_hosts", "return whole_hosts", "return {}"),
     Refinement(
-        "what leaves a host as a whole",
+        "what leaves a host, or a way over hosts, as a whole",
         "load.event_models:leaving_model",
-        "(state.host_ways_to.get(arc.source, ()), state.transaction_ways",
-        "((), state.transaction_ways",
+        "for each in bounded_ways if each]",
+        "for each in () if each]",
     ),
     Refinement(
         "each of several cores that others are pinned to",
@@ -266,7 +266,7 @@ REFINEMENTS = (
     ),
     Refinement(
         "messages of one job",
-        "load.match_windows:find_match_windows",
+        "load.match_delays:find_match_windows",
         "if same_source or",
         "if",
     ),

@@ -18,7 +18,7 @@ from archgen.timing.analysis import Analysis, ChainTerm, ServiceLoad
 from archgen.timing.chains.chain_bounds import LateChain, find_missed_shares, find_unmet_chains
 from archgen.timing.chains.read_ages import ReadAge, find_read_ages
 from archgen.timing.chains.unfound_bounds import find_overloaded_hosts, find_unfound_places
-from archgen.timing.chains.whole_bounds import WholeBound, WholeLimit, bound_wholes, list_limits
+from archgen.timing.chains.use_case_times import WholeBound, WholeLimit, bound_wholes, list_limits
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.figure_wording import format_duration, join_first_names
 from archgen.timing.figures.value_arithmetic import is_boundless, is_known_bound, is_unfound

@@ -17,7 +17,7 @@ from archgen.model.node import Node
 from archgen.model.port_media import is_physical
 from archgen.model.quantity import Quantity
 from archgen.timing.analysis import Analysis
-from archgen.timing.chains.whole_bounds import LIMIT_KEYS
+from archgen.timing.chains.use_case_times import LIMIT_KEYS
 
 _NS_PER_SECOND = 10**9
 

@@ -14,9 +14,9 @@ Read the folders in this order; each one imports only from those before it and f
   `event_models` (what is activated, arrives and leaves), `load_system` (callbacks that store, priorities that count),
   `storing_waits`, `propagation_steps`, `step_updates` and `event_propagation` (all resources, to a fixed point), `link_queueing` (links as well); `host_loads` and
   `host_verdicts`; last, for whoever asks why, how each figure comes about: `work_terms`,
-  `core_terms`, `shared_core_terms`, `backlog_terms`, `response_terms`.
-- `rates`: how often things happen and what that means, in Hz and ns, with reasons: `rate_table`, `activation_rates`,
-  `triggered_rates`, `output_rates`; then `link_traffic`, `link_terms`, `edge_fit`, `service_waiting`.
+  `core_terms`, `shared_core_terms`, `response_terms`.
+- `rates`: how often things happen and what that means, in Hz and ns, with reasons: `rate_table`,
+  `triggered_rates`, `output_rates`; then `link_traffic`, `edge_fit`, `service_waiting`.
 - `chains`: end to end. `trigger_arrivals`, `step_delays` (what a step adds), `cost_network` and `path_search` (which
   path is worst), `chain_bounds` (the result); then what is asked about it: reasons (`figure_explanations`, `gap_formulas`,
   `working_lines`), `chain_advice`, sensitivity, measurements.

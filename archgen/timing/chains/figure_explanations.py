@@ -21,7 +21,7 @@ from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import is_known_bound, is_unfound, list_assumptions, multiply_value
 from archgen.timing.load.host_loads import activity_share
 from archgen.timing.load.response_terms import ResponseTerms
-from archgen.timing.rates.link_terms import work_out_link
+from archgen.timing.rates.link_traffic import work_out_link
 from archgen.timing.system.timing_system import Activity, Arc
 
 _FIGURE_FORMATS: Mapping[str, Callable[[Fraction], str]] = {

@@ -10,7 +10,7 @@ from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
 from archgen.timing.figures import figure_wording
 from archgen.timing.load.work_terms import FigureWorking, ThreadShare, WorkTerm
-from archgen.timing.rates.link_terms import LinkWorking
+from archgen.timing.rates.link_traffic import LinkWorking
 
 
 class ReasonLine(NamedTuple):

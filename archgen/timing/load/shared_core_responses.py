@@ -24,7 +24,7 @@ from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import UnknownCause, unite_causes
 from archgen.timing.load.busy_windows import DivergedError, SearchBudget, WorstActivation
 from archgen.timing.load.cascade_demand import CascadeDemand
-from archgen.timing.load.core_paths import CorePath, CorePaths, LastStep
+from archgen.timing.load.core_paths import CorePath, CorePaths, LastStep, build_thread_work
 from archgen.timing.load.core_responses import CoreResponses
 from archgen.timing.load.event_streams import (
     EventStream,
@@ -48,7 +48,6 @@ from archgen.timing.load.shared_core_limits import (
 from archgen.timing.load.shared_cores import WayKey
 from archgen.timing.load.storing_waits import hold_beside_others
 from archgen.timing.load.thread_work import DIVERGED_CAUSE, OVERLOAD_CAUSE, WorstResponse
-from archgen.timing.load.way_works import build_thread_work
 from archgen.timing.load.whole_hosts import HostLimit
 from archgen.timing.system.timing_system import samples_inputs
 

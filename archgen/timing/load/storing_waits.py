@@ -21,7 +21,7 @@ from archgen.timing.load.busy_windows import (
 )
 from archgen.timing.load.event_streams import EventStreams, max_arrivals
 from archgen.timing.load.inner_core import urgency_of
-from archgen.timing.load.ranked_threads import RankedThreads
+from archgen.timing.load.response_times import RankedThreads
 from archgen.timing.load.thread_work import (
     DIVERGED_CAUSE,
     OVERLOAD_CAUSE,

@@ -15,8 +15,7 @@ from archgen.views.timing import chain_status, value_format
 if TYPE_CHECKING:
     from archgen.simulation.schedule_log import LateSchedule
     from archgen.timing.chains.fused_inputs import FusedInputs
-    from archgen.timing.chains.use_case_times import UseCaseTimes
-    from archgen.timing.chains.whole_bounds import WholeBound
+    from archgen.timing.chains.use_case_times import UseCaseTimes, WholeBound
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,8 +78,7 @@ def complete_with_chains(analysis: Analysis | None, architecture: Architecture) 
 def bound_chains(analysis: Analysis, architecture: Architecture) -> TimingLookup:
     """Build the look-ups of a timing analysis, with the bounds of all chains, and of the composed components that have limits."""
     from archgen.timing.chains.chain_bounds import bound_all_chains
-    from archgen.timing.chains.use_case_times import bound_use_cases
-    from archgen.timing.chains.whole_bounds import bound_wholes
+    from archgen.timing.chains.use_case_times import bound_use_cases, bound_wholes
 
     lookup = make_timing_lookup(analysis, bound_all_chains(analysis, architecture).values())
     return replace(

@@ -14,8 +14,7 @@ from archgen.timing.figures.timing_values import UnknownCause, unite_causes
 from archgen.timing.load.busy_windows import ActivityWork, DivergedError, SearchBudget
 from archgen.timing.load.event_streams import EventStream
 from archgen.timing.load.link_queueing import settle_links
-from archgen.timing.load.ranked_threads import RankedThreads
-from archgen.timing.load.response_times import AnalysisEffort, find_responses
+from archgen.timing.load.response_times import AnalysisEffort, RankedThreads, find_responses
 from archgen.timing.load.thread_work import ThreadWork
 from archgen.timing.run_analysis import analyse_architecture
 from archgen.timing.system.core_placement import find_resources

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from archgen.timing.load.core_paths import SharedWork, WayWork, build_thread_work, build_way_works
 from archgen.timing.load.shared_cores import SharedCores
-from archgen.timing.load.way_works import SharedWork, WayWork, build_thread_work, build_way_works
 from tests.timing.load.test_idle_backlogs import EVENT, in_ms, prepare
 from tests.timing.sketches import analyse_sketch
 
