@@ -65,7 +65,7 @@ def test_each_late_run_adds_up(seed: int) -> None:
     bounded = [each for each in results.values() if each.bound.complete and each.bound.value]
     for each in bounded:
         deadline = f"{each.id}: {{deadline: {int(each.bound.value or 0) // 2000 or 1} us, "
-        text = re.sub(rf"\b{each.id}: \{{(?=through)", lambda _, new=deadline: new, text)
+        text = re.sub(rf"\b{each.id}: \{{(?=through)", deadline, text)
     witnesses = record_witnesses(text)
     assert all(schedule.longest == witness.longest for witness, schedule in witnesses.values())
     assert witnesses or not bounded or seed in _NEVER_SEEN_LATE
