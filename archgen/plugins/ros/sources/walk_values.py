@@ -1,0 +1,168 @@
+"""What the walk through a program knows of values: texts, parameters, objects, and what it cannot know, with the place of that."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from archgen.plugin.importing import Span
+from archgen.plugins.ros.sources.source_code import Function, SourceClass, SourceFile
+
+
+@dataclass(slots=True, eq=False)
+class UnknownText:
+    """What only running the program would tell."""
+
+    text: str
+    span: Span
+
+
+@dataclass(slots=True, eq=False)
+class Alternatives:
+    """One of several values, by a condition that is not known."""
+
+    values: tuple[Any, ...]
+
+
+@dataclass(slots=True, eq=False)
+class ParameterValue:
+    """The value of a parameter. `value` is what counts: what was given to the node, else the default of the program."""
+
+    name: str
+    value: Any
+    default: Any = None
+
+
+@dataclass(slots=True, eq=False)
+class JoinedText:
+    """A text of several parts of which not all are texts of the program itself."""
+
+    parts: tuple[Any, ...]
+
+
+@dataclass(slots=True, eq=False)
+class ExternalName:
+    """Something of another package, by its name with dots: `rclpy.node.Node`."""
+
+    name: str
+    type_arguments: tuple[str, ...] = ()
+
+
+@dataclass(slots=True, eq=False)
+class FoundEndpoint:
+    """The use of one name by a node."""
+
+    use: str
+    flow: str
+    name: Any
+    message: str
+    span: Span
+    qos: Mapping[str, Any] = field(default_factory=dict)
+    is_conditional: bool = False
+    """Whether it is made only under a condition that is not known."""
+
+
+@dataclass(slots=True, eq=False)
+class FoundNode:
+    """A node that a program makes."""
+
+    span: Span
+    name: Any = None
+    namespace: Any = None
+    endpoints: list[FoundEndpoint] = field(default_factory=list)
+    parameters: dict[str, Any] = field(default_factory=dict)
+    """The parameters that it declares, with their defaults, None for those without."""
+    periods: list[float | None] = field(default_factory=list)
+    """The periods of its timers in seconds, None where that is computed."""
+    is_lifecycle: bool = False
+    pattern_parameters: set[str] = field(default_factory=set)
+
+
+@dataclass(slots=True, eq=False)
+class NodeHandle:
+    """What a program speaks through in place of its node: a node handle of roscpp, an image transport, a waiting subscriber."""
+
+    node: FoundNode
+    prefix: Any = ""
+    kind: str = ""
+    message: str = ""
+
+
+@dataclass(slots=True, eq=False)
+class WalkedObject:
+    """An object of a class of the workspace."""
+
+    made_of: SourceClass
+    fields: dict[str, Any] = field(default_factory=dict)
+    node: FoundNode | None = None
+    """The node that it is, or that it was given."""
+    is_node: bool = False
+    type_values: dict[str, str] = field(default_factory=dict)
+    """What the parameters of its template stand for."""
+
+
+@dataclass(slots=True, eq=False)
+class Callable:
+    """A function, with the object whose method it is and the names around it."""
+
+    function: Function
+    self_object: WalkedObject | None = None
+    around: Any = None
+
+
+@dataclass(slots=True, eq=False)
+class ModuleValue:
+    """A module of Python of the workspace."""
+
+    file: SourceFile
+
+
+@dataclass(slots=True, eq=False)
+class TextStream:
+    """A stream of C++ into which texts are written."""
+
+    parts: list[Any] = field(default_factory=list)
+
+
+def settle(value: Any) -> Any:  # noqa: ANN401 - any value
+    """Return what counts of a value: of a parameter what it is set to, of joined parts the text if all are known."""
+    if isinstance(value, ParameterValue):
+        return settle(value.value)
+    if isinstance(value, JoinedText):
+        parts = [settle(part) for part in value.parts]
+        return "".join(map(str, parts)) if all(isinstance(part, str | int) for part in parts) else value
+    return value
+
+
+def join_texts(parts: Iterable[Any]) -> Any:  # noqa: ANN401 - a text, or its parts
+    """Return a text of parts; as parts where some of them are no texts of the program itself."""
+    flat: list[Any] = []
+    for part in parts:
+        flat += part.parts if isinstance(part, JoinedText) else [part]
+    if all(isinstance(part, str | int | float) for part in flat):
+        return "".join(map(str, flat))
+    return JoinedText(tuple(flat))
+
+
+def show_value(value: Any) -> str:  # noqa: ANN401 - any value
+    """Return what is known of a text, with `*` for the rest."""
+    settled = settle(value)
+    if isinstance(settled, JoinedText):
+        return "".join(show_value(part) for part in settled.parts)
+    return settled if isinstance(settled, str) else str(settled) if isinstance(settled, int | float) else "*"
+
+
+def find_unknown(value: Any) -> str:  # noqa: ANN401 - any value
+    """Return the expression that is not known in a value."""
+    if isinstance(value, UnknownText):
+        return value.text
+    if isinstance(value, ExternalName):
+        return value.name
+    if isinstance(value, ParameterValue):
+        return find_unknown(value.value) or f"the parameter {value.name}"
+    if isinstance(value, JoinedText):
+        return next(filter(None, map(find_unknown, value.parts)), "")
+    if isinstance(value, Alternatives):
+        return "one of " + ", ".join(show_value(each) for each in value.values)
+    return ""
