@@ -9,9 +9,10 @@ views -> emit -> files.
 from __future__ import annotations
 
 import gc
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from archgen import project
 from archgen.checking.all_rules import SHIPPED_RULES, index_all_rules
@@ -27,7 +28,11 @@ from archgen.checking.variant_judging import (
     stand_in_variants,
 )
 from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.model.architecture import Architecture
 from archgen.project import LoadedProject, ParsedSlices, TrackedProject
+from archgen.project.project_loading import load_from_files
+from archgen.syntax.project_files import OverlaidFiles
+from archgen.syntax.yaml_writer import write_yaml
 from archgen.timing.run_analysis import AnalysisMemory
 
 __all__ = [
@@ -43,6 +48,7 @@ __all__ = [
     "index_all_rules",
     "judge_project",
     "keep_variant_findings",
+    "link_slices",
     "list_variant_names",
     "stand_in_variants",
     "transform_project",
@@ -122,6 +128,13 @@ def check_text(text: str) -> tuple[Diagnostic, ...]:
         file = Path(folder) / "project.yaml"
         file.write_text(text, encoding="utf-8")
         return check_project(file).findings
+
+
+def link_slices(data: Mapping[str, Any]) -> Architecture:
+    """Return the architecture of a project that is at hand as plain data, with the names that count on the robot."""
+    text = write_yaml(data).encode()
+    loaded_project = load_from_files(OverlaidFiles(Path(), {project.PROJECT_FILE: text}), project.PROJECT_FILE)
+    return judge_project(loaded_project).architecture
 
 
 def judge_project(

@@ -50,6 +50,17 @@ class _ImportCommand(click.Command):
 @click.option(
     "--into", type=click.Path(path_type=Path), help="The slice of requirements (reqif).  [default: requirements.yaml]"
 )
+@click.option(
+    "--launch",
+    "launch_files",
+    metavar="PACKAGE/FILE",
+    multiple=True,
+    help="The launch file that starts the robot (workspace); several where several are started.",
+)
+@click.option(
+    "--env", "variables", metavar="NAME=VALUE", multiple=True, help="A variable of the environment of launch files."
+)
+@click.option("--distro", metavar="NAME", default="", help="The distribution of ROS (workspace).")
 @click.option("--dry-run", is_flag=True, help="Say what would be taken, and write nothing.")
 @click.option(
     "--format", "form", type=click.Choice(["text", "json"]), default="text", help="How to say what was taken."
@@ -59,6 +70,9 @@ def command(  # noqa: PLR0913 - one for each option
     words: tuple[str, ...],
     output: Path | None,
     into: Path | None,
+    launch_files: tuple[str, ...],
+    variables: tuple[str, ...],
+    distro: str,
     form: str,
     project: Path | None,
     *,
@@ -75,6 +89,15 @@ def command(  # noqa: PLR0913 - one for each option
     if arguments and not import_format.takes_arguments:
         msg = f"{import_format.name} takes no arguments such as {next(iter(arguments))}:=..., as launch files do"
         raise click.UsageError(make_visible(msg))
+    given: dict[str, Any] = {"arguments": arguments} if import_format.takes_arguments else {}
+    if import_format.takes_environment:
+        given["environment"] = _read_variables(variables)
+    else:
+        _refuse_options(import_format, {"--env": variables})
+    if import_format.takes_launch_files:
+        given |= {"launch_files": launch_files, "distro": distro}
+    else:
+        _refuse_options(import_format, {"--launch": launch_files, "--distro": distro})
     if import_format.has_requirements:
         from archgen.cli.requirement_import import import_requirements
 
@@ -86,7 +109,17 @@ def command(  # noqa: PLR0913 - one for each option
         return
     _refuse_options(import_format, {"--into": into})
     target = _find_target(output, project)
-    _import_slices(import_format, files, arguments, target, form, merge=merge, dry_run=dry_run)
+    words = (*(f"{name}:={value}" for name, value in arguments.items()), *launch_files, *variables)
+    _import_slices(import_format, files, given, words, target, form, merge=merge, dry_run=dry_run)
+
+
+def _read_variables(words: Sequence[str]) -> dict[str, str]:
+    pairs = [word.partition("=") for word in words]
+    wrong = next((word for word, (name, joint, _) in zip(words, pairs, strict=True) if not name or not joint), None)
+    if wrong is not None:
+        msg = f"`{wrong}` is no variable of the environment: write `--env NAME=VALUE`"
+        raise click.UsageError(make_visible(msg))
+    return {name: value for name, _, value in pairs}
 
 
 def _take_arguments(words: Sequence[str]) -> tuple[list[str], dict[str, str]]:
@@ -167,7 +200,8 @@ def _find_target(output: Path | None, project: Path | None) -> Path:
 def _import_slices(  # noqa: PLR0913 - what, where and how
     import_format: ImportFormat,
     files: list[Path],
-    arguments: dict[str, str],
+    given: dict[str, Any],
+    shown_arguments: tuple[str, ...],
     target: Path,
     form: str,
     *,
@@ -177,10 +211,9 @@ def _import_slices(  # noqa: PLR0913 - what, where and how
     from archgen.edit.earlier_import import ImportOrigin
     from archgen.edit.imported_slices import ImportRefusedError, find_known_ids, plan_import
 
-    shown_arguments = tuple(f"{name}:={value}" for name, value in arguments.items())
     origin = ImportOrigin(import_format.name, tuple(file.resolve().name for file in files), shown_arguments)
     known_ids = find_known_ids(origin, target) if merge and import_format.keeps_ids else {}
-    imported = _read_model(import_format, files, arguments, known_ids)
+    imported = _read_model(import_format, files, given, known_ids)
     if not imported.slices:
         _print_account(imported, None, form)
         click.echo("Nothing was written: there is nothing in it that archgen takes.", err=True)
@@ -200,12 +233,11 @@ def _import_slices(  # noqa: PLR0913 - what, where and how
 
 
 def _read_model(
-    import_format: ImportFormat, files: list[Path], arguments: dict[str, str], known_ids: dict[str, str]
+    import_format: ImportFormat, files: list[Path], given: dict[str, Any], known_ids: dict[str, str]
 ) -> ForeignImport:
     try:
-        given = {"arguments": arguments} if import_format.takes_arguments else {}
-        given |= {"known_ids": known_ids} if import_format.keeps_ids else {}
-        imported: ForeignImport = import_format.load_reader()(files, **given)
+        ids = {"known_ids": known_ids} if import_format.keeps_ids else {}
+        imported: ForeignImport = import_format.load_reader()(files, **given, **ids)
     except ForeignFileError as error:
         _print_problem(str(error.span), error.message, error.help_line)
         click.echo("Nothing was written.", err=True)

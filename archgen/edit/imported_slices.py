@@ -153,6 +153,8 @@ def _make_project_data(imported: ForeignImport, root: Path, slices: list[Planned
     data: dict[str, Any] = {"project": {"id": element_ids.make_id(title, "project"), "title": title}}
     if imported.distro:
         data["ros"] = {"distro": imported.distro}
+    if imported.uses_shipped_library:
+        data["libraries"] = {"ros": "builtin"}
     # Without `sources` a project is all YAML below it: what else lies there is none of its files.
     has_others = root.is_dir() and bool(file_patterns.list_yaml_files(FolderFiles(root)))
     return {**data, "sources": [planned.file for planned in slices]} if has_others else data

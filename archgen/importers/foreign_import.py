@@ -48,6 +48,8 @@ class ForeignImport:
     distro: str = ""
     comments: Mapping[str, Mapping[tuple[str | int, ...], str]] = field(default_factory=dict)
     """Comments behind the lines of elements, by file and by the element's path in it."""
+    uses_shipped_library: bool = False
+    """Whether components are of types of the library that ships, as `ros.NAME`."""
 
 
 class ForeignFileError(Exception):

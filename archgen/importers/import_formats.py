@@ -37,6 +37,10 @@ class ImportFormat:
     """Returns the function that takes the files and returns what they hold, or raises ForeignFileError."""
     takes_arguments: bool = False
     """Whether values of launch arguments may be given: `NAME:=VALUE`."""
+    takes_environment: bool = False
+    """Whether the function takes `environment`, too: variables of the environment by their names."""
+    takes_launch_files: bool = False
+    """Whether the function takes `launch_files` and `distro`, too: which of a workspace's launch files start the robot, and its ROS."""
     keeps_ids: bool = False
     """Whether the function takes `known_ids`, too: ids that elements have since an earlier import, by the other tool's."""
     has_requirements: bool = False
@@ -47,7 +51,8 @@ class ImportFormat:
     """Who brings it where it does not ship: package and version."""
 
 
-_FACTS = frozenset({"api", "summary", "endings", "reader", "rank", "takes_arguments", "keeps_ids", "has_requirements"})
+_SWITCHES = ("takes_arguments", "takes_environment", "takes_launch_files", "keeps_ids", "has_requirements")
+_FACTS = frozenset({"api", "summary", "endings", "reader", "rank", *_SWITCHES})
 _NEEDED_FACTS = frozenset({"summary", "endings", "reader"})
 
 
@@ -70,7 +75,7 @@ def list_import_formats() -> dict[str, ImportFormat]:
 
 
 def _make_format(name: str, facts: Mapping[str, Any], load_reader: Callable[[], Any], origin: str = "") -> ImportFormat:
-    switches = {key: facts.get(key, False) for key in ("takes_arguments", "keeps_ids", "has_requirements")}
+    switches = {key: facts.get(key, False) for key in _SWITCHES}
     return ImportFormat(name, facts["summary"], tuple(facts["endings"]), load_reader, **switches, origin=origin)
 
 

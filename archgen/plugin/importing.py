@@ -27,7 +27,8 @@ from archgen.importers.foreign_import import (
 from archgen.model.code_names import make_camel_name
 from archgen.model.element_ids import MAX_ID_LENGTH, is_id, make_id, make_unique_id, spell_in_ascii
 from archgen.model.path_resolver import title_from_id
-from archgen.project.library_reading import find_program_name
+from archgen.pipeline import link_slices
+from archgen.project.library_reading import find_program_name, load_shipped_component_types
 from archgen.syntax.folder_files import open_named_file
 from archgen.syntax.project_files import MAX_BYTES
 from archgen.syntax.yaml_parser import parse_yaml
@@ -62,6 +63,8 @@ __all__ = [
     "find_closest",
     "find_program_name",
     "is_id",
+    "link_slices",
+    "load_shipped_component_types",
     "make_camel_name",
     "make_id",
     "make_unique_id",

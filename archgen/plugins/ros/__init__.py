@@ -19,6 +19,16 @@ PLUGIN = {
             ),
             "reader": "archgen.plugins.ros.launch.launch_import:read_launch",
             "takes_arguments": True,
+            "takes_environment": True,
+        },
+        "workspace": {
+            "rank": 4.5,
+            "summary": "a robot from its workspace: launch files, packages, sources in Python and C++",
+            "endings": (),
+            "reader": "archgen.plugins.ros.workspace.workspace_import:read_workspace",
+            "takes_arguments": True,
+            "takes_environment": True,
+            "takes_launch_files": True,
         },
         "package": {
             "rank": 6,

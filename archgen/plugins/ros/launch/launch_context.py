@@ -139,6 +139,8 @@ class LaunchContext:
         self.scope = LaunchScope()
         self.is_ros_1 = is_ros_1
         self.used: dict[str, str] = {}
+        self.environment: Mapping[str, str] = {}
+        """Variables of the environment in which the launch file is started, as far as they were given."""
         self.asked: set[str] = set()
         """The arguments that ROS 2 was asked for, which needs no declaration of them."""
         self._scopes: list[LaunchScope] = []
@@ -227,7 +229,7 @@ class LaunchContext:
         name = self.resolve(value.parts[0], depth)
         if isinstance(name, UnknownValue):
             return name
-        own = dict(self.scope.environment).get(name)
+        own = dict(self.scope.environment).get(name, self.environment.get(name))
         if own is not None:
             return own
         if len(value.parts) > 1 and value.parts[1] is not None:

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from archgen.plugin import dataclass
 from archgen.plugin.importing import (
     ForeignFileError,
     ForeignImport,
@@ -29,13 +30,37 @@ from archgen.plugins.ros.launch.server_parameters import give_server_parameters
 _ENDINGS = (".launch.py", ".launch.xml", ".launch.yaml", ".launch.yml", ".launch", ".py", ".xml", ".yaml", ".yml")
 
 
-def read_launch(files: Sequence[Path], arguments: Mapping[str, str] | None = None) -> ForeignImport:
+def read_launch(
+    files: Sequence[Path], arguments: Mapping[str, str] | None = None, environment: Mapping[str, str] | None = None
+) -> ForeignImport:
     """Read launch files, or all that lie in folders and that no other one includes. Raise ForeignFileError.
 
-    `arguments` are values of launch arguments by their names, as `ros2 launch` takes them.
+    `arguments` are values of launch arguments by their names, as `ros2 launch` takes them; `environment` are variables
+    that are set where it is called.
     """
+    return _make_import(run_launch_files(files, arguments, environment))
+
+
+@dataclass(frozen=True, slots=True)
+class LaunchedFiles:
+    """What launch files start: by file the nodes, and how many of each construct were taken."""
+
+    run: LaunchRun
+    by_file: Mapping[Path, tuple[list[LaunchedNode], Counter[str]]]
+
+    def choose_nodes(self) -> list[LaunchedNode]:
+        """Return the nodes that count: of several ways to start one node the one of the defaults."""
+        kept = _drop_twins(self.run, {path: nodes for path, (nodes, _) in self.by_file.items()})
+        return [node for nodes, _ in self.by_file.values() for node in nodes if id(node) in kept]
+
+
+def run_launch_files(
+    files: Sequence[Path], arguments: Mapping[str, str] | None = None, environment: Mapping[str, str] | None = None
+) -> LaunchedFiles:
+    """Walk through launch files, or through all that lie in folders and that no other one includes. Raise ForeignFileError."""
     launch_files = LaunchFiles(files)
     run = LaunchRun(launch_files, load_included, arguments)
+    run.context.environment = dict(environment or {})
     given = [path.resolve() for path in files if not path.is_dir()]
     entries = given or launch_files.list_launch_files()
     if not entries:
@@ -57,11 +82,12 @@ def read_launch(files: Sequence[Path], arguments: Mapping[str, str] | None = Non
         run.add_note("folder", words, Span.of_file(root.name or "/"), "give folders that hold less", fate="noted")
     if not given:
         launched = {path: each for path, each in launched.items() if path not in run.included} or launched
-    return _make_import(run, launched)
+    return LaunchedFiles(run, launched)
 
 
-def _make_import(run: LaunchRun, launched: Mapping[Path, tuple[list[LaunchedNode], Counter[str]]]) -> ForeignImport:
-    kept = _drop_twins(run, [node for nodes, _ in launched.values() for node in nodes])
+def _make_import(files: LaunchedFiles) -> ForeignImport:
+    run, launched = files.run, files.by_file
+    kept = {id(node) for node in files.choose_nodes()}
     for_all = give_server_parameters(
         run, run.server_parameters, [node for nodes in launched.values() for node in nodes[0] if id(node) in kept]
     )
@@ -71,7 +97,7 @@ def _make_import(run: LaunchRun, launched: Mapping[Path, tuple[list[LaunchedNode
     names: set[str] = set()
     for path, (nodes, _) in launched.items():
         name = make_unique_id(
-            f"{make_id(_find_stem(path), 'launch')}_launch".replace("_launch_launch", "_launch"), names
+            f"{make_id(find_stem(path), 'launch')}_launch".replace("_launch_launch", "_launch"), names
         )
         names.add(name)
         sections = maker.make_sections([node for node in nodes if id(node) in kept])
@@ -82,18 +108,27 @@ def _make_import(run: LaunchRun, launched: Mapping[Path, tuple[list[LaunchedNode
             slices[f"{name}.yaml"] = sections
             comments[f"{name}.yaml"] = maker.comments
     taken = sum((counts for _, counts in launched.values()), Counter[str]())
-    title = title_from_id(make_id(_find_stem(next(iter(launched))), "robot"))
+    title = title_from_id(make_id(find_stem(next(iter(launched))), "robot"))
     return ForeignImport(slices, dict(sorted((+taken).items())), tuple(run.notes), title, comments=comments)
 
 
-def _find_stem(path: Path) -> str:
+def find_stem(path: Path) -> str:
+    """Return the name of a launch file without what says that it is one."""
     name = path.name
     return next((name[: -len(ending)] for ending in _ENDINGS if name.lower().endswith(ending)), path.stem) or "robot"
 
 
-def _drop_twins(run: LaunchRun, nodes: Sequence[LaunchedNode]) -> set[int]:
-    """Return which nodes are taken, by identity: of those with one full name the one that runs by the defaults."""
+_WAY_KEYS = ("package", "executable", "plugin", "arguments", "remaps", "parameters", "environment")
+
+
+def _drop_twins(run: LaunchRun, nodes_by_file: Mapping[Path, Sequence[LaunchedNode]]) -> set[int]:
+    """Return which nodes are taken, by identity: of those with one full name the one that runs by the defaults.
+
+    Two that one file starts without any condition both run, and are both taken: that they share a name is the robot's fault.
+    """
     kept: dict[str, LaunchedNode] = {}
+    nodes = [node for nodes in nodes_by_file.values() for node in nodes]
+    files = {id(node): path for path, nodes in nodes_by_file.items() for node in nodes}
     # What is no node may be called as another one.
     free = [node for node in nodes if not node.full_name or node.form == "program"]
     for node in nodes:
@@ -103,15 +138,19 @@ def _drop_twins(run: LaunchRun, nodes: Sequence[LaunchedNode]) -> set[int]:
         if other is None:
             kept[node.full_name] = node
             continue
+        if not node.conditions and not other.conditions and node.form == "node" and files[id(node)] == files[id(other)]:
+            free.append(node)
+            continue
         winner, loser = (node, other) if node.is_on and not other.is_on else (other, node)
         kept[node.full_name] = winner
-        is_same = (winner.package, winner.executable, winner.plugin) == (loser.package, loser.executable, loser.plugin)
-        if not is_same or winner.form != loser.form:
+        differing = [key for key in _WAY_KEYS if getattr(winner, key) != getattr(loser, key)]
+        if differing or winner.form != loser.form:
             conditions = list(dict.fromkeys(loser.conditions))
             words = f" (only {' and '.join(conditions)})" if conditions else ""
             message = f"another action starts `{loser.full_name}`, too: this one{words} is kept as a hint"
             run.add_note(loser.word, message, loser.span, fate="noted")
-            way = {key: getattr(loser, key) for key in ("package", "executable", "plugin")}
+            keys = {*differing, "package", "executable", "plugin"}
+            way = {key: getattr(loser, key) for key in _WAY_KEYS if key in keys}
             way |= {"container": loser.container_name, "conditions": conditions}
             winner.other_ways += [{key: value for key, value in way.items() if value}, *loser.other_ways]
     for node in nodes:

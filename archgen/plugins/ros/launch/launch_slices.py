@@ -20,7 +20,7 @@ class SliceMaker:
 
     def __init__(self, run: LaunchRun) -> None:
         self._run = run
-        self._node_ids: dict[int, str] = {}
+        self._ids_of_nodes: dict[int, str] = {}
         self._container_ids: dict[str, str] = {}
         self._containers: dict[int, str] = {}
         self._used: set[str] = set()
@@ -46,6 +46,10 @@ class SliceMaker:
             "nodes": {node_id: self._write_node(node, node_id) for node_id, node in written.items()},
         }
         return {name: section for name, section in sections.items() if section}
+
+    def find_node_id(self, node: LaunchedNode) -> str:
+        """Return the id of a node that was written; empty for a container."""
+        return self._ids_of_nodes.get(id(node), "")
 
     def _write_host(self, host_id: str) -> dict[str, Any]:
         name, address = next(item for item in self._run.hosts.items() if make_id(item[0], "host") == host_id)
@@ -94,6 +98,7 @@ class SliceMaker:
             wanted = make_id(f"{namespace}_{name}", "node")
         node_id = make_unique_id(wanted, self._used)
         self._used.add(node_id)
+        self._ids_of_nodes[id(node)] = node_id
         return node_id
 
     def _write_container(self, node: LaunchedNode, container_id: str) -> dict[str, Any]:

@@ -67,10 +67,14 @@ class _PythonFileReader(CallReader):
             self._folders.append(text)
 
     def load_module(self, name: str) -> ModuleValue | None:
-        """Return a module that lies beside the file."""
-        if not name.isidentifier():
+        """Return a module that lies beside the file, or in a package of the workspace as it installs them."""
+        parts = name.split(".")
+        if not all(part.isidentifier() for part in parts):
             return None
-        texts = [f"{folder}/{name}.py" for folder in (self._path.parent.as_posix(), *self._folders)]
+        folders = [self._path.parent.as_posix(), *self._folders]
+        # `my_setup.arguments` lies in `my_setup/my_setup/arguments.py`.
+        folders += [f"$(find-pkg-share {parts[0]}){inner}" for inner in ("", "/src")]
+        texts = [f"{folder}/{'/'.join(parts)}{end}" for folder in folders for end in (".py", "/__init__.py")]
         path = next((found for text in texts if (found := self._run.files.find_file(text)) is not None), None)
         if path is None:
             return None

@@ -44,7 +44,9 @@ def combine_values(  # noqa: PLR0911 - a kind of values each
     """Return what an operator makes of two values; None where that is not known."""
     if isinstance(left, UnknownValue) or isinstance(right, UnknownValue):
         # A list stays a list: what is known of it counts.
-        return [*left, right] if isinstance(left, list | tuple) and isinstance(sign, ast.Add) else None
+        is_listed = isinstance(sign, ast.Add) and (isinstance(left, list | tuple) or isinstance(right, list | tuple))
+        sides = [list(each) if isinstance(each, list | tuple) else [each] for each in (left, right)]
+        return [*sides[0], *sides[1]] if is_listed else None
     if isinstance(sign, ast.Div) and isinstance(left, _TEXTS) and isinstance(right, _TEXTS):
         if isinstance(left, str) and isinstance(right, str):
             return posixpath.join(left, right)

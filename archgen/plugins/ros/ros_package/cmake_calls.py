@@ -1,0 +1,131 @@
+"""The calls of a CMakeLists.txt, with variables, lists, globs and loops filled in as far as they are plain; nothing is run."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from fnmatch import fnmatchcase
+from pathlib import Path, PurePosixPath
+
+from archgen.plugin import dataclass
+from archgen.plugin.importing import ForeignFileError, read_bounded
+
+_MAX_BYTES = 1_000_000
+_MAX_CALLS = 5000
+_MAX_DEPTH = 8
+_COMMENT = re.compile(r"#[^\n]*")
+_CALL = re.compile(r"\b([A-Za-z_]\w*)\s*\(([^()]{0,20000})\)")
+_WORD = re.compile(r'"([^"]*)"|([^\s"]+)')
+_USE = re.compile(r"\$\{(\w+)\}")
+CMAKE_FILE = "CMakeLists.txt"
+
+
+@dataclass(frozen=True, slots=True)
+class CmakeCall:
+    """A call: its name in lower case, its words, and where it stands. `folder` is that of its file."""
+
+    name: str
+    words: tuple[str, ...]
+    line: int
+    folder: Path
+
+
+def read_cmake_calls(path: Path, package: str, list_files: Callable[[], Sequence[Path]]) -> Iterator[CmakeCall]:
+    """Yield the calls of a file, and of those in folders that it adds. `list_files` gives the files of the package, for globs."""
+    reader = _CmakeReader(path.parent, package, list_files)
+    yield from reader.read_file(path, 0)
+
+
+class _CmakeReader:
+    """Reads the files of one package."""
+
+    def __init__(self, root: Path, package: str, list_files: Callable[[], Sequence[Path]]) -> None:
+        self._list_files = list_files
+        self._variables: dict[str, list[str]] = {"PROJECT_NAME": [package], "CMAKE_SOURCE_DIR": [root.as_posix()]}
+        self._variables["PROJECT_SOURCE_DIR"] = [root.as_posix()]
+        self._count = 0
+
+    def read_file(self, path: Path, depth: int) -> Iterator[CmakeCall]:
+        """Yield the calls of a file."""
+        try:
+            text = read_bounded(path, _MAX_BYTES).decode("utf-8", "replace")
+        except ForeignFileError:
+            return
+        # Comments go, lines stay.
+        plain_text = _COMMENT.sub("", text)
+        calls: list[tuple[str, str, int]] = []
+        line, counted = 1, 0
+        for match in _CALL.finditer(plain_text):
+            line += plain_text.count("\n", counted, match.start())
+            counted = match.start()
+            calls.append((match[1].lower(), match[2], line))
+        self._variables["CMAKE_CURRENT_SOURCE_DIR"] = self._variables["CMAKE_CURRENT_LIST_DIR"] = [path.parent.as_posix()]
+        yield from self._read_calls(calls, path.parent, depth)
+
+    def _read_calls(self, calls: list[tuple[str, str, int]], folder: Path, depth: int) -> Iterator[CmakeCall]:
+        place = 0
+        while place < len(calls) and self._count < _MAX_CALLS:
+            self._count += 1
+            name, text, line = calls[place]
+            place += 1
+            if name == "foreach" and depth < _MAX_DEPTH:
+                end = _find_end(calls, place)
+                variable, *items = self._fill(text) or [""]
+                if items[:2] == ["IN", "LISTS"]:
+                    items = [each for listed in items[2:] for each in self._variables.get(listed, ())]
+                elif items[:2] == ["IN", "ITEMS"]:
+                    items = items[2:]
+                for item in items:
+                    self._variables[variable] = [item]
+                    yield from self._read_calls(calls[place:end], folder, depth + 1)
+                place = end + 1
+                continue
+            words = self._fill(text)
+            if name == "set" and words:
+                self._variables[words[0]] = [each for each in words[1:] if each not in {"CACHE", "PARENT_SCOPE"}]
+            elif name == "list" and words[:1] == ["APPEND"] and len(words) > 1:
+                self._variables[words[1]] = [*self._variables.get(words[1], ()), *words[2:]]
+            elif name == "file" and words[:1] in (["GLOB"], ["GLOB_RECURSE"]) and len(words) > 1:
+                patterns = [each for each in words[2:] if each not in {"CONFIGURE_DEPENDS", "RELATIVE"}]
+                self._variables[words[1]] = self._find_files(patterns, folder, is_deep=words[0] != "GLOB")
+            elif name == "project" and words:
+                self._variables["PROJECT_NAME"] = [words[0]]
+            elif name == "add_subdirectory" and words and depth < _MAX_DEPTH:
+                inner = folder / words[0] / CMAKE_FILE
+                if inner in self._list_files():
+                    yield from self.read_file(inner, depth + 1)
+                    self._variables["CMAKE_CURRENT_SOURCE_DIR"] = [folder.as_posix()]
+            else:
+                yield CmakeCall(name, tuple(words), line, folder)
+
+    def _fill(self, text: str) -> list[str]:
+        words: list[str] = []
+        for quoted, plain in _WORD.findall(text):
+            word = quoted or plain
+            whole = _USE.fullmatch(word)
+            if whole and whole[1] in self._variables:
+                words += self._variables[whole[1]]
+            else:
+                filled = _USE.sub(lambda use: ";".join(self._variables.get(use[1], [use[0]])), word)
+                words += [filled] if quoted or "${" in filled else filled.split(";")
+        return [word for word in words if word]
+
+    def _find_files(self, patterns: Sequence[str], folder: Path, *, is_deep: bool) -> list[str]:
+        found = []
+        for pattern in patterns:
+            full = pattern if pattern.startswith("/") else f"{folder.as_posix()}/{pattern}"
+            head, tail = str(PurePosixPath(full).parent), PurePosixPath(full).name
+            for path in self._list_files():
+                is_there = path.parent.as_posix() == head or (is_deep and path.as_posix().startswith(f"{head}/"))
+                if is_there and fnmatchcase(path.name, tail):
+                    found.append(path.as_posix())
+        return found
+
+
+def _find_end(calls: list[tuple[str, str, int]], place: int) -> int:
+    depth = 1
+    for number in range(place, len(calls)):
+        depth += {"foreach": 1, "endforeach": -1}.get(calls[number][0], 0)
+        if depth == 0:
+            return number
+    return len(calls)

@@ -1,0 +1,133 @@
+"""`archgen import workspace`: one architecture of a workspace's launch files, packages, sources and the library that ships."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from archgen.plugin.importing import ForeignFileError, ForeignImport, Span, load_shipped_component_types, make_id, title_from_id
+from archgen.plugins.ros.launch.launch_actions import LaunchedNode
+from archgen.plugins.ros.launch.launch_import import LaunchedFiles, find_stem, run_launch_files
+from archgen.plugins.ros.launch.launch_slices import SliceMaker
+from archgen.plugins.ros.ros_package.import_account import ImportAccount
+from archgen.plugins.ros.workspace.program_reading import ProgramReader
+from archgen.plugins.ros.workspace.program_sources import WorkspaceFiles
+from archgen.plugins.ros.workspace.workspace_slices import NodeKnowledge, WorkspaceSlices
+
+_MAX_SHOWN = 12
+_ASSUMED_DISTRO = "jazzy"
+_GENERATED_NAMES = ("bringup", "robot")
+
+
+def read_workspace(
+    files: Sequence[Path],
+    arguments: Mapping[str, str] | None = None,
+    *,
+    environment: Mapping[str, str] | None = None,
+    launch_files: Sequence[str] = (),
+    distro: str = "",
+) -> ForeignImport:
+    """Read a workspace. Raise ForeignFileError.
+
+    `files` are folders with packages. `launch_files` are those that start the robot, as `PACKAGE/FILE` or as paths, and may be left
+    out where one alone is included by no other.
+    """
+    account = ImportAccount()
+    for path in files:
+        if not path.is_dir():
+            raise ForeignFileError("it is no folder", Span.of_file(str(path)), "give the folder in which the packages lie, `src` as a rule")
+    workspace = WorkspaceFiles(files, account)
+    if not workspace.packages:
+        words = "there is no package.xml in it"
+        raise ForeignFileError(words, Span.of_file(str(files[0])), "give the folder in which the packages lie, `src` as a rule")
+    entries = [_find_entry(workspace, files, text) for text in launch_files]
+    launched = run_launch_files([*entries, *files] if entries else files, arguments, environment)
+    if not entries:
+        launched = _choose_entry(launched)
+    nodes = launched.choose_nodes()
+    is_ros_1 = all(package.manifest.is_ros_1 for package in workspace.packages.values())
+    known_distro = distro or ("noetic" if is_ros_1 else _ASSUMED_DISTRO)
+    reader = ProgramReader(workspace, account)
+    knowledge = [_read_knowledge(node, reader, known_distro) for node in nodes]
+    reader.tell_unread()
+    maker = SliceMaker(launched.run)
+    slices = WorkspaceSlices(maker, knowledge, workspace, account, known_distro)
+    sections, comments = slices.make_slices(nodes)
+    if not distro and not is_ros_1 and any(each.library_type for each in knowledge):
+        words = f"the distribution of ROS is not known: types of the library are those of {known_distro}"
+        account.add_note("library", words, Span.of_file("."), "`--distro NAME` says another", fate="noted")
+    entry = next(iter(launched.by_file))
+    title = title_from_id(make_id(find_stem(entry), "robot"))
+    notes = (*account.notes, *launched.run.notes)
+    counts = Counter(account.taken)
+    return ForeignImport(
+        sections, dict(sorted((+counts).items())), notes, title, known_distro, comments, uses_shipped_library=slices.uses_library
+    )
+
+
+def _read_knowledge(node: LaunchedNode, reader: ProgramReader, distro: str) -> NodeKnowledge:
+    program = reader.read_node(node) if node.form in {"node", "loaded"} and (node.executable or node.plugin) else None
+    library_type = "" if program is not None else _find_library_type(node, distro)
+    return NodeKnowledge(node, program, library_type)
+
+
+def _find_library_type(node: LaunchedNode, distro: str) -> str:
+    """Return the type of the library that ships which a node runs: known by its package and its plug-in or executable."""
+    if not node.package:
+        return ""
+    for name, entry in load_shipped_component_types(distro).items():
+        facts = entry.value.get("node")
+        texts = {key: getattr(facts.get(key), "text", "") for key in ("package", "executable", "plugin")} if facts is not None else {}
+        program = "plugin" if node.plugin else "executable"
+        if texts.get("package") == node.package and texts.get(program) == (node.plugin or node.executable):
+            return name
+    return ""
+
+
+def _find_entry(workspace: WorkspaceFiles, folders: Sequence[Path], text: str) -> Path:
+    """Return the launch file that `PACKAGE/FILE`, or a path below the workspace, means. Raise ForeignFileError."""
+    package_name, _, name = text.partition("/")
+    package = workspace.packages.get(package_name)
+    if package is not None and name:
+        fitting = [path for path in package.files if path.as_posix().endswith(f"/{name}")]
+        if fitting:
+            return min(fitting, key=lambda path: (len(path.parts), path.as_posix()))
+    for path in (Path(text), *(folder / text for folder in folders)):
+        if path.is_file() and path.resolve() in workspace.shown:
+            return path
+    launch_files = _list_launch_names(workspace)
+    raise ForeignFileError(
+        "there is no such launch file in the workspace", Span.of_file(text), f"there are {', '.join(launch_files[:_MAX_SHOWN]) or 'none'}"
+    )
+
+
+def _list_launch_names(workspace: WorkspaceFiles) -> list[str]:
+    names = []
+    for package in workspace.packages.values():
+        names += [f"{package.manifest.name}/{path.name}" for path in package.files if path.parent.name == "launch"]
+    return names
+
+
+def _choose_entry(launched: LaunchedFiles) -> LaunchedFiles:
+    """Return the launch file that no other one includes. Raise ForeignFileError where there are several: they are other robots."""
+    started = {path: each for path, each in launched.by_file.items() if each[0]}
+    if len(started) == 1:
+        return LaunchedFiles(launched.run, started)
+    if not started:
+        raise ForeignFileError(
+            "its launch files start no node", Span.of_file("."), "name the launch file that starts the robot: `--launch PACKAGE/FILE`"
+        )
+    files = launched.run.files
+
+    def rank(path: Path) -> tuple[bool, int, str]:
+        shown = files.show_path(path)
+        return (not any(word in shown for word in _GENERATED_NAMES), -len(started[path][0]), shown)
+
+    ranked = sorted(started, key=rank)
+    lines = [f"{files.show_path(path)} ({len(started[path][0])} nodes)" for path in ranked]
+    more = f" and {len(lines) - _MAX_SHOWN} more" if len(lines) > _MAX_SHOWN else ""
+    words = f"{len(lines)} launch files start nodes, and none of them includes the others"
+    raise ForeignFileError(
+        words, Span.of_file("."), f"say which by `--launch`, likeliest first: {', '.join(lines[:_MAX_SHOWN])}{more}"
+    )

@@ -1,0 +1,261 @@
+"""The architecture that a workspace becomes, as slices: a component for each node, wired as its topics are, and the nodes."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from archgen.plugin import dataclass
+from archgen.plugin.importing import link_slices, make_id, make_unique_id
+from archgen.plugin.model import Architecture, Endpoint
+from archgen.plugin.ros import find_name_fault, find_node_name_fault
+from archgen.plugins.ros.launch.launch_actions import LaunchedNode
+from archgen.plugins.ros.launch.launch_slices import SliceMaker
+from archgen.plugins.ros.ros_package.import_account import ImportAccount
+from archgen.plugins.ros.sources.walk_values import FoundEndpoint, FoundNode, ParameterValue, find_unknown, settle, show_value
+from archgen.plugins.ros.workspace.program_reading import ReadProgram
+from archgen.plugins.ros.workspace.program_sources import WorkspaceFiles
+
+LIBRARY = "ros"
+_SHARED = frozenset({"/tf", "/tf_static", "/clock", "/diagnostics", "/rosout", "/parameter_events"})
+_POOR_WORDS = frozenset({"pose", "state", "global", "local", "data", "raw", "status", "image", "command", "cmd", "info"})
+_HINT = "launch"
+_KEPT_HINTS = frozenset({"conditions", "by_default", "other_ways"})
+_OUT_USES, _IN_USES = ("publishes", "serves"), ("subscribes", "calls")
+
+
+@dataclass(frozen=True, slots=True)
+class NodeKnowledge:
+    """A launched node with what is known of it: by its sources, or as a type of the library."""
+
+    node: LaunchedNode
+    program: ReadProgram | None
+    library_type: str
+
+
+class WorkspaceSlices:
+    """Writes the slices of one workspace."""
+
+    def __init__(
+        self,
+        maker: SliceMaker,
+        knowledge: Sequence[NodeKnowledge],
+        workspace: WorkspaceFiles,
+        account: ImportAccount,
+        distro: str,
+    ) -> None:
+        self._maker = maker
+        self._knowledge = {id(each.node): each for each in knowledge}
+        self._workspace = workspace
+        self._account = account
+        self._distro = distro
+        self.uses_library = any(each.library_type for each in knowledge)
+        self._groups: dict[str, dict[str, Any]] = {}
+        self._nodes: dict[str, dict[str, Any]] = {}
+        self._places: dict[str, str] = {}
+        """The group of each node."""
+        self._comments: dict[tuple[str | int, ...], str] = {}
+
+    def make_slices(
+        self, nodes: Sequence[LaunchedNode]
+    ) -> tuple[dict[str, Mapping[str, Any]], dict[str, Mapping[tuple[str | int, ...], str]]]:
+        """Return the slices, one for each group, and the comments behind their lines."""
+        sections = self._maker.make_sections(nodes)
+        self._comments |= self._maker.comments
+        launched = {node_id: node for node in nodes if (node_id := self._maker.find_node_id(node))}
+        group_names = self._choose_groups(launched)
+        for node_id, data in sections.get("nodes", {}).items():
+            self._nodes[node_id] = data
+            self._add_node(node_id, data, self._knowledge[id(launched[node_id])], group_names[node_id])
+        self._wire(self._link(sections))
+        return self._divide(sections)
+
+    def _choose_groups(self, launched: Mapping[str, LaunchedNode]) -> dict[str, str]:
+        """Return the group of each node: by the folder of its package, else by its namespace, else one for all."""
+        folders, namespaces = {}, {}
+        for node_id, node in launched.items():
+            package = self._workspace.packages.get(node.package)
+            manifest = next((self._workspace.shown[path] for path in package.files if path.name == "package.xml"), "") if package else ""
+            parts = manifest.split("/")
+            folders[node_id] = parts[0] if len(parts) > 2 else ""  # noqa: PLR2004 - folder, package, package.xml
+            namespaces[node_id] = node.namespace.strip("/").partition("/")[0]
+        for places in (folders, namespaces):
+            if len({place for place in places.values() if place}) > 1:
+                return {node_id: make_id(place or "others", "group") for node_id, place in places.items()}
+        return dict.fromkeys(launched, "robot")
+
+    # Nodes and their components
+
+    def _add_node(self, node_id: str, data: dict[str, Any], known: NodeKnowledge, group: str) -> None:
+        hints = data.get("hints", {}).get(_HINT, {})
+        kept = {key: value for key, value in hints.items() if key in _KEPT_HINTS}
+        data.pop("hints", None)
+        if kept:
+            data["hints"] = {_HINT: kept}
+        self._account.count("node")
+        self._places[node_id] = group
+        components = self._groups.setdefault(group, {})
+        data_before = dict(data)
+        data.clear()
+        data["implements"] = f"{group}.{node_id}"
+        data |= data_before
+        if known.library_type:
+            components[node_id] = {"is": f"{LIBRARY}.{known.library_type}"}
+            self._account.count("node of the library")
+        elif known.program is not None:
+            self._name_node(node_id, data, known, known.program.nodes[0])
+            components[node_id] = self._write_found(node_id, data, known, known.program)
+            self._account.count("node with sources")
+        else:
+            components[node_id] = {}
+            if known.node.form != "program":
+                text = f"what it says is not known: neither its sources nor a type of the library are at hand"
+                self._comments.setdefault(("nodes", node_id), text)
+                self._account.count("node without sources")
+
+    def _name_node(self, node_id: str, data: dict[str, Any], known: NodeKnowledge, found: FoundNode) -> None:
+        name = settle(found.name)
+        if not known.node.name and isinstance(name, str) and not find_node_name_fault(name):
+            data.pop("name", None)
+            if name != node_id:
+                data["name"] = name
+        namespace = settle(found.namespace)
+        if not known.node.namespace and isinstance(namespace, str) and namespace.strip("/") and not find_name_fault(namespace):
+            data["namespace"] = f"/{namespace.strip('/')}"
+        if found.is_lifecycle:
+            data["kind"] = "lifecycle" if "kind" not in data else data["kind"]
+
+    def _write_found(self, node_id: str, data: dict[str, Any], known: NodeKnowledge, program: ReadProgram) -> dict[str, Any]:
+        ports: dict[str, dict[str, Any]] = {"inputs": {}, "outputs": {}}
+        for number, found in enumerate(program.nodes):
+            if number:
+                words = f"the program makes another node, `{show_value(found.name)}`, too: what it says is taken as said by the first"
+                self._account.add_note("node", words, found.span, fate="noted")
+            for endpoint in found.endpoints:
+                self._write_endpoint(node_id, data, endpoint, ports, program)
+        first = program.nodes[0]
+        periods = [period for period in first.periods if period]
+        if len(first.periods) == 1 and periods and not ports["inputs"] and not data.get("serves"):
+            data["timing"] = {"period": f"{periods[0] * 1000:.6g} ms"}
+        return {side: written for side, written in ports.items() if written}
+
+    def _write_endpoint(
+        self, node_id: str, data: dict[str, Any], endpoint: FoundEndpoint, ports: dict[str, dict[str, Any]], program: ReadProgram
+    ) -> None:
+        name = settle(endpoint.name)
+        if name == "" or name is None:
+            return
+        text = name if isinstance(name, str) and not find_name_fault(name, ros_1=program.is_ros_1) else ""
+        self._account.count("endpoint")
+        use: dict[str, Any] = {"own_name": text} if text else {}
+        if text and isinstance(endpoint.name, ParameterValue) and endpoint.name.name and endpoint.name.value is not endpoint.name.default:
+            default = settle(endpoint.name.default)
+            use = {"named_by": endpoint.name.name}
+            if isinstance(default, str) and default and not find_name_fault(default, ros_1=program.is_ros_1):
+                use = {"own_name": default, **use}
+        if endpoint.qos and endpoint.flow == "topic":
+            qos = dict(endpoint.qos)
+            use["qos"] = qos["profile"] if list(qos) == ["profile"] else qos
+        if text in _SHARED and endpoint.flow == "topic":
+            internal = data.setdefault("internal", {}).setdefault(endpoint.use, {})
+            internal[make_id(text, "topic")] = {"topic": text, **({"message": endpoint.message} if endpoint.message else {})}
+            return
+        side = "outputs" if endpoint.use in _OUT_USES else "inputs"
+        port = self._name_port(text or show_value(endpoint.name).replace("*", "_"), endpoint, ports[side])
+        ports[side][port] = endpoint.message or None
+        data.setdefault(endpoint.use, {})[port] = use
+        path = ("groups", self._places[node_id], "components", node_id, side, port)
+        place = f"{endpoint.span.file}:{endpoint.span.line}"
+        if not text:
+            expression = find_unknown(endpoint.name) or show_value(endpoint.name)
+            shown = show_value(endpoint.name)
+            pattern = f"`{shown}`, " if shown.strip("*/") else ""
+            self._comments[path] = f"name unknown: {pattern}`{expression[:60]}`, {place}"
+            words = f"the name of what it {endpoint.use} is computed: {pattern}`{expression}`"
+            self._account.add_note("name", words, endpoint.span, fate="noted")
+            self._account.count("endpoint without a name")
+        elif endpoint.is_conditional:
+            self._comments[path] = f"made under a condition, {place}"
+
+    def _name_port(self, name: str, endpoint: FoundEndpoint, taken: Mapping[str, Any]) -> str:
+        """Return a port's id: the last word of its topic, two words where one is poor or taken."""
+        words = [word for word in name.replace("~", "").split("/") if word.strip("_")]
+        short = make_id(words[-1] if words else endpoint.message.rpartition("/")[2] or endpoint.flow, "port")
+        if len(words) > 1 and (short in _POOR_WORDS or short in taken):
+            short = make_id("_".join(words[-2:]), "port")
+        return make_unique_id(short, taken.keys())
+
+    # Wiring
+
+    def _link(self, sections: Mapping[str, Any]) -> Architecture:
+        project: dict[str, Any] = {"project": {"id": "workspace"}, "ros": {"distro": self._distro}}
+        if self.uses_library:
+            project["libraries"] = {LIBRARY: "builtin"}
+        groups = {name: {"components": components} for name, components in self._groups.items()}
+        return link_slices({**project, **sections, "groups": groups, "nodes": self._nodes})
+
+    def _wire(self, architecture: Architecture) -> None:
+        """Connect who reads a name with all that write it; what nobody here writes comes from outside."""
+        writers: dict[tuple[str, str], list[str]] = defaultdict(list)
+        for endpoint in architecture.endpoints:
+            if endpoint.use in _OUT_USES and endpoint.name is not None and endpoint.port is not None:
+                writers[endpoint.flow, endpoint.name].append(endpoint.port)
+        readers: dict[str, list[Endpoint]] = defaultdict(list)
+        for endpoint in architecture.endpoints:
+            if endpoint.use in _IN_USES and endpoint.port is not None and not endpoint.internal:
+                readers[endpoint.port].append(endpoint)
+        for port, endpoints in readers.items():
+            group, component, name = port.split(".")
+            body = self._groups[group][component]
+            names = [endpoint.name for endpoint in endpoints if endpoint.name is not None]
+            sources = [source for endpoint in endpoints for source in writers.get((endpoint.flow, endpoint.name or ""), ())]
+            sources = [self._shorten(source, group) for source in dict.fromkeys(sources) if not source.startswith(f"{group}.{component}.")]
+            inputs = body.setdefault("inputs", {})
+            written_type = inputs.get(name)
+            if sources:
+                self._account.count("connection", len(sources))
+                given: Any = sources[0] if len(sources) == 1 else sources
+                message = endpoints[0].message
+                differing = any(architecture.outputs[s if s.count(".") == 2 else f"{group}.{s}"].type != message for s in sources)  # noqa: PLR2004 - group, component, port
+                inputs[name] = {"from": given, "type": written_type} if written_type and differing else given
+            elif names and name in self._used_inputs(body, name):
+                outside = f"Nobody here {'publishes' if endpoints[0].flow == 'topic' else 'serves'} {names[0]}"
+                inputs[name] = {"external": outside, **({"type": written_type} if written_type else {})}
+            elif not names and written_type is not None:
+                inputs[name] = {"external": "Not known: its name is computed", "type": written_type}
+            elif not names and name in inputs:
+                inputs[name] = {"external": "Not known: its name is computed"}
+        for group_components in self._groups.values():
+            for body in group_components.values():
+                if body.get("inputs") == {}:
+                    del body["inputs"]
+
+    def _used_inputs(self, body: Mapping[str, Any], name: str) -> tuple[str, ...]:
+        """Return the inputs of a component that a node runs for certain: of a type of the library, what it has in any case."""
+        return (name,)
+
+    def _shorten(self, port: str, group: str) -> str:
+        return port.removeprefix(f"{group}.")
+
+    # Slices
+
+    def _divide(
+        self, sections: Mapping[str, Any]
+    ) -> tuple[dict[str, Mapping[str, Any]], dict[str, Mapping[tuple[str | int, ...], str]]]:
+        """Return a slice for each group; containers and hosts stand in the first."""
+        slices: dict[str, Mapping[str, Any]] = {}
+        comments: dict[str, Mapping[tuple[str | int, ...], str]] = {}
+        others = {name: section for name, section in sections.items() if name != "nodes"}
+        for group, components in self._groups.items():
+            nodes = {node_id: data for node_id, data in self._nodes.items() if self._places[node_id] == group}
+            written = {component: body or None for component, body in components.items()}
+            file = f"{group}.yaml"
+            slices[file] = {"groups": {group: {"components": written}}, **others, "nodes": nodes}
+            comments[file] = {
+                path: text
+                for path, text in self._comments.items()
+                if (path[0] == "groups" and path[1] == group) or (path[0] == "nodes" and path[1] in nodes) or (path[0] == "containers" and others)
+            }
+            others = {}
+        return slices, comments
