@@ -36,6 +36,7 @@ def disconnected_component(architecture: Architecture) -> Iterator[Diagnostic]:
     if len(architecture.components) == 1 or architecture.partial:
         return
     linked = find_linked_components(architecture)
+    existing = _find_existing(architecture)
     shared_outputs = _list_shared_outputs(architecture)
     for component in architecture.components.values():
         if component.id in linked or _has_open_reference(component) or waits_for_calls(architecture, component):
@@ -55,7 +56,7 @@ def disconnected_component(architecture: Architecture) -> Iterator[Diagnostic]:
             "disconnected-component",
             f"`{component.id}` is connected to no other component",
             component.at,
-            severity=Severity.NOTE if is_stub else None,
+            severity=Severity.NOTE if is_stub or component.id in existing else None,
             help="say in its `inputs` what it takes from others, or let another component take one of its outputs",
             element=component.id,
         )
@@ -102,6 +103,7 @@ def unread_output(architecture: Architecture) -> Iterator[Diagnostic]:
     if architecture.partial:
         return
     read_outputs = {edge.output for edge in architecture.edges}
+    existing = _find_existing(architecture)
     shared_outputs = _list_shared_outputs(architecture)
     # Groups and components that some input takes as a whole: that brings messages, but no services and actions.
     whole_targets = {c.target for c in architecture.connections if c.kind != "output"}
@@ -124,9 +126,19 @@ def unread_output(architecture: Architecture) -> Iterator[Diagnostic]:
             "unread-output",
             f"nobody {_reading_verb(architecture, output)} `{output.name}` of `{output.component}`",
             output.at,
+            # A program that exists says more than this robot needs.
+            severity=Severity.NOTE if output.component in existing else None,
             help=_suggest_reader(architecture, output, is_taken_whole=bool({output.component, group} & whole_targets)),
             element=output.component,
         )
+
+
+def _find_existing(architecture: Architecture) -> frozenset[str]:
+    """Return the components of which all nodes exist already."""
+    by_status: dict[bool, set[str]] = {True: set(), False: set()}
+    for node in architecture.nodes.values():
+        by_status[node.status == "existing"].update(node.implements)
+    return frozenset(by_status[True] - by_status[False])
 
 
 def _suggest_reader(architecture: Architecture, output: Output, *, is_taken_whole: bool) -> str:

@@ -33,7 +33,7 @@ from archgen.syntax.folder_files import open_named_file
 from archgen.syntax.project_files import MAX_BYTES
 from archgen.syntax.yaml_parser import parse_yaml
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, YamlNode, node_to_data, resolve_scalar
-from archgen.syntax.yaml_writer import needs_quotes
+from archgen.syntax.yaml_writer import FlowMapping, needs_quotes
 
 __all__ = [
     "ARCHIVE_DAMAGE",
@@ -42,6 +42,7 @@ __all__ = [
     "MAX_OFFICE_BYTES",
     "NO_SPAN",
     "ZIP_BEGINNING",
+    "FlowMapping",
     "ForeignFileError",
     "ForeignImport",
     "ImportNote",

@@ -19,6 +19,13 @@ class PlainText(str):
     __slots__ = ()
 
 
+class FlowMapping(dict[str, object]):
+    """A mapping that is written in braces where it fits the line and no comment belongs into it."""
+
+    __slots__ = ()
+
+
+_MAX_FLOW_LINE = 120
 _PLAIN_SCALAR = re.compile(
     r"[A-Za-z0-9_/(<+^$][^\x00-\x1f\x7f-\xa0\u2028\u2029\ufeff\ufffe\uffff\ud800-\udfff#:,\[\]{}'\"]*\Z"
 )
@@ -53,6 +60,12 @@ def _write_entry(
 ) -> Iterator[str]:
     comment = f"  # {comments[element_path]}" if element_path in comments else ""
     inner_indent = f"{indent}  "
+    if isinstance(value, FlowMapping) and value:
+        line = f"{head} {format_flow(value)}"
+        depth = len(element_path)
+        if len(line) <= _MAX_FLOW_LINE and not any(len(p) > depth and p[:depth] == element_path for p in comments):
+            yield f"{line}{comment}"
+            return
     if isinstance(value, Mapping) and value:
         yield f"{head}{comment}"
         yield from _write_mapping(value, inner_indent, element_path, comments)

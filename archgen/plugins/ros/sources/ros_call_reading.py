@@ -330,6 +330,9 @@ class RosCallReader:
             if name.startswith(mark):
                 plain, is_own = name.removeprefix(mark), True
                 break
+        if ".Type." in spell_external(default) or "PARAMETER_" in spell_external(default):
+            # A type in place of a value.
+            default = UnknownText("", span)
         known = node.parameters.get(plain)
         if known is not None and isinstance(default, UnknownText) and not default.text:
             default = known

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from archgen.plugin import dataclass
-from archgen.plugin.importing import link_slices, make_id, make_unique_id
+from archgen.plugin.importing import FlowMapping, link_slices, make_id, make_unique_id
 from archgen.plugin.model import Architecture, Endpoint
 from archgen.plugin.ros import find_name_fault, find_node_name_fault
 from archgen.plugins.ros.launch.launch_actions import LaunchedNode
@@ -20,8 +20,11 @@ from archgen.plugins.ros.workspace.program_sources import WorkspaceFiles
 LIBRARY = "ros"
 _SHARED = frozenset({"/tf", "/tf_static", "/clock", "/diagnostics", "/rosout", "/parameter_events"})
 _POOR_WORDS = frozenset({"pose", "state", "global", "local", "data", "raw", "status", "image", "command", "cmd", "info"})
+_USUAL_QOS = {"depth": 10}
+"""What ROS takes where nothing else is said."""
 _HINT = "launch"
 _KEPT_HINTS = frozenset({"conditions", "by_default", "other_ways"})
+_VERBS = {"topic": "publishes", "service": "serves", "action": "serves"}
 _OUT_USES, _IN_USES = ("publishes", "serves"), ("subscribes", "calls")
 
 
@@ -127,7 +130,7 @@ class WorkspaceSlices:
             data["kind"] = "lifecycle" if "kind" not in data else data["kind"]
 
     def _write_found(self, node_id: str, data: dict[str, Any], known: NodeKnowledge, program: ReadProgram) -> dict[str, Any]:
-        ports: dict[str, dict[str, Any]] = {"inputs": {}, "outputs": {}}
+        ports: dict[str, dict[str, Any]] = {"inputs": FlowMapping(), "outputs": FlowMapping()}
         for number, found in enumerate(program.nodes):
             if number:
                 words = f"the program makes another node, `{show_value(found.name)}`, too: what it says is taken as said by the first"
@@ -148,23 +151,25 @@ class WorkspaceSlices:
             return
         text = name if isinstance(name, str) and not find_name_fault(name, ros_1=program.is_ros_1) else ""
         self._account.count("endpoint")
-        use: dict[str, Any] = {"own_name": text} if text else {}
+        key = "own_name" if _may_be_moved(text, data) else "topic" if endpoint.flow == "topic" else "name"
+        use: dict[str, Any] = {key: text} if text else {}
         if text and isinstance(endpoint.name, ParameterValue) and endpoint.name.name and endpoint.name.value is not endpoint.name.default:
             default = settle(endpoint.name.default)
             use = {"named_by": endpoint.name.name}
             if isinstance(default, str) and default and not find_name_fault(default, ros_1=program.is_ros_1):
                 use = {"own_name": default, **use}
-        if endpoint.qos and endpoint.flow == "topic":
+        if endpoint.qos not in ({}, _USUAL_QOS) and endpoint.flow == "topic":
             qos = dict(endpoint.qos)
             use["qos"] = qos["profile"] if list(qos) == ["profile"] else qos
         if text in _SHARED and endpoint.flow == "topic":
-            internal = data.setdefault("internal", {}).setdefault(endpoint.use, {})
-            internal[make_id(text, "topic")] = {"topic": text, **({"message": endpoint.message} if endpoint.message else {})}
+            internal = data.setdefault("internal", FlowMapping()).setdefault(endpoint.use, FlowMapping())
+            message = {"message": endpoint.message} if endpoint.message else {}
+            internal[make_id(text, "topic")] = FlowMapping({"topic": text, **message})
             return
         side = "outputs" if endpoint.use in _OUT_USES else "inputs"
         port = self._name_port(text or show_value(endpoint.name).replace("*", "_"), endpoint, ports[side])
-        ports[side][port] = endpoint.message or None
-        data.setdefault(endpoint.use, {})[port] = use
+        ports[side][port] = endpoint.message or None if side == "outputs" else FlowMapping({"type": endpoint.message or None})
+        data.setdefault(endpoint.use, FlowMapping())[port] = use[key] if list(use) == [key] and key != "own_name" else FlowMapping(use)
         path = ("groups", self._places[node_id], "components", node_id, side, port)
         place = f"{endpoint.span.file}:{endpoint.span.line}"
         if not text:
@@ -210,33 +215,25 @@ class WorkspaceSlices:
             body = self._groups[group][component]
             names = [endpoint.name for endpoint in endpoints if endpoint.name is not None]
             sources = [source for endpoint in endpoints for source in writers.get((endpoint.flow, endpoint.name or ""), ())]
-            sources = [self._shorten(source, group) for source in dict.fromkeys(sources) if not source.startswith(f"{group}.{component}.")]
-            inputs = body.setdefault("inputs", {})
-            written_type = inputs.get(name)
+            sources = [source.removeprefix(f"{group}.") for source in dict.fromkeys(sources) if not source.startswith(f"{group}.{component}.")]
+            inputs = body.setdefault("inputs", FlowMapping())
+            own = inputs.get(name)
+            typed = {"type": own["type"]} if own and own["type"] else {}
             if sources:
                 self._account.count("connection", len(sources))
                 given: Any = sources[0] if len(sources) == 1 else sources
-                message = endpoints[0].message
-                differing = any(architecture.outputs[s if s.count(".") == 2 else f"{group}.{s}"].type != message for s in sources)  # noqa: PLR2004 - group, component, port
-                inputs[name] = {"from": given, "type": written_type} if written_type and differing else given
-            elif names and name in self._used_inputs(body, name):
-                outside = f"Nobody here {'publishes' if endpoints[0].flow == 'topic' else 'serves'} {names[0]}"
-                inputs[name] = {"external": outside, **({"type": written_type} if written_type else {})}
-            elif not names and written_type is not None:
-                inputs[name] = {"external": "Not known: its name is computed", "type": written_type}
-            elif not names and name in inputs:
-                inputs[name] = {"external": "Not known: its name is computed"}
+                full_names = [source if source.count(".") == 2 else f"{group}.{source}" for source in sources]  # noqa: PLR2004 - group, component, port
+                is_same = all(architecture.outputs[each].type == typed.get("type") for each in full_names)
+                inputs[name] = given if is_same or not typed else FlowMapping({"from": given, **typed})
+            elif own is not None:
+                where = f"Nobody here {_VERBS[endpoints[0].flow]} {names[0]}" if names else "Its name is not known"
+                inputs[name] = FlowMapping({"external": where, **typed})
+            elif names and not architecture.inputs[port].optional:
+                inputs[name] = FlowMapping({"external": f"Nobody here {_VERBS[endpoints[0].flow]} {names[0]}"})
         for group_components in self._groups.values():
             for body in group_components.values():
                 if body.get("inputs") == {}:
                     del body["inputs"]
-
-    def _used_inputs(self, body: Mapping[str, Any], name: str) -> tuple[str, ...]:
-        """Return the inputs of a component that a node runs for certain: of a type of the library, what it has in any case."""
-        return (name,)
-
-    def _shorten(self, port: str, group: str) -> str:
-        return port.removeprefix(f"{group}.")
 
     # Slices
 
@@ -259,3 +256,10 @@ class WorkspaceSlices:
             }
             others = {}
         return slices, comments
+
+
+def _may_be_moved(name: str, data: Mapping[str, Any]) -> bool:
+    """Whether what a node is started with may give one of its names another one."""
+    is_ruled = any(":=" in str(word) for word in data.get("arguments", ()))
+    last = name.rpartition("/")[2]
+    return is_ruled or any(str(own_name).rpartition("/")[2].strip("~") == last for own_name in data.get("remaps", ()))
