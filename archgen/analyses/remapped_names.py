@@ -214,6 +214,8 @@ def remapped_away(architecture: Architecture) -> Iterator[Diagnostic]:
         is_writer = endpoint.use in _WRITING
         if not is_writer and (endpoint.name_written or writers.get((endpoint.name, endpoint.flow))):
             continue  # where a topic is written at a reader and no source is on it, that is an `unaccounted-topic`
+        if is_writer and writers.get(left) and readers.get((endpoint.name, endpoint.flow)):
+            continue  # both names are written and read: one of them is there on purpose
         lost = [each for each in (readers if is_writer else writers).get(left, ()) if each.node != endpoint.node]
         if not lost:
             continue

@@ -73,6 +73,8 @@ class LaunchedNode:
     arguments: list[str] = field(default_factory=list)
     remaps: dict[str, str] = field(default_factory=dict)
     parameters: dict[str, LaunchValue] = field(default_factory=dict)
+    file_parameters: set[str] = field(default_factory=set)
+    """The names of the parameters that a file gives, and nothing behind it."""
     parameter_files: list[str] = field(default_factory=list)
     parameter_commands: dict[str, list[str]] = field(default_factory=dict)
     host: str = ""
@@ -98,6 +100,12 @@ class LaunchedNode:
     def full_name(self) -> str:
         """Its name with the namespace; empty where the program names itself."""
         return f"{self.namespace.rstrip('/')}/{self.name}" if self.name else ""
+
+    @property
+    def known_name(self) -> str:
+        """Its name with the namespace, or what is known of how its program calls it; empty where nothing is."""
+        name = self.name or self.program_name
+        return f"{self.namespace.rstrip('/')}/{name}" if name else ""
 
 
 def join_names(outer: str, inner: str) -> str:

@@ -130,24 +130,24 @@ def _drop_twins(run: LaunchRun, nodes_by_file: Mapping[Path, Sequence[LaunchedNo
     nodes = [node for nodes in nodes_by_file.values() for node in nodes]
     files = {id(node): path for path, nodes in nodes_by_file.items() for node in nodes}
     # What is no node may be called as another one.
-    free = [node for node in nodes if not node.full_name or node.form == "program"]
+    free = [node for node in nodes if not node.known_name or node.form == "program"]
     for node in nodes:
-        if not node.full_name or node.form == "program":
+        if not node.known_name or node.form == "program":
             continue
-        other = kept.get(node.full_name)
+        other = kept.get(node.known_name)
         if other is None:
-            kept[node.full_name] = node
+            kept[node.known_name] = node
             continue
         if not node.conditions and not other.conditions and node.form == "node" and files[id(node)] == files[id(other)]:
             free.append(node)
             continue
         winner, loser = (node, other) if node.is_on and not other.is_on else (other, node)
-        kept[node.full_name] = winner
+        kept[node.known_name] = winner
         differing = [key for key in _WAY_KEYS if getattr(winner, key) != getattr(loser, key)]
         if differing or winner.form != loser.form:
             conditions = list(dict.fromkeys(loser.conditions))
             words = f" (only {' and '.join(conditions)})" if conditions else ""
-            message = f"another action starts `{loser.full_name}`, too: this one{words} is kept as a hint"
+            message = f"another action starts `{loser.known_name}`, too: this one{words} is kept as a hint"
             run.add_note(loser.word, message, loser.span, fate="noted")
             keys = {*differing, "package", "executable", "plugin"}
             way = {key: getattr(loser, key) for key in _WAY_KEYS if key in keys}

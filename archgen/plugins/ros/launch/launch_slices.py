@@ -108,7 +108,7 @@ class SliceMaker:
             **self._write_names(node, container_id),
             "package": "" if is_usual else node.package,
             "executable": "" if is_usual else node.executable,
-            "parameters": _nest_parameters(node.parameters),
+            "parameters": nest_parameters(node.parameters),
             "host": make_id(node.host, "host") if node.host in self._run.hosts else "",
             "hints": {HINT: self._write_hint(node, keeps_rest=True)},
         }
@@ -137,7 +137,7 @@ class SliceMaker:
             "arguments": node.arguments,
             "remaps": self._write_remaps(node),
             "parameter_files": node.parameter_files,
-            "parameters": _nest_parameters(node.parameters),
+            "parameters": nest_parameters(node.parameters),
             "parameter_commands": node.parameter_commands,
             "start": self._write_start(node),
             "hints": {HINT: self._write_hint(node, keeps_rest=False)},
@@ -236,7 +236,7 @@ class SliceMaker:
             self.comments[path] = text if len(text) <= _MAX_COMMENT else f"{text[:_MAX_COMMENT]}..."
 
 
-def _nest_parameters(parameters: Mapping[str, Any]) -> dict[str, Any]:
+def nest_parameters(parameters: Mapping[str, Any]) -> dict[str, Any]:
     """Return parameters by the parts of their names, as parameter files nest them; as they are where that is no tree."""
     tree: dict[str, Any] = {}
     for name, value in parameters.items():

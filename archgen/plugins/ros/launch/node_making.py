@@ -227,6 +227,7 @@ class NodeMaker:
             for part in reversed(name.strip("/").split("/") if self._run.context.is_ros_1 else [name]):
                 found = {part: found}
             overlay_parameters(node.parameters, found)
+            node.file_parameters.discard(name)
             node.parameter_commands.pop(name, None)
 
     def _add_file_value(self, node: LaunchedNode, action: LaunchAction, entry: LaunchValue) -> None:
@@ -272,6 +273,7 @@ class NodeMaker:
                 self._run.tell_computed(node, f"the parameter `{name}`", value)
             else:
                 node.parameters[name] = value
+                node.file_parameters.add(name)
 
     def _add_ros_1_file(self, node: LaunchedNode, text: str, path: Path | None, inner_name: str) -> None:
         """Add a file that ROS 1 loads below a node's name, or deeper."""

@@ -794,6 +794,9 @@ class ProgramWalk(RosCallReader):
         for made in (make_qos(full_name, arguments, keywords), make_seconds(full_name, arguments, keywords)):
             if made is not None:
                 return made
+        if short in {"resolve_topic_name", "resolve_service_name", "resolveName", "resolve_name"} and arguments:
+            # What comes of it is what comes of the name itself: ROS resolves it once more.
+            return arguments[0]
         if short == "bind" and arguments and isinstance(arguments[0], Callable):
             return arguments[0]
         if isinstance(whole, TextStream) and short == "str":

@@ -27,18 +27,21 @@ class SourceIndex:
         self.has_cpp_reader = self._parser is not None
         self._headers: dict[str, list[Path]] = defaultdict(list)
         self._modules: dict[str, Path] = {}
+        self._module_names: dict[Path, str] = {}
+        roots = {folder / inner: name for name, folder in package_folders for inner in (name, f"src/{name}")}
         for path in self._shown:
             if path.name.endswith(CPP_HEADERS):
                 self._headers[path.name].append(path)
-        for name, folder in package_folders:
-            for inner in (folder / name, folder / "src" / name):
-                self._add_modules(inner, name)
+            elif path.suffix == ".py":
+                root = next((each for each in path.parents if each in roots), None)
+                if root is not None:
+                    self._add_module(path, root, roots[root])
 
-    def _add_modules(self, folder: Path, name: str) -> None:
-        for path in self._shown:
-            if path.suffix == ".py" and path.is_relative_to(folder):
-                parts = [name, *path.relative_to(folder).with_suffix("").parts]
-                self._modules.setdefault(".".join(parts[:-1] if parts[-1] == "__init__" else parts), path)
+    def _add_module(self, path: Path, root: Path, package: str) -> None:
+        parts = [package, *path.relative_to(root).with_suffix("").parts]
+        name = ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+        self._modules.setdefault(name, path)
+        self._module_names[path] = name
 
     def find_module(self, name: str, beside: Path | None = None) -> SourceFile | None:
         """Return a module of Python by its dotted name: of a package of the workspace, or one beside a script."""
@@ -66,7 +69,7 @@ class SourceIndex:
             return SourceFile(path, shown, "cpp" if is_cpp else "python", unread=[(1, 1, error.message)])
         if is_cpp and self._parser is not None:
             return read_cpp_source(self._parser, path, shown, text)
-        module = next((name for name, each in self._modules.items() if each == path), "")
+        module = self._module_names.get(path, "")
         package = module if path.name == "__init__.py" else module.rpartition(".")[0]
         return read_python_source(path, shown, text, package)
 

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from archgen.plugin import dataclass
-from archgen.plugin.importing import FlowMapping, link_slices, make_id, make_unique_id
+from archgen.plugin.importing import FlowMapping, MappingNode, ScalarNode, YamlNode, link_slices, load_shipped_component_types, make_id, make_unique_id
 from archgen.plugin.model import Architecture, Endpoint
 from archgen.plugin.ros import find_name_fault, find_node_name_fault
 from archgen.plugins.ros.launch.launch_actions import LaunchedNode
-from archgen.plugins.ros.launch.launch_slices import SliceMaker
+from archgen.plugins.ros.launch.launch_slices import SliceMaker, nest_parameters
 from archgen.plugins.ros.ros_package.import_account import ImportAccount
 from archgen.plugins.ros.sources.walk_values import FoundEndpoint, FoundNode, ParameterValue, find_unknown, settle, show_value
 from archgen.plugins.ros.workspace.program_reading import ReadProgram
@@ -103,6 +104,7 @@ class WorkspaceSlices:
         data.clear()
         data["implements"] = f"{group}.{node_id}"
         data |= data_before
+        self._leave_out_filed(data, known)
         if known.library_type:
             components[node_id] = {"is": f"{LIBRARY}.{known.library_type}"}
             self._account.count("node of the library")
@@ -116,6 +118,20 @@ class WorkspaceSlices:
                 text = f"what it says is not known: neither its sources nor a type of the library are at hand"
                 self._comments.setdefault(("nodes", node_id), text)
                 self._account.count("node without sources")
+
+    def _leave_out_filed(self, data: dict[str, Any], known: NodeKnowledge) -> None:
+        """Leave out the parameters that stand in a file that the node reads, but those that name its topics."""
+        node = known.node
+        kept = list_naming_parameters(known.library_type, self._distro) if known.library_type else []
+        for found in known.program.nodes if known.program else ():
+            kept += [re.escape(each.name.name) for each in found.endpoints if isinstance(each.name, ParameterValue)]
+        naming = re.compile("|".join(kept) or "(?!)")
+        if node.parameter_files and not known.program or known.program and not known.program.is_ros_1:
+            left_out = {name for name in node.file_parameters if not naming.fullmatch(name)}
+            parameters = {name: value for name, value in node.parameters.items() if name not in left_out}
+            data.pop("parameters", None)
+            if parameters:
+                data["parameters"] = nest_parameters(parameters)
 
     def _name_node(self, node_id: str, data: dict[str, Any], known: NodeKnowledge, found: FoundNode) -> None:
         name = settle(found.name)
@@ -263,3 +279,19 @@ def _may_be_moved(name: str, data: Mapping[str, Any]) -> bool:
     is_ruled = any(":=" in str(word) for word in data.get("arguments", ()))
     last = name.rpartition("/")[2]
     return is_ruled or any(str(own_name).rpartition("/")[2].strip("~") == last for own_name in data.get("remaps", ()))
+
+
+def list_naming_parameters(library_type: str, distro: str) -> list[str]:
+    """Return the parameters by which a type of the library is told what its topics are called, as regular expressions."""
+    found: list[str] = []
+    pending: list[YamlNode] = [load_shipped_component_types(distro)[library_type].value]
+    while pending:
+        mapping = pending.pop()
+        for entry in mapping if isinstance(mapping, MappingNode) else ():
+            if entry.key == "named_by" and isinstance(entry.value, ScalarNode):
+                found += [re.escape(name) for name in re.findall(r"\{(\w+)\}", entry.value.text)]
+                found.append(".+".join(map(re.escape, re.split(r"\{\w+\}|\*", entry.value.text))))
+            elif entry.key == "when" and isinstance(entry.value, MappingNode):
+                found += [re.escape(inner.key) for inner in entry.value]
+            pending.append(entry.value)
+    return found
