@@ -59,7 +59,9 @@ class _CmakeReader:
             line += plain_text.count("\n", counted, match.start())
             counted = match.start()
             calls.append((match[1].lower(), match[2], line))
-        self._variables["CMAKE_CURRENT_SOURCE_DIR"] = self._variables["CMAKE_CURRENT_LIST_DIR"] = [path.parent.as_posix()]
+        self._variables["CMAKE_CURRENT_SOURCE_DIR"] = self._variables["CMAKE_CURRENT_LIST_DIR"] = [
+            path.parent.as_posix()
+        ]
         yield from self._read_calls(calls, path.parent, depth)
 
     def _read_calls(self, calls: list[tuple[str, str, int]], folder: Path, depth: int) -> Iterator[CmakeCall]:

@@ -39,7 +39,9 @@ _BLOCKS = frozenset(
     }
 )
 _CLASSES = frozenset({"class_specifier", "struct_specifier"})
-_IDENTITIES = frozenset({"parenthesized_expression", "pointer_expression", "condition_clause", "parameter_pack_expansion"})
+_IDENTITIES = frozenset(
+    {"parenthesized_expression", "pointer_expression", "condition_clause", "parameter_pack_expansion"}
+)
 
 
 def make_cpp_parser() -> Parser | None:
@@ -184,7 +186,13 @@ class _Reader:
         body = node.child_by_field_name("body")
         statements += self._read_block(body, depth) if body is not None else ()
         function = Function(
-            name, parameters, tuple(statements), self._file, owner_name, is_static=False, type_parameters=type_parameters
+            name,
+            parameters,
+            tuple(statements),
+            self._file,
+            owner_name,
+            is_static=False,
+            type_parameters=type_parameters,
         )
         if owner is not None:
             owner.functions.setdefault(name, []).append(function)
@@ -294,11 +302,17 @@ class _Reader:
                 continue
             target = self._make(node, "name", name)
             value = declarator.child_by_field_name("value") if declarator.type == "init_declarator" else None
-            is_held = any(child.type in {"pointer_declarator", "reference_declarator"} for child in (declarator, *declarator.named_children))
+            is_held = any(
+                child.type in {"pointer_declarator", "reference_declarator"}
+                for child in (declarator, *declarator.named_children)
+            )
             if declarator.type == "function_declarator":
                 # `Type name(other);` in a function is no declaration of one, though it is spelled so.
                 parameters = declarator.child_by_field_name("parameters")
-                words = [self._make(each, "name", clean_type(_text(each))) for each in (parameters.named_children if parameters else ())]
+                words = [
+                    self._make(each, "name", clean_type(_text(each)))
+                    for each in (parameters.named_children if parameters else ())
+                ]
                 value_expression: Expression | None = self._make(node, "call", None, (target, *words))
             elif value is None:
                 value_expression = None if is_held else self._make(node, "call", None, (target,))
@@ -362,7 +376,9 @@ class _Reader:
         if kind == "lambda_expression":
             made = self._make(node, "lambda")
             declarator, body = node.child_by_field_name("declarator"), node.child_by_field_name("body")
-            parameters = self._read_parameters(declarator.child_by_field_name("parameters"), depth) if declarator else ()
+            parameters = (
+                self._read_parameters(declarator.child_by_field_name("parameters"), depth) if declarator else ()
+            )
             statements = self._read_block(body, depth) if body is not None else ()
             made.body = Function("lambda", parameters, statements, self._file)
             return made
@@ -422,7 +438,11 @@ def _find_function(node: Node | None) -> Node | None:
         if node is None or node.type == "function_declarator":
             return node
         inner = node.child_by_field_name("declarator")
-        node = inner if inner is not None else next((c for c in node.named_children if c.type.endswith("_declarator")), None)
+        node = (
+            inner
+            if inner is not None
+            else next((c for c in node.named_children if c.type.endswith("_declarator")), None)
+        )
     return None
 
 

@@ -36,15 +36,50 @@ _MAX_ROUNDS = 64
 _MAX_TEXT = 2000
 _MISSING = object()
 _PASSED_THROUGH = frozenset(
-    {"lock", "get", "shared_from_this", "get_parameter_value", "c_str", "move", "ref", "forward", "str_value", "as_string"}
-) | {"as_int", "as_double", "as_bool", "as_string_array", "get_value", "value", "static_pointer_cast", "dynamic_pointer_cast"}
+    {
+        "lock",
+        "get",
+        "shared_from_this",
+        "get_parameter_value",
+        "c_str",
+        "move",
+        "ref",
+        "forward",
+        "str_value",
+        "as_string",
+    }
+) | {
+    "as_int",
+    "as_double",
+    "as_bool",
+    "as_string_array",
+    "get_value",
+    "value",
+    "static_pointer_cast",
+    "dynamic_pointer_cast",
+}
 _PASSED_THROUGH |= {f"{kind}_value" for kind in ("string", "double", "integer", "bool", "string_array", "double_array")}
-_PASSED_THROUGH |= {"ParameterValue", "String", "str", "string", "list", "tuple", "int", "float", "double", "bool", "to_string", "numpy_msg"}
+_PASSED_THROUGH |= {
+    "ParameterValue",
+    "String",
+    "str",
+    "string",
+    "list",
+    "tuple",
+    "int",
+    "float",
+    "double",
+    "bool",
+    "to_string",
+    "numpy_msg",
+}
 _HANDLES = frozenset({"getNodeHandle", "getMTNodeHandle"})
 _PRIVATE_HANDLES = frozenset({"getPrivateNodeHandle", "getMTPrivateNodeHandle"})
 _MAKERS = frozenset({"make_shared", "make_unique", "new", "reset", "allocate_shared"})
 _STREAMS = frozenset({"std.stringstream", "std.ostringstream", "stringstream", "ostringstream"})
-_WRITERS = frozenset({"snprintf", "sprintf", "strcpy", "strcat", "std.snprintf", "std.sprintf", "getline", "std.getline"})
+_WRITERS = frozenset(
+    {"snprintf", "sprintf", "strcpy", "strcat", "std.snprintf", "std.sprintf", "getline", "std.getline"}
+)
 
 
 class Scope:
@@ -190,7 +225,11 @@ class ProgramWalk(RosCallReader):
         found = self._find_class(name, scope)
         if found is not None:
             return found
-        if self._cpp is not None and last in self._cpp.functions and not name.startswith(("rclcpp::", "std::", "ros::")):
+        if (
+            self._cpp is not None
+            and last in self._cpp.functions
+            and not name.startswith(("rclcpp::", "std::", "ros::"))
+        ):
             return Callable(self._cpp.functions[last][0])
         for file in self._cpp.files if self._cpp else ():
             value = self._open_module(file, "").variables.get(last, _MISSING) if file.statements else _MISSING
@@ -247,7 +286,9 @@ class ProgramWalk(RosCallReader):
                 around = found.name.rpartition("::")[0]
                 known = self._cpp.find_class(name.partition("<")[0], around) if self._cpp else None
                 is_other = known is not None and known is not found
-                bases.append((base, known if is_other and known is not None else name.partition("<")[0].replace("::", ".")))
+                bases.append(
+                    (base, known if is_other and known is not None else name.partition("<")[0].replace("::", "."))
+                )
         return bases
 
     def _find_method(self, found: SourceClass, name: str, depth: int = 0) -> list[Function] | None:
@@ -269,12 +310,19 @@ class ProgramWalk(RosCallReader):
 
     def _has_foreign_base(self, found: SourceClass, depth: int = 0) -> bool:
         return depth < 10 and any(  # noqa: PLR2004 - as above
-            self._has_foreign_base(base, depth + 1) if isinstance(base, SourceClass) else base not in {"object", "ABC"} and base not in NODE_CLASSES and not base.startswith("std.")
+            self._has_foreign_base(base, depth + 1)
+            if isinstance(base, SourceClass)
+            else base not in {"object", "ABC"} and base not in NODE_CLASSES and not base.startswith("std.")
             for _, base in self._list_bases(found)
         )
 
     def _construct_class(
-        self, found: SourceClass, arguments: list[Any], keywords: Mapping[str, Any], span: Span, types: Sequence[str] = ()
+        self,
+        found: SourceClass,
+        arguments: list[Any],
+        keywords: Mapping[str, Any],
+        span: Span,
+        types: Sequence[str] = (),
     ) -> WalkedObject:
         made = WalkedObject(found, type_values=dict(zip(found.type_parameters, types, strict=False)))
         before = self.current_node
@@ -416,7 +464,9 @@ class ProgramWalk(RosCallReader):
         holder = self._find_field_owner(owner.made_of, name)
         if holder is not None:
             type_name = holder.fields[name]
-            owner.fields[name] = self._construct(type_name.rstrip("*"), arguments, value, scope, is_held=type_name.endswith("*"))
+            owner.fields[name] = self._construct(
+                type_name.rstrip("*"), arguments, value, scope, is_held=type_name.endswith("*")
+            )
             return
         base = self._find_class(name.partition("<")[0], scope)
         if base is not None:
@@ -525,7 +575,11 @@ class ProgramWalk(RosCallReader):
             if all(isinstance(settle(each), list) for each in values) and values:
                 return [item for each in values for item in settle(each)][:_MAX_ROUNDS]
             joined = join_texts(values)
-            return joined if not isinstance(joined, str) or len(joined) < _MAX_TEXT else UnknownText(expression.text, self._span(expression))
+            return (
+                joined
+                if not isinstance(joined, str) or len(joined) < _MAX_TEXT
+                else UnknownText(expression.text, self._span(expression))
+            )
         if kind == "list":
             return [self._evaluate(part, scope) for part in parts]
         if kind == "dict":
@@ -596,22 +650,43 @@ class ProgramWalk(RosCallReader):
         name = str(called.value).replace("::", ".")
         if called.kind == "member":
             whole = self._evaluate(called.parts[0], scope)
-        elif called.kind == "name" and scope.file.language == "cpp" and scope.find("self") is not _MISSING and "." not in name:
+        elif (
+            called.kind == "name"
+            and scope.file.language == "cpp"
+            and scope.find("self") is not _MISSING
+            and "." not in name
+        ):
             whole = scope.find("self")
         types = [self._expand_type(each, scope) for each in expression.type_arguments]
         place = (self._span(expression), expression)
-        if called.kind == "member" and called.parts[0].kind == "call" and name in {"__init__"} and called.parts[0].parts[0].value == "super":
+        if (
+            called.kind == "member"
+            and called.parts[0].kind == "call"
+            and name in {"__init__"}
+            and called.parts[0].parts[0].value == "super"
+        ):
             return self._call_super(arguments, keywords, scope)
-        target = self._evaluate(called, scope) if whole is _MISSING or called.kind == "member" else self._find_name(name, scope)
+        target = (
+            self._evaluate(called, scope)
+            if whole is _MISSING or called.kind == "member"
+            else self._find_name(name, scope)
+        )
         if isinstance(target, Callable):
-            shares_self = target.self_object is None and target.function.owner and arguments and not target.function.is_static
+            shares_self = (
+                target.self_object is None and target.function.owner and arguments and not target.function.is_static
+            )
             if shares_self and isinstance(arguments[0], WalkedObject) and target.function.file.language == "python":
                 return self._call(Callable(target.function, arguments[0]), arguments[1:], keywords)
             better = self._find_overload(target, len(arguments))
             return self._call(better, arguments, keywords, expression.parts[1:], scope, types)
         if isinstance(target, SourceClass):
             return self._construct_class(target, arguments, keywords, place[0], types)
-        if isinstance(target, ExternalName) and target.name.endswith(".__init__") and arguments and isinstance(arguments[0], WalkedObject):
+        if (
+            isinstance(target, ExternalName)
+            and target.name.endswith(".__init__")
+            and arguments
+            and isinstance(arguments[0], WalkedObject)
+        ):
             self._name_node(arguments[0], arguments[1:], keywords)
             return None
         short = name.rpartition(".")[2]
@@ -623,7 +698,9 @@ class ProgramWalk(RosCallReader):
             if short == "reset" and called.kind == "member" and arguments:
                 self._assign(called.parts[0], arguments[0], scope)
             return None
-        result = self.read_call(whole if whole is not _MISSING else None, target, short, arguments, keywords, types, place[0])
+        result = self.read_call(
+            whole if whole is not _MISSING else None, target, short, arguments, keywords, types, place[0]
+        )
         if result is not NotImplemented:
             return self._take_outputs(result, expression, scope)
         self._mention([*arguments, *keywords.values()])
@@ -636,7 +713,11 @@ class ProgramWalk(RosCallReader):
             place, value = result
             if place < len(expression.parts) - 1:
                 self._assign(expression.parts[place + 1], value, scope)
-            return True if settle(value) is not None and not isinstance(settle(value), UnknownText) else UnknownText(expression.text, self._span(expression))
+            return (
+                True
+                if settle(value) is not None and not isinstance(settle(value), UnknownText)
+                else UnknownText(expression.text, self._span(expression))
+            )
         return result
 
     def _mention(self, values: Sequence[Any]) -> None:
@@ -725,7 +806,12 @@ class ProgramWalk(RosCallReader):
         full_type = self._expand_type(type_name, scope)
         plain = full_type.partition("<")[0].replace("::", ".")
         is_pointer = plain.endswith((".shared_ptr", ".unique_ptr", "Ptr", ".weak_ptr")) or is_held
-        if is_pointer or (len(arguments) == 1 and isinstance(arguments[0], NodeHandle) and not arguments[0].kind and "NodeHandle" in plain):
+        if is_pointer or (
+            len(arguments) == 1
+            and isinstance(arguments[0], NodeHandle)
+            and not arguments[0].kind
+            and "NodeHandle" in plain
+        ):
             return arguments[0] if arguments else None
         found = self._find_class(full_type.partition("<")[0], scope)
         types = split_type_arguments(full_type.partition("<")[2].removesuffix(">"))
@@ -743,7 +829,13 @@ class ProgramWalk(RosCallReader):
         if plain.endswith(("vector", "array", "list")) and arguments:
             return arguments[0] if len(arguments) == 1 and isinstance(arguments[0], list) else arguments
         if plain.endswith("string"):
-            return arguments[0] if len(arguments) == 1 else "" if not arguments else UnknownText(expression.text, self._span(expression))
+            return (
+                arguments[0]
+                if len(arguments) == 1
+                else ""
+                if not arguments
+                else UnknownText(expression.text, self._span(expression))
+            )
         return arguments[0] if len(arguments) == 1 else UnknownText(expression.text, self._span(expression))
 
     def _evaluate_operation(self, sign: str, expression: Expression, scope: Scope) -> Any:  # noqa: ANN401, PLR0911 - one for each sign
@@ -784,7 +876,14 @@ class ProgramWalk(RosCallReader):
             return unknown
 
     def _evaluate_plain_call(  # noqa: PLR0911, PLR0913, C901, PLR0912 - one for each function of the languages
-        self, whole: Any, target: Any, name: str, arguments: list[Any], keywords: Mapping[str, Any], expression: Expression, scope: Scope  # noqa: ANN401 - any value
+        self,
+        whole: Any,
+        target: Any,
+        name: str,
+        arguments: list[Any],
+        keywords: Mapping[str, Any],
+        expression: Expression,
+        scope: Scope,
     ) -> Any:  # noqa: ANN401 - any value
         """Return what a function gives that neither the workspace nor ROS has."""
         unknown = UnknownText(expression.text, self._span(expression))
@@ -812,19 +911,33 @@ class ProgramWalk(RosCallReader):
                 return _fill_format(settled, "{}", arguments, unknown) if not keywords else unknown
             if short in {"lower", "upper", "strip", "lstrip", "rstrip"}:
                 text = arguments[0] if arguments and isinstance(arguments[0], str) else None
-                return getattr(settled, short)() if text is None else getattr(settled, short)(text) if short.endswith("strip") else unknown
+                return (
+                    getattr(settled, short)()
+                    if text is None
+                    else getattr(settled, short)(text)
+                    if short.endswith("strip")
+                    else unknown
+                )
             if short == "join" and arguments and isinstance(arguments[0], list):
                 items = arguments[0]
-                return join_texts([part for place, item in enumerate(items) for part in ((settled, item) if place else (item,))])
+                return join_texts(
+                    [part for place, item in enumerate(items) for part in ((settled, item) if place else (item,))]
+                )
             if short == "empty":
                 return not settled
             if short in {"startswith", "endswith"} and arguments and isinstance(settle(arguments[0]), str):
                 return getattr(settled, short)(settle(arguments[0]))
         if isinstance(settled, dict) and short in {"items", "values", "keys"}:
-            return {"items": [[key, value] for key, value in settled.items()], "values": list(settled.values())}.get(short, list(settled))
+            return {"items": [[key, value] for key, value in settled.items()], "values": list(settled.values())}.get(
+                short, list(settled)
+            )
         if isinstance(settled, dict) and short == "get" and arguments:
             key = settle(arguments[0])
-            return settled.get(key, arguments[1] if len(arguments) > 1 else None) if isinstance(key, str | int) else unknown
+            return (
+                settled.get(key, arguments[1] if len(arguments) > 1 else None)
+                if isinstance(key, str | int)
+                else unknown
+            )
         if isinstance(settled, list) and short in {"append", "push_back", "emplace_back"} and arguments:
             settled.append(arguments[0])
             return None
@@ -843,7 +956,11 @@ class ProgramWalk(RosCallReader):
         if full_name in _WRITERS or any(word in short.lower() for word in ("param", "load", "read", "parse")):
             # What another function may write into is not known any more.
             for each in expression.parts[1:]:
-                if each.kind in {"name", "member"} and scope.file.language == "cpp" and isinstance(self._evaluate(each, scope), str | int | float):
+                if (
+                    each.kind in {"name", "member"}
+                    and scope.file.language == "cpp"
+                    and isinstance(self._evaluate(each, scope), str | int | float)
+                ):
                     self._assign(each, unknown, scope)
         return unknown
 
@@ -863,7 +980,7 @@ def _join_variables(variables: dict[str, Any], others: Mapping[str, Any]) -> Non
         if mine is _MISSING:
             variables[name] = value
         elif mine is not value and (type(mine) is not type(value) or mine != value):
-            is_nothing = mine is None or isinstance(mine, UnknownText) and not mine.text
+            is_nothing = mine is None or (isinstance(mine, UnknownText) and not mine.text)
             variables[name] = value if is_nothing else mine if value is None else Alternatives((value, mine))
 
 
@@ -872,4 +989,3 @@ def _fill_format(text: str, mark: str, values: Sequence[Any], unknown: UnknownTe
     if len(pieces) != len(values) + 1 or ("%" if mark == "%s" else "{") in "".join(pieces):
         return unknown
     return join_texts([part for piece, value in zip(pieces, [*values, ""], strict=True) for part in (piece, value)])
-

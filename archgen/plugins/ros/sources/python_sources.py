@@ -112,7 +112,9 @@ class _Reader:
         parts = self._package.split(".")
         return ".".join([*parts[: len(parts) - node.level + 1], *([node.module] if node.module else [])])
 
-    def _read_function(self, node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda, owner: str, depth: int) -> Function:
+    def _read_function(
+        self, node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda, owner: str, depth: int
+    ) -> Function:
         arguments = node.args
         names = [*arguments.posonlyargs, *arguments.args]
         defaults = [None] * (len(names) - len(arguments.defaults)) + [self._read(d, depth) for d in arguments.defaults]
@@ -120,7 +122,9 @@ class _Reader:
         for name, default in zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True):
             parameters.append(FunctionParameter(name.arg, "", None if default is None else self._read(default, depth)))
         if isinstance(node, ast.Lambda):
-            return Function("lambda", tuple(parameters), (Statement("return", self._read(node.body, depth)),), self._file)
+            return Function(
+                "lambda", tuple(parameters), (Statement("return", self._read(node.body, depth)),), self._file
+            )
         is_static = any(isinstance(each, ast.Name) and each.id == "staticmethod" for each in node.decorator_list)
         body = self.read_body(node.body, depth)
         return Function(node.name, tuple(parameters), body, self._file, owner, is_static)
@@ -161,7 +165,11 @@ class _Reader:
                 return self._make(node, "join", None, (self._read(left, depth), self._read(right, depth)))
             case ast.BinOp(left=left, op=ast.Mod() | ast.Div() | ast.Mult() | ast.Sub() as op, right=right):
                 sign = {ast.Mod: "%", ast.Div: "/", ast.Mult: "*", ast.Sub: "-"}[type(op)]
-                parts = [Expression("name", sign, node.lineno, 1, sign), self._read(left, depth), self._read(right, depth)]
+                parts = [
+                    Expression("name", sign, node.lineno, 1, sign),
+                    self._read(left, depth),
+                    self._read(right, depth),
+                ]
                 return self._make(node, "call", None, parts)
             case ast.UnaryOp(op=ast.USub(), operand=ast.Constant(value=int() | float() as number)):
                 return self._make(node, "value", -number)
@@ -169,7 +177,9 @@ class _Reader:
                 return self._read_operation(node, "not", (operand,), depth)
             case ast.BoolOp(op=op, values=values):
                 return self._read_operation(node, "and" if isinstance(op, ast.And) else "or", values, depth)
-            case ast.Compare(left=left, ops=[ast.Eq() | ast.NotEq() | ast.In() | ast.NotIn() | ast.Is() | ast.IsNot() as op]):
+            case ast.Compare(
+                left=left, ops=[ast.Eq() | ast.NotEq() | ast.In() | ast.NotIn() | ast.Is() | ast.IsNot() as op]
+            ):
                 sign = {"Eq": "==", "Is": "==", "NotEq": "!=", "IsNot": "!=", "In": "in", "NotIn": "not in"}
                 return self._read_operation(node, sign[type(op).__name__], (left, *node.comparators), depth)
             case ast.List(elts=items) | ast.Tuple(elts=items) | ast.Set(elts=items):

@@ -42,7 +42,9 @@ from archgen.plugins.ros.sources.walk_values import (
 
 _NAME_KEYS = ("topic", "topic_name", "srv_name", "action_name", "name", "service", "ns")
 _TYPE_KEYS = ("msg_type", "srv_type", "action_type", "data_class", "service_class", "topic_type", "ActionSpec")
-_GETTERS = frozenset({"get_parameter", "get_parameter_or", "getParam", "getParamCached", "param", "get_param", "get", "get_param_cached"})
+_GETTERS = frozenset(
+    {"get_parameter", "get_parameter_or", "getParam", "getParamCached", "param", "get_param", "get", "get_param_cached"}
+)
 _DECLARERS = frozenset({"declare_parameter", "declare_parameter_if_not_declared", "declare_or_get_parameter"})
 _PRIVATE = ("~/", "~")
 _ROS_1_MODULES = frozenset({"rospy", "ros.param"})
@@ -77,7 +79,9 @@ class RosCallReader:
         self.current_node = self.current_node or node
         return node
 
-    def name_node(self, node: FoundNode, arguments: Sequence[Any], keywords: Mapping[str, Any], *, is_cpp: bool) -> None:
+    def name_node(
+        self, node: FoundNode, arguments: Sequence[Any], keywords: Mapping[str, Any], *, is_cpp: bool
+    ) -> None:
         """Keep the name and namespace that a constructor is given."""
         name = arguments[0] if arguments else keywords.get("node_name", keywords.get("name"))
         if isinstance(name, NodeHandle | WalkedObject) or (is_cpp and not arguments):
@@ -126,7 +130,11 @@ class RosCallReader:
         if last == "SubscriberFilter" and len(arguments) > 1:
             self._add_filter(arguments, IMAGE_TYPES[0], span)
             return NodeHandle(self._need_node(span, *arguments[:1]), "", "filter", IMAGE_TYPES[0])
-        if last in FIXED_ENDPOINTS and package.partition(".")[0] in FIXED_PACKAGES and (arguments or not is_member or package == "tf"):
+        if (
+            last in FIXED_ENDPOINTS
+            and package.partition(".")[0] in FIXED_PACKAGES
+            and (arguments or not is_member or package == "tf")
+        ):
             node = self._need_node(span, *arguments)
             for use, name, message in FIXED_ENDPOINTS[last]:
                 self._add(node, FoundEndpoint(use, "topic", name, message, span))
@@ -175,14 +183,24 @@ class RosCallReader:
         if method in IMAGE_CALLS and name.startswith("image_transport."):
             node = self._need_node(span, *arguments[:1])
             return self._add_images(node, "", method, arguments[1:], span)
-        if name and (made := self.make_external(name + (f"<{types[0]}>" if types else ""), arguments, keywords, span)) is not None:
+        if (
+            name
+            and (made := self.make_external(name + (f"<{types[0]}>" if types else ""), arguments, keywords, span))
+            is not None
+        ):
             return made
         if method in {"getNodeHandle", "getMTNodeHandle", "getPrivateNodeHandle", "getMTPrivateNodeHandle"}:
             return NodeHandle(self._need_node(span, whole), "~" if "Private" in method else "")
-        is_ours = self.find_node(whole) is not None or isinstance(whole, UnknownText | Alternatives) or name.startswith("rclcpp.")
+        is_ours = (
+            self.find_node(whole) is not None
+            or isinstance(whole, UnknownText | Alternatives)
+            or name.startswith("rclcpp.")
+        )
         if method in TIMERS and (is_ours or name == "rospy.Timer"):
             at = next((place for place, each in enumerate(arguments) if read_seconds(each) is not None), None)
-            self._need_node(span, whole, *arguments[:1]).periods.append(None if at is None else read_seconds(arguments[at]))
+            self._need_node(span, whole, *arguments[:1]).periods.append(
+                None if at is None else read_seconds(arguments[at])
+            )
             return UnknownText("timer", span)
         if name == "rospy.Timer" and arguments:
             self._need_node(span).periods.append(read_seconds(arguments[0]))
@@ -219,7 +237,11 @@ class RosCallReader:
         self._add(node, FoundEndpoint(use, "topic", name, IMAGE_TYPES[0], span))
         if has_info:
             text = settle(name)
-            beside = f"{text.rpartition('/')[0]}/camera_info".removeprefix("/" if not text.startswith("/") else "") if isinstance(text, str) else UnknownText("camera_info beside it", span)
+            beside = (
+                f"{text.rpartition('/')[0]}/camera_info".removeprefix("/" if not text.startswith("/") else "")
+                if isinstance(text, str)
+                else UnknownText("camera_info beside it", span)
+            )
             self._add(node, FoundEndpoint(use, "topic", beside, IMAGE_TYPES[1], span))
         return UnknownText(method, span)
 
@@ -232,13 +254,25 @@ class RosCallReader:
         types: Sequence[str],
         span: Span,
     ) -> None:
-        if call.node_at is not None and arguments and self.find_node(arguments[0]) is None and self.is_ros_1 and call.name_at > 0:
+        if (
+            call.node_at is not None
+            and arguments
+            and self.find_node(arguments[0]) is None
+            and self.is_ros_1
+            and call.name_at > 0
+        ):
             # The sisters of ROS 1 take no node: `message_filters.Subscriber(topic, type)`.
             call = call._replace(name_at=0, type_at=None if call.type_at is None else 1, node_at=None)
         elif call.node_at is None and call.name_at == 0 and arguments and isinstance(arguments[0], NodeHandle):
             arguments = arguments[1:]
         name = _get_argument(arguments, call.name_at, keywords, _NAME_KEYS, span)
-        handle = whole if isinstance(whole, NodeHandle) else arguments[call.node_at] if call.node_at is not None and call.node_at < len(arguments) else None
+        handle = (
+            whole
+            if isinstance(whole, NodeHandle)
+            else arguments[call.node_at]
+            if call.node_at is not None and call.node_at < len(arguments)
+            else None
+        )
         if isinstance(handle, NodeHandle):
             name = _join_prefix(handle.prefix, name)
         elif self.is_ros_1 and isinstance(whole, UnknownText):
@@ -265,8 +299,10 @@ class RosCallReader:
         endpoint.is_conditional = self.conditions > 0
         shown = show_value(endpoint.name)
         for other in node.endpoints:
-            if (other.use, other.flow) == (endpoint.use, endpoint.flow) and show_value(other.name) == shown and (
-                "*" not in shown or other.span == endpoint.span
+            if (
+                (other.use, other.flow) == (endpoint.use, endpoint.flow)
+                and show_value(other.name) == shown
+                and ("*" not in shown or other.span == endpoint.span)
             ):
                 if other.message and endpoint.message not in {"", other.message}:
                     # Which of two types it has is decided by something that is not known.
@@ -277,7 +313,7 @@ class RosCallReader:
 
     # Parameters
 
-    def _read_parameter_call(  # noqa: PLR0911, PLR0913 - one for each kind; all that a call is
+    def _read_parameter_call(  # noqa: PLR0913 - one for each kind; all that a call is
         self,
         whole: Any,  # noqa: ANN401 - any value
         name: str,
@@ -287,7 +323,11 @@ class RosCallReader:
         span: Span,
     ) -> Any:  # noqa: ANN401 - any value
         is_module = name.rpartition(".")[0] in _ROS_1_MODULES
-        is_ours = is_module or self.find_node(whole) is not None or (isinstance(whole, UnknownText) and method != "get" and method != "param")
+        is_ours = (
+            is_module
+            or self.find_node(whole) is not None
+            or (isinstance(whole, UnknownText) and method != "get" and method != "param")
+        )
         is_ours = is_ours or (method == "declare_parameter_if_not_declared" and name.startswith(("nav2", "rclcpp")))
         if not is_ours or (method == "get" and not is_module):
             return NotImplemented
@@ -299,7 +339,9 @@ class RosCallReader:
             shift = 0
         if method not in _DECLARERS | _GETTERS or not arguments:
             return NotImplemented
-        parameter_name = settle(_join_prefix(whole.prefix, arguments[0])) if isinstance(whole, NodeHandle) else settle(arguments[0])
+        parameter_name = (
+            settle(_join_prefix(whole.prefix, arguments[0])) if isinstance(whole, NodeHandle) else settle(arguments[0])
+        )
         node = self._need_node(span, whole)
         if not isinstance(parameter_name, str):
             return UnknownText(f"the parameter {show_value(parameter_name)}", span)
@@ -308,7 +350,12 @@ class RosCallReader:
             default = rest[0] if rest else keywords.get("value", UnknownText("", span))
             return self._make_parameter(node, parameter_name, default, span, is_declared=True)
         is_cpp = self.file is not None and self.file.language == "cpp"
-        writes = is_cpp and method in {"get_parameter", "get_parameter_or", "getParam", "getParamCached", "get", "param"} and rest and not (method == "param" and len(rest) == 1)
+        writes = (
+            is_cpp
+            and method in {"get_parameter", "get_parameter_or", "getParam", "getParamCached", "get", "param"}
+            and rest
+            and not (method == "param" and len(rest) == 1)
+        )
         default = UnknownText("", span) if not rest or (writes and len(rest) == 1) else rest[-1]
         default = keywords.get("default", keywords.get("alternative_value", default))
         value = self._make_parameter(node, parameter_name, default, span, is_declared=self.is_ros_1)
@@ -323,7 +370,9 @@ class RosCallReader:
         default = parts[1] if len(parts) > 1 else UnknownText("", span)
         return self._make_parameter(self._need_node(span), full_name, default, span, is_declared=True)
 
-    def _make_parameter(self, node: FoundNode, name: str, default: Any, span: Span, *, is_declared: bool) -> ParameterValue:  # noqa: ANN401 - any value
+    def _make_parameter(
+        self, node: FoundNode, name: str, default: Any, span: Span, *, is_declared: bool
+    ) -> ParameterValue:
         plain = name
         is_own = not self.is_ros_1
         for mark in _PRIVATE:
@@ -366,4 +415,3 @@ def _write_private(name: Any) -> Any:  # noqa: ANN401 - a text, or its parts
     """Return a private name of ROS 1 (`~map`) as both generations write it."""
     is_short = isinstance(name, str) and name.startswith("~") and not name.startswith("~/")
     return f"~/{name[1:]}" if is_short else name
-

@@ -51,7 +51,10 @@ ROSCPP_METHODS = MappingProxyType(
         "serviceClient": EndpointCall(_CALL, "service", 0),
     }
 )
-_ACTION_SERVER, _ACTION_CLIENT = EndpointCall(_SERVE, "action", 2, 1, None, 0), EndpointCall(_CALL, "action", 2, 1, None, 0)
+_ACTION_SERVER, _ACTION_CLIENT = (
+    EndpointCall(_SERVE, "action", 2, 1, None, 0),
+    EndpointCall(_CALL, "action", 2, 1, None, 0),
+)
 FUNCTIONS = MappingProxyType(
     {
         "rclpy.action.ActionServer": _ACTION_SERVER,
@@ -225,7 +228,14 @@ def change_qos(qos: Mapping[str, Any], method: str, arguments: list[Any]) -> dic
 
 
 _FACTORS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0, "min": 60.0}
-_UNITS = {"nanoseconds": 1e-9, "microseconds": 1e-6, "milliseconds": 1e-3, "seconds": 1.0, "duration": 1.0, "minutes": 60.0}
+_UNITS = {
+    "nanoseconds": 1e-9,
+    "microseconds": 1e-6,
+    "milliseconds": 1e-3,
+    "seconds": 1.0,
+    "duration": 1.0,
+    "minutes": 60.0,
+}
 _LITERAL = re.compile(r"([\d.]+)(ns|us|ms|s|min)\Z")
 
 
@@ -234,7 +244,9 @@ def read_seconds(value: Any) -> float | None:  # noqa: ANN401 - any value
     settled = settle(value)
     if isinstance(settled, str) and (match := _LITERAL.match(settled)):
         return float(match[1]) * _FACTORS[match[2]]
-    return float(settled) if isinstance(settled, int | float) and not isinstance(settled, bool) and settled > 0 else None
+    return (
+        float(settled) if isinstance(settled, int | float) and not isinstance(settled, bool) and settled > 0 else None
+    )
 
 
 def make_seconds(name: str, arguments: list[Any], keywords: Mapping[str, Any]) -> float | None:

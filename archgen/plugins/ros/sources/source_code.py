@@ -14,7 +14,9 @@ MAX_DEPTH = 80
 """Expressions and blocks that stand in one another; deeper ones are unknown: people do not write them."""
 MAX_SOURCE_BYTES = 1_000_000
 
-ExpressionKind = Literal["value", "name", "member", "call", "join", "list", "dict", "index", "choice", "lambda", "unknown"]
+ExpressionKind = Literal[
+    "value", "name", "member", "call", "join", "list", "dict", "index", "choice", "lambda", "unknown"
+]
 
 
 @dataclass(slots=True, eq=False)

@@ -93,7 +93,9 @@ class SourceIndex:
 
     def _find_header(self, name: str, includer: Path) -> Path | None:
         suffix = PurePosixPath(name).parts
-        fitting = [path for path in self._headers.get(suffix[-1] if suffix else "", ()) if path.parts[-len(suffix) :] == suffix]
+        fitting = [
+            path for path in self._headers.get(suffix[-1] if suffix else "", ()) if path.parts[-len(suffix) :] == suffix
+        ]
         # Of several of one name that of the includer's own package counts: the one with the longest way in common.
         return max(fitting, key=lambda path: (_count_common(path, includer), path.as_posix()), default=None)
 
@@ -142,5 +144,9 @@ class CppCode:
             found = self.classes.get("::".join([*outer[:length], plain]))
             if found is not None:
                 return found
-        alike = [each for each in self._by_last_name.get(plain.rpartition("::")[2], ()) if f"::{each.name}".endswith(f"::{plain}")]
+        alike = [
+            each
+            for each in self._by_last_name.get(plain.rpartition("::")[2], ())
+            if f"::{each.name}".endswith(f"::{plain}")
+        ]
         return alike[0] if len(alike) == 1 else None

@@ -33,7 +33,9 @@ class ProgramReader:
     def __init__(self, files: WorkspaceFiles, account: ImportAccount) -> None:
         self._files = files
         self._account = account
-        self._index = SourceIndex(files.list_sources(), [(p.manifest.name, p.manifest.folder) for p in files.packages.values()])
+        self._index = SourceIndex(
+            files.list_sources(), [(p.manifest.name, p.manifest.folder) for p in files.packages.values()]
+        )
         self._codes: dict[tuple[str, str], CppCode] = {}
 
     def read_node(self, node: LaunchedNode) -> ReadProgram | None:
@@ -88,7 +90,9 @@ class ProgramReader:
             if target:
                 sources = self._files.list_linked_sources(package, target)
             else:
-                sources = [path for library in package.libraries for path in self._files.list_linked_sources(package, library)]
+                sources = [
+                    path for library in package.libraries for path in self._files.list_linked_sources(package, library)
+                ]
             self._codes[key] = self._index.gather_cpp(sources)
         return self._codes[key]
 

@@ -22,7 +22,19 @@ _SKIPPED = frozenset({"build", "install", "log", "devel", "node_modules", "__pyc
 _IGNORING = frozenset({"COLCON_IGNORE", "CATKIN_IGNORE", "AMENT_IGNORE"})
 _TESTS = frozenset({"test", "tests"})
 _ENTRY_POINT = re.compile(r"\s*([\w.\-]+)\s*=\s*([\w.]+)\s*:\s*([\w.]+)\s*")
-_LIBRARY_WORDS = frozenset({"STATIC", "SHARED", "MODULE", "OBJECT", "INTERFACE", "EXCLUDE_FROM_ALL", "PUBLIC", "PRIVATE", "NO_TARGET_LINK_LIBRARIES"})
+_LIBRARY_WORDS = frozenset(
+    {
+        "STATIC",
+        "SHARED",
+        "MODULE",
+        "OBJECT",
+        "INTERFACE",
+        "EXCLUDE_FROM_ALL",
+        "PUBLIC",
+        "PRIVATE",
+        "NO_TARGET_LINK_LIBRARIES",
+    }
+)
 
 
 @dataclass(slots=True, eq=False)
@@ -97,7 +109,11 @@ class WorkspaceFiles:
         package = WorkspacePackage(manifest)
         known = self.packages.setdefault(manifest.name, package)
         if known is not package:
-            place = known.manifest.folder.relative_to(root).as_posix() if known.manifest.folder.is_relative_to(root) else "another folder"
+            place = (
+                known.manifest.folder.relative_to(root).as_posix()
+                if known.manifest.folder.is_relative_to(root)
+                else "another folder"
+            )
             words = f"there is another package `{manifest.name}` in {place}: that one counts"
             self.account.add_note("package.xml", words, Span.of_file((folder / MANIFEST).relative_to(root).as_posix()))
             return None
@@ -106,7 +122,11 @@ class WorkspaceFiles:
     def list_sources(self) -> Iterator[tuple[Path, str]]:
         """Yield the files that may be sources, with how messages name them."""
         for path, shown in self.shown.items():
-            if path.suffix in {".py", *CPP_SOURCES, *CPP_HEADERS} or not path.suffix or path.parent.name in {"scripts", "nodes", "bin"}:
+            if (
+                path.suffix in {".py", *CPP_SOURCES, *CPP_HEADERS}
+                or not path.suffix
+                or path.parent.name in {"scripts", "nodes", "bin"}
+            ):
                 yield path, shown
 
     def list_linked_sources(self, package: WorkspacePackage, target: str) -> list[Path]:
@@ -120,14 +140,18 @@ class WorkspaceFiles:
                 continue
             seen.add(key)
             program = owner.programs.get(name)
-            found += program.sources if program is not None and program.language == "cpp" else owner.libraries.get(name, ())
+            found += (
+                program.sources if program is not None and program.language == "cpp" else owner.libraries.get(name, ())
+            )
             for linked in owner.links.get(name, ()):
                 scope, _, last = linked.rpartition("::")
                 other = self.packages.get(scope or linked)
                 if last in owner.libraries or last in owner.programs:
                     pending.append((owner, last))
                 elif other is not None:
-                    pending += [(other, library) for library in ([last] if last in other.libraries else other.libraries)]
+                    pending += [
+                        (other, library) for library in ([last] if last in other.libraries else other.libraries)
+                    ]
         return list(dict.fromkeys(found))
 
     def _find_programs(self, package: WorkspacePackage) -> None:
@@ -186,7 +210,9 @@ class WorkspaceFiles:
             sources = _find_sources([each for each in words[1:] if each not in _LIBRARY_WORDS], call.folder, files)
             if "DIRECTORY" in words:
                 top = call.folder / words[words.index("DIRECTORY") + 1]
-                sources = tuple(path for path in package.files if path.parent == top and path.name.endswith(CPP_SOURCES))
+                sources = tuple(
+                    path for path in package.files if path.parent == top and path.name.endswith(CPP_SOURCES)
+                )
             if name == "target_sources" and words[0] in package.libraries:
                 package.libraries[words[0]] += sources
             elif name == "add_library":

@@ -6,7 +6,14 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from archgen.plugin.importing import ForeignFileError, ForeignImport, Span, load_shipped_component_types, make_id, title_from_id
+from archgen.plugin.importing import (
+    ForeignFileError,
+    ForeignImport,
+    Span,
+    load_shipped_component_types,
+    make_id,
+    title_from_id,
+)
 from archgen.plugins.ros.launch.launch_actions import LaunchedNode
 from archgen.plugins.ros.launch.launch_import import LaunchedFiles, find_stem, run_launch_files
 from archgen.plugins.ros.launch.launch_slices import SliceMaker
@@ -36,11 +43,15 @@ def read_workspace(
     account = ImportAccount()
     for path in files:
         if not path.is_dir():
-            raise ForeignFileError("it is no folder", Span.of_file(str(path)), "give the folder in which the packages lie, `src` as a rule")
+            raise ForeignFileError(
+                "it is no folder", Span.of_file(str(path)), "give the folder in which the packages lie, `src` as a rule"
+            )
     workspace = WorkspaceFiles(files, account)
     if not workspace.packages:
         words = "there is no package.xml in it"
-        raise ForeignFileError(words, Span.of_file(str(files[0])), "give the folder in which the packages lie, `src` as a rule")
+        raise ForeignFileError(
+            words, Span.of_file(str(files[0])), "give the folder in which the packages lie, `src` as a rule"
+        )
     entries = [_find_entry(workspace, files, text) for text in launch_files]
     launched = run_launch_files([*entries, *files] if entries else files, arguments, environment)
     if not entries:
@@ -62,7 +73,13 @@ def read_workspace(
     notes = (*account.notes, *launched.run.notes)
     counts = Counter(account.taken)
     return ForeignImport(
-        sections, dict(sorted((+counts).items())), notes, title, known_distro, comments, uses_shipped_library=slices.uses_library
+        sections,
+        dict(sorted((+counts).items())),
+        notes,
+        title,
+        known_distro,
+        comments,
+        uses_shipped_library=slices.uses_library,
     )
 
 
@@ -78,7 +95,11 @@ def _find_library_type(node: LaunchedNode, distro: str) -> str:
         return ""
     for name, entry in load_shipped_component_types(distro).items():
         facts = entry.value.get("node")
-        texts = {key: getattr(facts.get(key), "text", "") for key in ("package", "executable", "plugin")} if facts is not None else {}
+        texts = (
+            {key: getattr(facts.get(key), "text", "") for key in ("package", "executable", "plugin")}
+            if facts is not None
+            else {}
+        )
         program = "plugin" if node.plugin else "executable"
         if texts.get("package") == node.package and texts.get(program) == (node.plugin or node.executable):
             return name
@@ -98,7 +119,9 @@ def _find_entry(workspace: WorkspaceFiles, folders: Sequence[Path], text: str) -
             return path
     launch_files = _list_launch_names(workspace)
     raise ForeignFileError(
-        "there is no such launch file in the workspace", Span.of_file(text), f"there are {', '.join(launch_files[:_MAX_SHOWN]) or 'none'}"
+        "there is no such launch file in the workspace",
+        Span.of_file(text),
+        f"there are {', '.join(launch_files[:_MAX_SHOWN]) or 'none'}",
     )
 
 
@@ -116,7 +139,9 @@ def _choose_entry(launched: LaunchedFiles) -> LaunchedFiles:
         return LaunchedFiles(launched.run, started)
     if not started:
         raise ForeignFileError(
-            "its launch files start no node", Span.of_file("."), "name the launch file that starts the robot: `--launch PACKAGE/FILE`"
+            "its launch files start no node",
+            Span.of_file("."),
+            "name the launch file that starts the robot: `--launch PACKAGE/FILE`",
         )
     files = launched.run.files
 

@@ -8,19 +8,37 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from archgen.plugin import dataclass
-from archgen.plugin.importing import FlowMapping, MappingNode, ScalarNode, YamlNode, link_slices, load_shipped_component_types, make_id, make_unique_id
+from archgen.plugin.importing import (
+    FlowMapping,
+    MappingNode,
+    ScalarNode,
+    YamlNode,
+    link_slices,
+    load_shipped_component_types,
+    make_id,
+    make_unique_id,
+)
 from archgen.plugin.model import Architecture, Endpoint
 from archgen.plugin.ros import find_name_fault, find_node_name_fault
 from archgen.plugins.ros.launch.launch_actions import LaunchedNode
 from archgen.plugins.ros.launch.launch_slices import SliceMaker, nest_parameters
 from archgen.plugins.ros.ros_package.import_account import ImportAccount
-from archgen.plugins.ros.sources.walk_values import FoundEndpoint, FoundNode, ParameterValue, find_unknown, settle, show_value
+from archgen.plugins.ros.sources.walk_values import (
+    FoundEndpoint,
+    FoundNode,
+    ParameterValue,
+    find_unknown,
+    settle,
+    show_value,
+)
 from archgen.plugins.ros.workspace.program_reading import ReadProgram
 from archgen.plugins.ros.workspace.program_sources import WorkspaceFiles
 
 LIBRARY = "ros"
 _SHARED = frozenset({"/tf", "/tf_static", "/clock", "/diagnostics", "/rosout", "/parameter_events"})
-_POOR_WORDS = frozenset({"pose", "state", "global", "local", "data", "raw", "status", "image", "command", "cmd", "info"})
+_POOR_WORDS = frozenset(
+    {"pose", "state", "global", "local", "data", "raw", "status", "image", "command", "cmd", "info"}
+)
 _USUAL_QOS = {"depth": 10}
 """What ROS takes where nothing else is said."""
 _HINT = "launch"
@@ -80,7 +98,11 @@ class WorkspaceSlices:
         folders, namespaces = {}, {}
         for node_id, node in launched.items():
             package = self._workspace.packages.get(node.package)
-            manifest = next((self._workspace.shown[path] for path in package.files if path.name == "package.xml"), "") if package else ""
+            manifest = (
+                next((self._workspace.shown[path] for path in package.files if path.name == "package.xml"), "")
+                if package
+                else ""
+            )
             parts = manifest.split("/")
             folders[node_id] = parts[0] if len(parts) > 2 else ""  # noqa: PLR2004 - folder, package, package.xml
             namespaces[node_id] = node.namespace.strip("/").partition("/")[0]
@@ -115,7 +137,7 @@ class WorkspaceSlices:
         else:
             components[node_id] = {}
             if known.node.form != "program":
-                text = f"what it says is not known: neither its sources nor a type of the library are at hand"
+                text = "what it says is not known: neither its sources nor a type of the library are at hand"
                 self._comments.setdefault(("nodes", node_id), text)
                 self._account.count("node without sources")
 
@@ -126,7 +148,7 @@ class WorkspaceSlices:
         for found in known.program.nodes if known.program else ():
             kept += [re.escape(each.name.name) for each in found.endpoints if isinstance(each.name, ParameterValue)]
         naming = re.compile("|".join(kept) or "(?!)")
-        if node.parameter_files and not known.program or known.program and not known.program.is_ros_1:
+        if (node.parameter_files and not known.program) or (known.program and not known.program.is_ros_1):
             left_out = {name for name in node.file_parameters if not naming.fullmatch(name)}
             parameters = {name: value for name, value in node.parameters.items() if name not in left_out}
             data.pop("parameters", None)
@@ -140,12 +162,19 @@ class WorkspaceSlices:
             if name != node_id:
                 data["name"] = name
         namespace = settle(found.namespace)
-        if not known.node.namespace and isinstance(namespace, str) and namespace.strip("/") and not find_name_fault(namespace):
+        if (
+            not known.node.namespace
+            and isinstance(namespace, str)
+            and namespace.strip("/")
+            and not find_name_fault(namespace)
+        ):
             data["namespace"] = f"/{namespace.strip('/')}"
         if found.is_lifecycle:
             data["kind"] = "lifecycle" if "kind" not in data else data["kind"]
 
-    def _write_found(self, node_id: str, data: dict[str, Any], known: NodeKnowledge, program: ReadProgram) -> dict[str, Any]:
+    def _write_found(
+        self, node_id: str, data: dict[str, Any], known: NodeKnowledge, program: ReadProgram
+    ) -> dict[str, Any]:
         ports: dict[str, dict[str, Any]] = {"inputs": FlowMapping(), "outputs": FlowMapping()}
         for number, found in enumerate(program.nodes):
             if number:
@@ -160,7 +189,12 @@ class WorkspaceSlices:
         return {side: written for side, written in ports.items() if written}
 
     def _write_endpoint(
-        self, node_id: str, data: dict[str, Any], endpoint: FoundEndpoint, ports: dict[str, dict[str, Any]], program: ReadProgram
+        self,
+        node_id: str,
+        data: dict[str, Any],
+        endpoint: FoundEndpoint,
+        ports: dict[str, dict[str, Any]],
+        program: ReadProgram,
     ) -> None:
         name = settle(endpoint.name)
         if name == "" or name is None:
@@ -169,7 +203,12 @@ class WorkspaceSlices:
         self._account.count("endpoint")
         key = "own_name" if _may_be_moved(text, data) else "topic" if endpoint.flow == "topic" else "name"
         use: dict[str, Any] = {key: text} if text else {}
-        if text and isinstance(endpoint.name, ParameterValue) and endpoint.name.name and endpoint.name.value is not endpoint.name.default:
+        if (
+            text
+            and isinstance(endpoint.name, ParameterValue)
+            and endpoint.name.name
+            and endpoint.name.value is not endpoint.name.default
+        ):
             default = settle(endpoint.name.default)
             use = {"named_by": endpoint.name.name}
             if isinstance(default, str) and default and not find_name_fault(default, ros_1=program.is_ros_1):
@@ -184,8 +223,12 @@ class WorkspaceSlices:
             return
         side = "outputs" if endpoint.use in _OUT_USES else "inputs"
         port = self._name_port(text or show_value(endpoint.name).replace("*", "_"), endpoint, ports[side])
-        ports[side][port] = endpoint.message or None if side == "outputs" else FlowMapping({"type": endpoint.message or None})
-        data.setdefault(endpoint.use, FlowMapping())[port] = use[key] if list(use) == [key] and key != "own_name" else FlowMapping(use)
+        ports[side][port] = (
+            endpoint.message or None if side == "outputs" else FlowMapping({"type": endpoint.message or None})
+        )
+        data.setdefault(endpoint.use, FlowMapping())[port] = (
+            use[key] if list(use) == [key] and key != "own_name" else FlowMapping(use)
+        )
         path = ("groups", self._places[node_id], "components", node_id, side, port)
         place = f"{endpoint.span.file}:{endpoint.span.line}"
         if not text:
@@ -230,8 +273,14 @@ class WorkspaceSlices:
             group, component, name = port.split(".")
             body = self._groups[group][component]
             names = [endpoint.name for endpoint in endpoints if endpoint.name is not None]
-            sources = [source for endpoint in endpoints for source in writers.get((endpoint.flow, endpoint.name or ""), ())]
-            sources = [source.removeprefix(f"{group}.") for source in dict.fromkeys(sources) if not source.startswith(f"{group}.{component}.")]
+            sources = [
+                source for endpoint in endpoints for source in writers.get((endpoint.flow, endpoint.name or ""), ())
+            ]
+            sources = [
+                source.removeprefix(f"{group}.")
+                for source in dict.fromkeys(sources)
+                if not source.startswith(f"{group}.{component}.")
+            ]
             inputs = body.setdefault("inputs", FlowMapping())
             own = inputs.get(name)
             typed = {"type": own["type"]} if own and own["type"] else {}
@@ -268,7 +317,9 @@ class WorkspaceSlices:
             comments[file] = {
                 path: text
                 for path, text in self._comments.items()
-                if (path[0] == "groups" and path[1] == group) or (path[0] == "nodes" and path[1] in nodes) or (path[0] == "containers" and others)
+                if (path[0] == "groups" and path[1] == group)
+                or (path[0] == "nodes" and path[1] in nodes)
+                or (path[0] == "containers" and others)
             }
             others = {}
         return slices, comments
