@@ -222,7 +222,7 @@ class _Reader:
                 arguments = [self._read(a, depth) for value in values for a in value.named_children]
                 # Whether it is a member or a base is known when all of the class is.
                 made = self._make(child, "call", None, (self._make(name, "name", clean_type(_text(name))), *arguments))
-                yield Statement("local", made, type_name="(initializer)")
+                yield Statement("local", made)
 
     def _read_block(self, node: Node, depth: int) -> tuple[Statement, ...]:
         if depth > MAX_DEPTH:

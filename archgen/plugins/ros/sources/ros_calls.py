@@ -3,228 +3,191 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from archgen.plugins.ros.sources.walk_values import ExternalName, settle
+from archgen.plugins.ros.sources.walk_values import ExternalName, Value, settle
 
 
 class EndpointCall(NamedTuple):
-    """What a call makes. Positions count its arguments from 0; `type_at` None: the type stands in `<...>`, or is the callback's."""
+    """What a call makes. Positions count its arguments from 0; without `type_at` the type stands in `<...>`, or is the callback's."""
 
     use: str
     flow: str
     name_at: int
     type_at: int | None = None
     qos_at: int | None = None
-    node_at: int | None = None
     callback_at: int | None = None
+    has_node: bool = False
+    """Whether its first argument is the node."""
 
 
-_PUBLISH, _SUBSCRIBE, _SERVE, _CALL = "publishes", "subscribes", "serves", "calls"
+def _make_endpoint_calls(
+    *, name: int, kind: int | None, suffix: str = "", has_node: bool = False
+) -> dict[str, EndpointCall]:
+    """Return the four calls of a library that are alike, with the places of name and type."""
+    qos = name + (2 if kind is not None else 1)
+    return {
+        "create_publisher": EndpointCall("publishes", "topic", name, kind, name + 1, None, has_node),
+        "create_subscription": EndpointCall("subscribes", "topic", name, kind, qos, name + 2, has_node),
+        "create_service": EndpointCall("serves", "service", name, kind, has_node=has_node),
+        "create_client": EndpointCall("calls", "service", name, kind, has_node=has_node),
+    }
 
-RCLPY_METHODS = MappingProxyType(
-    {
-        "create_publisher": EndpointCall(_PUBLISH, "topic", 1, 0, 2),
-        "create_lifecycle_publisher": EndpointCall(_PUBLISH, "topic", 1, 0, 2),
-        "create_subscription": EndpointCall(_SUBSCRIBE, "topic", 1, 0, 3),
-        "create_service": EndpointCall(_SERVE, "service", 1, 0),
-        "create_client": EndpointCall(_CALL, "service", 1, 0),
-    }
-)
-RCLCPP_METHODS = MappingProxyType(
-    {
-        "create_publisher": EndpointCall(_PUBLISH, "topic", 0, None, 1),
-        "create_subscription": EndpointCall(_SUBSCRIBE, "topic", 0, None, 1, None, 2),
-        "create_service": EndpointCall(_SERVE, "service", 0),
-        "create_client": EndpointCall(_CALL, "service", 0),
-        "create_generic_publisher": EndpointCall(_PUBLISH, "topic", 0, 1, 2),
-        "create_generic_subscription": EndpointCall(_SUBSCRIBE, "topic", 0, 1, 2),
-    }
-)
-ROSCPP_METHODS = MappingProxyType(
-    {
-        "advertise": EndpointCall(_PUBLISH, "topic", 0, None, 1),
-        "subscribe": EndpointCall(_SUBSCRIBE, "topic", 0, None, 1, None, 2),
-        "advertiseService": EndpointCall(_SERVE, "service", 0, None, None, None, 1),
-        "serviceClient": EndpointCall(_CALL, "service", 0),
-    }
-)
-_ACTION_SERVER, _ACTION_CLIENT = (
-    EndpointCall(_SERVE, "action", 2, 1, None, 0),
-    EndpointCall(_CALL, "action", 2, 1, None, 0),
-)
-FUNCTIONS = MappingProxyType(
-    {
-        "rclpy.action.ActionServer": _ACTION_SERVER,
-        "rclpy.action.server.ActionServer": _ACTION_SERVER,
-        "rclpy.action.ActionClient": _ACTION_CLIENT,
-        "rclpy.action.client.ActionClient": _ACTION_CLIENT,
-        "message_filters.Subscriber": EndpointCall(_SUBSCRIBE, "topic", 2, 1, None, 0),
-        "rospy.Publisher": EndpointCall(_PUBLISH, "topic", 0, 1),
-        "rospy.Subscriber": EndpointCall(_SUBSCRIBE, "topic", 0, 1),
-        "rospy.wait_for_message": EndpointCall(_SUBSCRIBE, "topic", 0, 1),
-        "rospy.Service": EndpointCall(_SERVE, "service", 0, 1),
-        "rospy.ServiceProxy": EndpointCall(_CALL, "service", 0, 1),
-        "actionlib.SimpleActionServer": EndpointCall(_SERVE, "action", 0, 1),
-        "actionlib.ActionServer": EndpointCall(_SERVE, "action", 0, 1),
-        "actionlib.SimpleActionClient": EndpointCall(_CALL, "action", 0, 1),
-        "actionlib.ActionClient": EndpointCall(_CALL, "action", 0, 1),
-        "rclcpp_action.create_server": EndpointCall(_SERVE, "action", 1, None, None, 0),
-        "rclcpp_action.create_client": EndpointCall(_CALL, "action", 1, None, None, 0),
-        "rclcpp.create_publisher": EndpointCall(_PUBLISH, "topic", 1, None, 2, 0),
-        "rclcpp.create_subscription": EndpointCall(_SUBSCRIBE, "topic", 1, None, 2, 0),
-        "rclcpp.create_service": EndpointCall(_SERVE, "service", 1, None, None, 0),
-        "rclcpp.create_client": EndpointCall(_CALL, "service", 1, None, None, 0),
-        "nav2_util.SimpleActionServer": EndpointCall(_SERVE, "action", 1, None, None, 0),
-        "nav2_util.ServiceClient": EndpointCall(_CALL, "service", 0, None, None, 1),
-        "realtime_tools.RealtimePublisher": EndpointCall(_PUBLISH, "topic", 1, None, None, 0),
-    }
-)
+
+RCLPY_METHODS = _make_endpoint_calls(name=1, kind=0)
+RCLPY_METHODS["create_lifecycle_publisher"] = RCLPY_METHODS["create_publisher"]
+RCLCPP_METHODS = {
+    **_make_endpoint_calls(name=0, kind=None),
+    "create_generic_publisher": EndpointCall("publishes", "topic", 0, 1, 2),
+    "create_generic_subscription": EndpointCall("subscribes", "topic", 0, 1, 2),
+}
+ROSCPP_METHODS = {
+    "advertise": EndpointCall("publishes", "topic", 0),
+    "subscribe": EndpointCall("subscribes", "topic", 0, callback_at=2),
+    "advertiseService": EndpointCall("serves", "service", 0, callback_at=1),
+    "serviceClient": EndpointCall("calls", "service", 0),
+}
+_SERVER, _CLIENT = (EndpointCall(use, "action", 2, 1, has_node=True) for use in ("serves", "calls"))
+FUNCTIONS = {
+    **{f"rclcpp.{name}": call for name, call in _make_endpoint_calls(name=1, kind=None, has_node=True).items()},
+    **{f"rclpy.action.{inner}ActionServer": _SERVER for inner in ("", "server.")},
+    **{f"rclpy.action.{inner}ActionClient": _CLIENT for inner in ("", "client.")},
+    **{f"actionlib.{inner}ActionServer": EndpointCall("serves", "action", 0, 1) for inner in ("", "Simple")},
+    **{f"actionlib.{inner}ActionClient": EndpointCall("calls", "action", 0, 1) for inner in ("", "Simple")},
+    "message_filters.Subscriber": EndpointCall("subscribes", "topic", 2, 1, has_node=True),
+    "rospy.Publisher": EndpointCall("publishes", "topic", 0, 1),
+    "rospy.Subscriber": EndpointCall("subscribes", "topic", 0, 1),
+    "rospy.wait_for_message": EndpointCall("subscribes", "topic", 0, 1),
+    "rospy.Service": EndpointCall("serves", "service", 0, 1),
+    "rospy.ServiceProxy": EndpointCall("calls", "service", 0, 1),
+    "rclcpp_action.create_server": EndpointCall("serves", "action", 1, has_node=True),
+    "rclcpp_action.create_client": EndpointCall("calls", "action", 1, has_node=True),
+    "nav2_util.SimpleActionServer": EndpointCall("serves", "action", 1, has_node=True),
+    "nav2_util.ServiceClient": EndpointCall("calls", "service", 0),
+    "realtime_tools.RealtimePublisher": EndpointCall("publishes", "topic", 1, has_node=True),
+}
 IMAGE_TYPES = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CameraInfo")
-IMAGE_CALLS: Mapping[str, tuple[str, bool]] = MappingProxyType(
-    {
-        "advertise": (_PUBLISH, False),
-        "subscribe": (_SUBSCRIBE, False),
-        "advertiseCamera": (_PUBLISH, True),
-        "subscribeCamera": (_SUBSCRIBE, True),
-        "create_publisher": (_PUBLISH, False),
-        "create_subscription": (_SUBSCRIBE, False),
-        "create_camera_publisher": (_PUBLISH, True),
-        "create_camera_subscription": (_SUBSCRIBE, True),
-    }
-)
-"""Calls of image_transport, and whether each has the calibration of its camera beside the images."""
+_IMAGE_USES = {
+    "advertise": "publishes",
+    "publisher": "publishes",
+    "subscribe": "subscribes",
+    "subscription": "subscribes",
+}
+
+
+def read_image_call(method: str) -> tuple[str, bool] | None:
+    """Return the use that a call of image_transport makes, and whether a camera's calibration comes beside the images."""
+    use = _IMAGE_USES.get(method.removeprefix("create_").removeprefix("camera_").removesuffix("Camera"))
+    return (use, "amera" in method) if use else None
+
+
 _TF, _DIAGNOSTICS = "tf2_msgs/msg/TFMessage", "diagnostic_msgs/msg/DiagnosticArray"
 FIXED_ENDPOINTS: Mapping[str, tuple[tuple[str, str, str], ...]] = MappingProxyType(
     {
-        "TransformBroadcaster": ((_PUBLISH, "/tf", _TF),),
-        "StaticTransformBroadcaster": ((_PUBLISH, "/tf_static", _TF),),
-        "TransformListener": ((_SUBSCRIBE, "/tf", _TF), (_SUBSCRIBE, "/tf_static", _TF)),
-        "Updater": ((_PUBLISH, "/diagnostics", _DIAGNOSTICS),),
+        "TransformBroadcaster": (("publishes", "/tf", _TF),),
+        "StaticTransformBroadcaster": (("publishes", "/tf_static", _TF),),
+        "TransformListener": (("subscribes", "/tf", _TF), ("subscribes", "/tf_static", _TF)),
+        "Updater": (("publishes", "/diagnostics", _DIAGNOSTICS),),
     }
 )
 """What classes of tf2_ros, tf and diagnostic_updater make, whose names nobody gives."""
 FIXED_PACKAGES = frozenset({"tf2_ros", "tf", "diagnostic_updater"})
-
 NODE_CLASSES = frozenset(
-    {
-        "rclpy.node.Node",
-        "rclpy.create_node",
-        "rclpy.lifecycle.Node",
-        "rclpy.lifecycle.LifecycleNode",
-        "rclpy.lifecycle.node.Node",
-        "rclcpp.Node",
-        "rclcpp.Node.make_shared",
-        "rclcpp_lifecycle.LifecycleNode",
-        "rclcpp_lifecycle.LifecycleNode.make_shared",
-        "nav2_util.LifecycleNode",
-        "nav2.LifecycleNode",
-        "nodelet.Nodelet",
-        "nodelet_topic_tools.NodeletLazy",
-    }
+    {"rclpy.node.Node", "rclpy.create_node", "rclcpp.Node", "rclcpp.Node.make_shared", "nodelet.Nodelet"}
+    | {f"{package}.LifecycleNode" for package in ("rclpy.lifecycle", "rclcpp_lifecycle", "nav2_util", "nav2")}
+    | {"rclpy.lifecycle.Node", "rclpy.lifecycle.node.Node", "rclcpp_lifecycle.LifecycleNode.make_shared"}
 )
-HOOKS = frozenset(
-    {
-        "on_configure",
-        "on_activate",
-        "on_deactivate",
-        "on_cleanup",
-        "on_shutdown",
-        "onInit",
-        "run",
-    }
-)
+HOOKS = frozenset({"on_configure", "on_activate", "on_deactivate", "on_cleanup", "on_shutdown", "onInit", "run"})
 """Methods that ROS, or a thread, calls."""
-TIMERS = frozenset({"create_timer", "create_wall_timer", "createTimer", "createWallTimer", "createSteadyTimer"})
+TIMERS = frozenset(
+    {"create_timer", "create_wall_timer", "createTimer", "createWallTimer", "createSteadyTimer", "Timer"}
+)
 
-_POINTER = re.compile(r"(?:::)?(?:Const)?(?:Shared|Unique|Weak)?Ptr$")
-_HELD = re.compile(r"(?:std|boost|rclcpp)::(?:shared_ptr|unique_ptr|MessageEvent)<(.*)>$")
+_POINTER = re.compile(r"(?:::)?(?:Const)?(?:Shared|Unique|Weak)?Ptr$|::Request$|<.*>|_$")
+_HELD = re.compile(r"(?:std|boost)::(?:shared_ptr|unique_ptr)<(.*)>$|ros::MessageEvent<(.*)>$")
 
 
 def read_message_name(text: str, flow: str) -> str:
     """Return the name of a message, service or action, from the name of its class in either language; empty for what is none."""
     held = _HELD.match(text)
-    plain = _POINTER.sub("", held[1] if held else text).replace("::", ".").strip(".")
-    plain = re.sub(r"<.*>", "", plain.replace("<std.allocator<void>>", "")).removesuffix("_")
-    parts = plain.split(".")
-    kind = {"topic": "msg", "service": "srv", "action": "action"}[flow]
-    if len(parts) >= 4 and parts[-3] in {"msg", "srv", "action"}:  # noqa: PLR2004 - module of one message, `std_msgs.msg._string.String`
+    parts = (
+        _POINTER.sub("", next(filter(None, held.groups()), "") if held else text)
+        .replace("::", ".")
+        .strip(".")
+        .split(".")
+    )
+    if len(parts) >= 4 and parts[-3] in {"msg", "srv", "action"}:  # noqa: PLR2004 - the module of one: `std_msgs.msg._string.String`
         parts = [*parts[:-2], parts[-1]]
-    if len(parts) == 3 and parts[1] in {"msg", "srv", "action"}:  # noqa: PLR2004 - package, kind, name
-        package, written, name = parts
-        if flow == "action" and written == "msg" and name.endswith("Action"):
-            return f"{package}/action/{name.removesuffix('Action')}"
-        return f"{package}/{written}/{name}"
     if len(parts) == 2 and parts[0][:1].islower() and parts[1][:1].isupper():  # noqa: PLR2004 - roscpp's `std_msgs::String`
-        name = parts[1].removesuffix("Action") if flow == "action" else parts[1]
-        return f"{parts[0]}/{kind}/{name}"
-    return ""
+        parts = [parts[0], {"topic": "msg", "service": "srv", "action": "action"}[flow], parts[1]]
+    if len(parts) != 3 or parts[1] not in {"msg", "srv", "action"}:  # noqa: PLR2004 - package, kind, name
+        return ""
+    package, kind, name = parts
+    if flow == "action" and name.endswith("Action"):
+        return f"{package}/action/{name.removesuffix('Action')}"
+    return f"{package}/{kind}/{name}"
 
 
 _PROFILES = {
-    "qos_profile_sensor_data": "sensor_data",
-    "SensorDataQoS": "sensor_data",
-    "rmw_qos_profile_sensor_data": "sensor_data",
-    "SystemDefaultsQoS": "system_default",
-    "qos_profile_system_default": "system_default",
-    "ServicesQoS": "services",
+    "SensorData": "sensor_data",
+    "SystemDefaults": "system_default",
+    "Services": "services",
+    "Parameters": "parameters",
+}
+_PROFILE_NAMES = {
+    **{f"{name}QoS": profile for name, profile in _PROFILES.items()},
+    **{
+        f"{start}qos_profile_{each}": each
+        for start in ("", "rmw_")
+        for each in ("sensor_data", "parameters", "system_default")
+    },
     "qos_profile_services_default": "services",
-    "ParametersQoS": "parameters",
-    "qos_profile_parameters": "parameters",
 }
 _POLICIES = {
-    "BEST_EFFORT": ("reliability", "best_effort"),
-    "RELIABLE": ("reliability", "reliable"),
-    "TRANSIENT_LOCAL": ("durability", "transient_local"),
-    "VOLATILE": ("durability", "volatile"),
-    "KEEP_LAST": ("history", "keep_last"),
-    "KEEP_ALL": ("history", "keep_all"),
+    "reliability": ("best_effort", "reliable"),
+    "durability": ("transient_local", "volatile"),
+    "history": ("keep_last", "keep_all"),
 }
-_SETTERS = frozenset({"best_effort", "reliable", "transient_local", "durability_volatile", "keep_all"})
+_POLICY_OF = {value: policy for policy, values in _POLICIES.items() for value in values}
 
 
 def read_qos_name(name: str) -> dict[str, Any] | None:
     """Return the QoS that a name stands for: a profile, or one policy; None for another name."""
     last = name.rpartition(".")[2]
-    if last in _PROFILES:
-        return {"profile": _PROFILES[last]}
-    for ending, (policy, value) in _POLICIES.items():
-        if last == ending or last.endswith(f"_POLICY_{ending}_{ending}") or last.endswith(f"POLICY_{ending}"):
-            return {policy: value}
-    return None
+    if last in _PROFILE_NAMES:
+        return {"profile": _PROFILE_NAMES[last]}
+    word = next((value for value in _POLICY_OF if last.endswith(value.upper())), None)
+    return {_POLICY_OF[word]: word} if word and ("POLICY" in last or "olicy" in name or last == word.upper()) else None
 
 
-def make_qos(name: str, arguments: list[Any], keywords: Mapping[str, Any]) -> dict[str, Any] | None:
+def make_qos(name: str, arguments: Sequence[Value], keywords: Mapping[str, Value]) -> dict[str, Any] | None:
     """Return the QoS that a constructor of a profile makes; None for another call."""
     last = name.rpartition(".")[2]
-    if last in _PROFILES:
-        return {"profile": _PROFILES[last]}
     if last not in {"QoSProfile", "QoS", "KeepLast", "KeepAll"}:
-        return None
+        return read_qos_name(name) if last in _PROFILE_NAMES else None
     qos: dict[str, Any] = {"history": "keep_all"} if last == "KeepAll" else {}
     for value in (*arguments, *keywords.values()):
         qos |= read_qos(value)
     return qos
 
 
-def read_qos(value: Any) -> dict[str, Any]:  # noqa: ANN401 - any value
+def read_qos(value: Value) -> dict[str, Any]:
     """Return what is known of a QoS that is handed over: a depth, a profile, policies."""
     settled = settle(value)
-    if isinstance(settled, int) and not isinstance(settled, bool):
-        return {"depth": settled} if settled > 0 else {}
+    if isinstance(settled, int) and not isinstance(settled, bool) and settled > 0:
+        return {"depth": settled}
     return dict(settled) if isinstance(settled, dict) and all(isinstance(key, str) for key in settled) else {}
 
 
-def change_qos(qos: Mapping[str, Any], method: str, arguments: list[Any]) -> dict[str, Any] | None:
+def change_qos(qos: Mapping[str, Any], method: str, arguments: Sequence[Value]) -> dict[str, Any] | None:
     """Return a QoS after a call of one of its setters; None where the method is none."""
-    if method in _SETTERS:
-        word = method.removeprefix("durability_").upper()
-        return {**qos, **dict([_POLICIES[word]])}
-    if method in {"reliability", "durability", "history", "keep_last"} and arguments:
-        return {**qos, **read_qos(arguments[0])}
-    return None
+    word = method.removeprefix("durability_")
+    if word in _POLICY_OF and word != "keep_last":
+        return {**qos, _POLICY_OF[word]: word}
+    is_setter = method in _POLICIES or method == "keep_last"
+    return {**qos, **read_qos(arguments[0])} if is_setter and arguments else None
 
 
 _FACTORS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0, "min": 60.0}
@@ -234,52 +197,30 @@ _UNITS = {
     "milliseconds": 1e-3,
     "seconds": 1.0,
     "duration": 1.0,
-    "minutes": 60.0,
+    "Duration": 1.0,
 }
 _LITERAL = re.compile(r"([\d.]+)(ns|us|ms|s|min)\Z")
 
 
-def read_seconds(value: Any) -> float | None:  # noqa: ANN401 - any value
+def read_seconds(value: Value) -> float | None:
     """Return a time that is handed over as seconds, or as `500ms`."""
     settled = settle(value)
     if isinstance(settled, str) and (match := _LITERAL.match(settled)):
-        return float(match[1]) * _FACTORS[match[2]]
+        return float(match[1]) * _FACTORS[match[2]] or None
     return (
         float(settled) if isinstance(settled, int | float) and not isinstance(settled, bool) and settled > 0 else None
     )
 
 
-def make_seconds(name: str, arguments: list[Any], keywords: Mapping[str, Any]) -> float | None:
-    """Return the seconds that a constructor of a duration makes; None for another call."""
+def make_seconds(name: str, arguments: Sequence[Value], keywords: Mapping[str, Value]) -> float | None:
+    """Return the seconds that a constructor of a duration, or of a rate, makes; None for another call."""
     last = name.rpartition(".")[2]
-    seconds = read_seconds(arguments[0]) if arguments else read_seconds(keywords.get("seconds"))
-    if seconds is None:
+    seconds = read_seconds(arguments[0] if arguments else keywords.get("seconds"))
+    if seconds is None or last not in {"Rate", "WallRate", *_UNITS}:
         return None
-    if last in {"Rate", "WallRate", "Hz"}:
-        return 1 / seconds
-    if last == "Duration" or last in _UNITS:
-        return seconds * _UNITS.get(last, 1.0)
-    return None
+    return seconds * _UNITS[last] if last in _UNITS else 1 / seconds
 
 
-Arithmetic = Callable[[Any, Any], Any]
-OPERATIONS: Mapping[str, Arithmetic] = MappingProxyType(
-    {
-        "/": lambda left, right: left / right,
-        "*": lambda left, right: left * right,
-        "-": lambda left, right: left - right,
-        "==": lambda left, right: left == right,
-        "!=": lambda left, right: left != right,
-        "in": lambda left, right: left in right,
-        "not in": lambda left, right: left not in right,
-        ">": lambda left, right: left > right,
-        "<": lambda left, right: left < right,
-        ">=": lambda left, right: left >= right,
-        "<=": lambda left, right: left <= right,
-    }
-)
-
-
-def spell_external(value: Any) -> str:  # noqa: ANN401 - any value
+def spell_external(value: Value) -> str:
     """Return the dotted name of something of another package; empty for anything else."""
     return value.name if isinstance(value, ExternalName) else ""

@@ -7,7 +7,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from archgen.plugin.importing import Span
-from archgen.plugins.ros.sources.source_code import Function, SourceClass, SourceFile
+from archgen.plugins.ros.sources.source_code import Function, SourceClass
+
+Value = Any
+"""A plain value of Python, a SourceClass, a SourceFile for a module, or one of the classes below."""
 
 
 @dataclass(slots=True, eq=False)
@@ -22,7 +25,7 @@ class UnknownText:
 class Alternatives:
     """One of several values, by a condition that is not known."""
 
-    values: tuple[Any, ...]
+    values: tuple[Value, ...]
 
 
 @dataclass(slots=True, eq=False)
@@ -30,15 +33,15 @@ class ParameterValue:
     """The value of a parameter. `value` is what counts: what was given to the node, else the default of the program."""
 
     name: str
-    value: Any
-    default: Any = None
+    value: Value
+    default: Value = None
 
 
 @dataclass(slots=True, eq=False)
 class JoinedText:
     """A text of several parts of which not all are texts of the program itself."""
 
-    parts: tuple[Any, ...]
+    parts: tuple[Value, ...]
 
 
 @dataclass(slots=True, eq=False)
@@ -46,7 +49,6 @@ class ExternalName:
     """Something of another package, by its name with dots: `rclpy.node.Node`."""
 
     name: str
-    type_arguments: tuple[str, ...] = ()
 
 
 @dataclass(slots=True, eq=False)
@@ -55,7 +57,7 @@ class FoundEndpoint:
 
     use: str
     flow: str
-    name: Any
+    name: Value
     message: str
     span: Span
     qos: Mapping[str, Any] = field(default_factory=dict)
@@ -65,18 +67,16 @@ class FoundEndpoint:
 
 @dataclass(slots=True, eq=False)
 class FoundNode:
-    """A node that a program makes."""
+    """A node that a program makes. `periods` are those of its timers in seconds, None where one is computed."""
 
     span: Span
-    name: Any = None
-    namespace: Any = None
+    name: Value = None
+    namespace: Value = None
     endpoints: list[FoundEndpoint] = field(default_factory=list)
-    parameters: dict[str, Any] = field(default_factory=dict)
-    """The parameters that it declares, with their defaults, None for those without."""
+    defaults: dict[str, Value] = field(default_factory=dict)
+    """The parameters that it declares."""
     periods: list[float | None] = field(default_factory=list)
-    """The periods of its timers in seconds, None where that is computed."""
     is_lifecycle: bool = False
-    pattern_parameters: set[str] = field(default_factory=set)
 
 
 @dataclass(slots=True, eq=False)
@@ -84,19 +84,18 @@ class NodeHandle:
     """What a program speaks through in place of its node: a node handle of roscpp, an image transport, a waiting subscriber."""
 
     node: FoundNode
-    prefix: Any = ""
+    prefix: Value = ""
     kind: str = ""
     message: str = ""
 
 
 @dataclass(slots=True, eq=False)
 class WalkedObject:
-    """An object of a class of the workspace."""
+    """An object of a class of the workspace. `node` is the node that it is (`is_node`), or that it was given."""
 
     made_of: SourceClass
-    fields: dict[str, Any] = field(default_factory=dict)
+    fields: dict[str, Value] = field(default_factory=dict)
     node: FoundNode | None = None
-    """The node that it is, or that it was given."""
     is_node: bool = False
     type_values: dict[str, str] = field(default_factory=dict)
     """What the parameters of its template stand for."""
@@ -108,24 +107,17 @@ class Callable:
 
     function: Function
     self_object: WalkedObject | None = None
-    around: Any = None
-
-
-@dataclass(slots=True, eq=False)
-class ModuleValue:
-    """A module of Python of the workspace."""
-
-    file: SourceFile
+    around: Value = None
 
 
 @dataclass(slots=True, eq=False)
 class TextStream:
     """A stream of C++ into which texts are written."""
 
-    parts: list[Any] = field(default_factory=list)
+    parts: list[Value] = field(default_factory=list)
 
 
-def settle(value: Any) -> Any:  # noqa: ANN401 - any value
+def settle(value: Value) -> Value:
     """Return what counts of a value: of a parameter what it is set to, of joined parts the text if all are known."""
     if isinstance(value, ParameterValue):
         return settle(value.value)
@@ -135,34 +127,29 @@ def settle(value: Any) -> Any:  # noqa: ANN401 - any value
     return value
 
 
-def join_texts(parts: Iterable[Any]) -> Any:  # noqa: ANN401 - a text, or its parts
+def join_texts(parts: Iterable[Value]) -> Value:
     """Return a text of parts; as parts where some of them are no texts of the program itself."""
-    flat: list[Any] = []
+    flat: list[Value] = []
     for part in parts:
         flat += part.parts if isinstance(part, JoinedText) else [part]
-    if all(isinstance(part, str | int | float) for part in flat):
-        return "".join(map(str, flat))
-    return JoinedText(tuple(flat))
+    is_plain = all(isinstance(part, str | int | float) for part in flat)
+    return "".join(map(str, flat)) if is_plain else JoinedText(tuple(flat))
 
 
-def show_value(value: Any) -> str:  # noqa: ANN401 - any value
+def show_value(value: Value) -> str:
     """Return what is known of a text, with `*` for the rest."""
     settled = settle(value)
     if isinstance(settled, JoinedText):
-        return "".join(show_value(part) for part in settled.parts)
-    return settled if isinstance(settled, str) else str(settled) if isinstance(settled, int | float) else "*"
+        return "".join(map(show_value, settled.parts))
+    return str(settled) if isinstance(settled, str | int | float) else "*"
 
 
-def find_unknown(value: Any) -> str:  # noqa: ANN401 - any value
+def find_unknown(value: Value) -> str:
     """Return the expression that is not known in a value."""
-    if isinstance(value, UnknownText):
-        return value.text
-    if isinstance(value, ExternalName):
-        return value.name
     if isinstance(value, ParameterValue):
         return find_unknown(value.value) or f"the parameter {value.name}"
     if isinstance(value, JoinedText):
         return next(filter(None, map(find_unknown, value.parts)), "")
     if isinstance(value, Alternatives):
-        return "one of " + ", ".join(show_value(each) for each in value.values)
-    return ""
+        return "one of " + ", ".join(map(show_value, value.values))
+    return value.text if isinstance(value, UnknownText) else value.name if isinstance(value, ExternalName) else ""

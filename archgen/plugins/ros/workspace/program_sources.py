@@ -54,6 +54,8 @@ class WorkspacePackage:
     """A package with its files and programs."""
 
     manifest: PackageManifest
+    manifest_name: str
+    """The path of its package.xml, as messages name it."""
     files: list[Path] = field(default_factory=list)
     programs: dict[str, ProgramSources] = field(default_factory=dict)
     libraries: dict[str, tuple[Path, ...]] = field(default_factory=dict)
@@ -106,16 +108,11 @@ class WorkspaceFiles:
         except ForeignFileError as error:
             self.account.add_note("package.xml", error.message, error.span, error.help_line)
             return None
-        package = WorkspacePackage(manifest)
+        package = WorkspacePackage(manifest, (folder / MANIFEST).relative_to(root).as_posix())
         known = self.packages.setdefault(manifest.name, package)
         if known is not package:
-            place = (
-                known.manifest.folder.relative_to(root).as_posix()
-                if known.manifest.folder.is_relative_to(root)
-                else "another folder"
-            )
-            words = f"there is another package `{manifest.name}` in {place}: that one counts"
-            self.account.add_note("package.xml", words, Span.of_file((folder / MANIFEST).relative_to(root).as_posix()))
+            words = f"there is another package `{manifest.name}`, {known.manifest_name}: that one counts"
+            self.account.add_note("package.xml", words, Span.of_file(package.manifest_name))
             return None
         return package
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -20,7 +19,8 @@ from archgen.plugins.ros.launch.launch_slices import SliceMaker
 from archgen.plugins.ros.ros_package.import_account import ImportAccount
 from archgen.plugins.ros.workspace.program_reading import ProgramReader
 from archgen.plugins.ros.workspace.program_sources import WorkspaceFiles
-from archgen.plugins.ros.workspace.workspace_slices import NodeKnowledge, WorkspaceSlices
+from archgen.plugins.ros.workspace.node_components import NodeKnowledge
+from archgen.plugins.ros.workspace.workspace_slices import make_slices
 
 _MAX_SHOWN = 12
 _ASSUMED_DISTRO = "jazzy"
@@ -62,25 +62,16 @@ def read_workspace(
     reader = ProgramReader(workspace, account)
     knowledge = [_read_knowledge(node, reader, known_distro) for node in nodes]
     reader.tell_unread()
-    maker = SliceMaker(launched.run)
-    slices = WorkspaceSlices(maker, knowledge, workspace, account, known_distro)
-    sections, comments = slices.make_slices(nodes)
-    if not distro and not is_ros_1 and any(each.library_type for each in knowledge):
+    uses_library = any(each.library_type for each in knowledge)
+    slices, comments = make_slices(SliceMaker(launched.run), knowledge, workspace, account, known_distro)
+    if not distro and not is_ros_1 and uses_library:
         words = f"the distribution of ROS is not known: types of the library are those of {known_distro}"
         account.add_note("library", words, Span.of_file("."), "`--distro NAME` says another", fate="noted")
     entry = next(iter(launched.by_file))
     title = title_from_id(make_id(find_stem(entry), "robot"))
     notes = (*account.notes, *launched.run.notes)
-    counts = Counter(account.taken)
-    return ForeignImport(
-        sections,
-        dict(sorted((+counts).items())),
-        notes,
-        title,
-        known_distro,
-        comments,
-        uses_shipped_library=slices.uses_library,
-    )
+    taken = dict(sorted((+account.taken).items()))
+    return ForeignImport(slices, taken, notes, title, known_distro, comments, uses_shipped_library=uses_library)
 
 
 def _read_knowledge(node: LaunchedNode, reader: ProgramReader, distro: str) -> NodeKnowledge:

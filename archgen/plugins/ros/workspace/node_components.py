@@ -1,0 +1,227 @@
+"""A launched node as a component with ports, and as a node that says what its program calls each of them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from archgen.plugin.importing import (
+    FlowMapping,
+    MappingNode,
+    ScalarNode,
+    YamlNode,
+    load_shipped_component_types,
+    make_id,
+    make_unique_id,
+)
+from archgen.plugin.ros import find_name_fault, find_node_name_fault
+from archgen.plugins.ros.launch.launch_actions import LaunchedNode
+from archgen.plugins.ros.launch.launch_slices import nest_parameters
+from archgen.plugins.ros.ros_package.import_account import ImportAccount
+from archgen.plugins.ros.sources.walk_values import (
+    FoundEndpoint,
+    FoundNode,
+    ParameterValue,
+    find_unknown,
+    settle,
+    show_value,
+)
+from archgen.plugins.ros.workspace.program_reading import ReadProgram
+
+LIBRARY = "ros"
+"""What a project calls the library that ships."""
+_SHARED = frozenset({"/tf", "/tf_static", "/clock", "/diagnostics", "/rosout", "/parameter_events"})
+_POOR_WORDS = frozenset(
+    {"pose", "state", "global", "local", "data", "raw", "status", "image", "command", "cmd", "info"}
+)
+_USUAL_QOS = {"depth": 10}
+"""What ROS takes where nothing else is said."""
+_HINT = "launch"
+_KEPT_HINTS = ("conditions", "by_default", "other_ways")
+_CONDITION_SIGNS = frozenset({"var", "arg", "eval", "env", "if"})
+
+
+@dataclass(frozen=True, slots=True)
+class NodeKnowledge:
+    """A launched node with what is known of it: by its sources, or as a type of the library."""
+
+    node: LaunchedNode
+    program: ReadProgram | None
+    library_type: str
+
+
+@dataclass(slots=True, eq=False)
+class WrittenNode:
+    """A node of the language and its component, which is called alike. Comments go by their paths below the component."""
+
+    id: str
+    group: str
+    data: dict[str, Any]
+    component: dict[str, Any]
+    conditions: tuple[str, ...] = ()
+    """The conditions by which it runs, where it does not by the defaults."""
+    comments: dict[tuple[str, ...], str] = field(default_factory=dict)
+
+    @property
+    def variant(self) -> str:
+        """What a variant is called in which it runs; empty for what always runs."""
+        words = re.findall(r"\w+", self.conditions[-1].replace("unless", "no")) if self.conditions else []
+        words = [word for word in words if word not in _CONDITION_SIGNS]
+        return make_id("_".join(words), "variant") if words else ""
+
+
+class NodeWriter:
+    """Writes nodes, with their counts and notes."""
+
+    def __init__(self, account: ImportAccount, distro: str) -> None:
+        self._account = account
+        self._distro = distro
+
+    def write_node(self, node_id: str, data: Mapping[str, Any], known: NodeKnowledge, group: str) -> list[WrittenNode]:
+        """Return a launched node, and others that its program makes; `data` is what the launch file says of it."""
+        hints = data.get("hints", {}).get(_HINT, {})
+        kept = {_HINT: {key: hints[key] for key in _KEPT_HINTS if key in hints}}
+        body = {key: value for key, value in data.items() if key != "hints"} | ({"hints": kept} if kept[_HINT] else {})
+        self._leave_out_filed(body, known)
+        conditions = () if known.node.is_on else tuple(dict.fromkeys(known.node.conditions))
+        written = WrittenNode(node_id, group, {"implements": f"{group}.{node_id}", **body}, {}, conditions)
+        self._account.count("node")
+        if known.library_type:
+            written.component["is"] = f"{LIBRARY}.{known.library_type}"
+            self._account.count("node of the library")
+        if known.program is None:
+            if not known.library_type and known.node.form != "program":
+                written.comments[()] = "what it says to ROS is not known: no sources, no type of the library"
+                self._account.count("node without sources")
+            return [written]
+        self._account.count("node with sources")
+        first, *others = known.program.nodes
+        self._write_found(written, first, known, is_first=True)
+        return [written, *(self._write_other(written, found, known) for found in others)]
+
+    def _write_other(self, first: WrittenNode, found: FoundNode, known: NodeKnowledge) -> WrittenNode:
+        """Return another node of the same process: what starts the first one counts for it, too."""
+        node_id = make_id(show_value(found.name).replace("*", "node"), "node")
+        node_id = node_id if node_id != first.id else f"{node_id}_2"
+        shared = {
+            key: first.data[key]
+            for key in ("namespace", "status", "remaps", "arguments", "parameters")
+            if key in first.data
+        }
+        data = {"implements": f"{first.group}.{node_id}", **shared}
+        written = WrittenNode(node_id, first.group, data, {}, first.conditions)
+        written.comments[()] = f"in the process of {first.id}"
+        self._account.count("node")
+        self._write_found(written, found, known, is_first=False)
+        return written
+
+    def _leave_out_filed(self, data: dict[str, Any], known: NodeKnowledge) -> None:
+        """Leave out the parameters that stand in a file that the node reads, but those that name its topics."""
+        if known.program is not None and known.program.is_ros_1:
+            return
+        kept = _list_naming_parameters(known.library_type, self._distro) if known.library_type else []
+        for found in known.program.nodes if known.program else ():
+            kept += [re.escape(each.name.name) for each in found.endpoints if isinstance(each.name, ParameterValue)]
+        naming = re.compile("|".join(kept) or "(?!)")
+        left_out = {name for name in known.node.file_parameters if not naming.fullmatch(name)}
+        if left_out:
+            data.pop("parameters", None)
+            parameters = nest_parameters({k: v for k, v in known.node.parameters.items() if k not in left_out})
+            data |= {"parameters": parameters} if parameters else {}
+
+    def _write_found(self, written: WrittenNode, found: FoundNode, known: NodeKnowledge, *, is_first: bool) -> None:
+        data, name, namespace = written.data, settle(found.name), settle(found.namespace)
+        if not known.node.name and isinstance(name, str) and not find_node_name_fault(name):
+            data.pop("name", None)
+            data |= {"name": name} if name != written.id else {}
+        elif not is_first:
+            data["name"] = known.node.name
+        if (
+            not known.node.namespace
+            and isinstance(namespace, str)
+            and namespace.strip("/")
+            and not find_name_fault(namespace)
+        ):
+            data["namespace"] = f"/{namespace.strip('/')}"
+        if found.is_lifecycle:
+            data.setdefault("kind", "lifecycle")
+        for endpoint in found.endpoints:
+            self._write_endpoint(written, endpoint, is_ros_1=known.program is not None and known.program.is_ros_1)
+        if len(found.periods) == 1 and found.periods[0] and not {"subscribes", "serves"} & set(data):
+            data["timing"] = {"period": f"{found.periods[0] * 1000:.6g} ms"}
+
+    def _write_endpoint(self, written: WrittenNode, endpoint: FoundEndpoint, *, is_ros_1: bool) -> None:
+        name = settle(endpoint.name)
+        if name in {"", None}:
+            # An empty name, by a parameter: such a node makes none.
+            return
+        text = name if isinstance(name, str) and not find_name_fault(name, ros_1=is_ros_1) else ""
+        self._account.count("endpoint")
+        typed = endpoint.message or None
+        if text in _SHARED and endpoint.flow == "topic":
+            internal = written.data.setdefault("internal", FlowMapping()).setdefault(endpoint.use, FlowMapping())
+            internal[make_id(text, "topic")] = FlowMapping({"topic": text, **({"message": typed} if typed else {})})
+            return
+        side = "outputs" if endpoint.use in {"publishes", "serves"} else "inputs"
+        ports = written.component.setdefault(side, FlowMapping())
+        port = _name_port(text or show_value(endpoint.name).replace("*", "_"), endpoint, ports)
+        ports[port] = typed if side == "outputs" else FlowMapping({"type": typed})
+        written.data.setdefault(endpoint.use, FlowMapping())[port] = _write_use(
+            text, endpoint, written.data, is_ros_1=is_ros_1
+        )
+        place = f"{endpoint.span.file}:{endpoint.span.line}"
+        if endpoint.is_conditional and text:
+            written.comments[side, port] = f"made under a condition, {place}"
+        elif not text:
+            shown = show_value(endpoint.name)
+            expression = find_unknown(endpoint.name) or shown
+            known_part = f"`{shown}`, " if shown.strip("*/") else ""
+            written.comments[side, port] = f"name unknown: {known_part}`{expression[:60]}`, {place}"
+            words = f"the name of what it {endpoint.use} is computed: {known_part}`{expression}`"
+            self._account.add_note("name", words, endpoint.span, fate="noted")
+            self._account.count("endpoint without a name")
+
+
+def _write_use(text: str, endpoint: FoundEndpoint, data: Mapping[str, Any], *, is_ros_1: bool) -> Any:  # noqa: ANN401 - a name, or more
+    """Return what a node says of a port: its name in the program, the parameter that gives it, its quality of service."""
+    words = [str(word) for word in (*data.get("remaps", ()), *data.get("arguments", ()))]
+    last = text.rpartition("/")[2]
+    # Where a rule for names may count, it is said that this is the program's own one.
+    may_move = any(":=" in word or word.rpartition("/")[2].strip("~") == last for word in words)
+    key = "own_name" if may_move else "topic" if endpoint.flow == "topic" else "name"
+    use: dict[str, Any] = FlowMapping({key: text} if text else {})
+    given = endpoint.name
+    if text and isinstance(given, ParameterValue) and given.name and given.value is not given.default:
+        default = settle(given.default)
+        is_name = isinstance(default, str) and default and not find_name_fault(default, ros_1=is_ros_1)
+        use = FlowMapping({**({"own_name": default} if is_name else {}), "named_by": given.name})
+    if endpoint.qos not in ({}, _USUAL_QOS) and endpoint.flow == "topic":
+        use["qos"] = endpoint.qos.get("profile") if list(endpoint.qos) == ["profile"] else dict(endpoint.qos)
+    return text if list(use) == [key] and not may_move else use
+
+
+def _name_port(name: str, endpoint: FoundEndpoint, taken: Mapping[str, Any]) -> str:
+    """Return a port's id: the last word of its topic, two words where one is poor or taken."""
+    words = [word for word in name.replace("~", "").split("/") if word.strip("_")]
+    short = make_id(words[-1] if words else endpoint.message.rpartition("/")[2] or endpoint.flow, "port")
+    if len(words) > 1 and (short in _POOR_WORDS or short in taken):
+        short = make_id("_".join(words[-2:]), "port")
+    return make_unique_id(short, taken.keys())
+
+
+def _list_naming_parameters(library_type: str, distro: str) -> list[str]:
+    """Return the parameters by which a type of the library is told what its topics are called, as regular expressions."""
+    found: list[str] = []
+    pending: list[YamlNode] = [load_shipped_component_types(distro)[library_type].value]
+    while pending:
+        mapping = pending.pop()
+        for entry in mapping if isinstance(mapping, MappingNode) else ():
+            if entry.key == "named_by" and isinstance(entry.value, ScalarNode):
+                found += [re.escape(name) for name in re.findall(r"\{(\w+)\}", entry.value.text)]
+                found.append(".+".join(map(re.escape, re.split(r"\{\w+\}|\*", entry.value.text))))
+            elif entry.key == "when" and isinstance(entry.value, MappingNode):
+                found += [re.escape(inner.key) for inner in entry.value]
+            pending.append(entry.value)
+    return found
