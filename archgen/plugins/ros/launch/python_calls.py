@@ -207,10 +207,10 @@ class CallReader(OpenedFileReader):
         return Substitution(FILE_KIND, (arguments.get(0, "source_file"), "", made))
 
     def _call_getenv(self, arguments: CallArguments, _node: ast.Call) -> LaunchValue:
-        return Substitution("env", tuple(arguments.positional[:2]))
+        return self.find_variable(*arguments.positional[:2])
 
     def _call_get(self, arguments: CallArguments, _node: ast.Call) -> LaunchValue:
-        return Substitution("env", tuple(arguments.positional[:2]))
+        return self.find_variable(*arguments.positional[:2])
 
     def _call_range(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         ends = [self.force(each) for each in arguments.positional]

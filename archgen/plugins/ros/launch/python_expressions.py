@@ -34,6 +34,8 @@ class ExpressionReader(ABC):
     def __init__(self, file: str, lines: list[str]) -> None:
         self.file = file
         self.context: LaunchContext | None = None
+        self.environment: Mapping[str, str] = {}
+        """Variables of the environment that were given."""
         self._lines = lines
         self._steps = 0
         self._depth = 0
@@ -57,6 +59,11 @@ class ExpressionReader(ABC):
             ast.Call: self._read_call,
         }
         """Who reads which kind of expression; any other kind is quoted."""
+
+    def find_variable(self, name: LaunchValue, *default: LaunchValue) -> LaunchValue:
+        """Return what a variable of the environment is, where that was given; else what the launch will find."""
+        known = self.environment.get(name) if isinstance(name, str) else None
+        return Substitution("env", (name, *default)) if known is None else known
 
     @abstractmethod
     def call(self, function: LaunchValue, arguments: CallArguments, node: ast.Call) -> LaunchValue:
@@ -245,7 +252,7 @@ class ExpressionReader(ABC):
             return self._read_slice(node, owner, node.slice, scope)
         key = self.evaluate(node.slice, scope)
         if isinstance(owner, ImportedName) and owner.name == "os.environ":
-            return Substitution("env", (key,))
+            return self.find_variable(key)
         if isinstance(owner, BoundMethod) and owner.name == "launch_configurations":
             return Substitution("var", (key,))
         if isinstance(owner, Mapping | list | tuple | str) and isinstance(key, str | int):

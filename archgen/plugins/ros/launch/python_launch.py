@@ -56,6 +56,7 @@ class _PythonFileReader(CallReader):
         )
         self._path = path
         self._run = run
+        self.environment = run.context.environment
         self._folders: list[str] = []
         self._modules = modules
         """The modules beside the file that were read, for all of them together."""

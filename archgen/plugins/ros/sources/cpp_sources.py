@@ -94,12 +94,7 @@ class _Reader:
             elif kind in _BLOCKS:
                 self.read_outside(node, outer, depth + 1)
             elif kind == "template_declaration":
-                names = tuple(
-                    _text(each.named_children[-1])
-                    for each in (node.child_by_field_name("parameters") or node).named_children
-                    if each.type == "type_parameter_declaration" and each.named_children
-                )
-                self.read_outside(node, outer, depth + 1, names)
+                self.read_outside(node, outer, depth + 1, _list_type_parameters(node))
             elif kind in _CLASSES:
                 self._read_class(node, outer, depth, type_parameters)
             elif kind == "function_definition":
@@ -144,13 +139,13 @@ class _Reader:
         self._file.classes[found.name] = found
         self._read_members(body, found, depth + 1)
 
-    def _read_members(self, body: Node, found: SourceClass, depth: int) -> None:
+    def _read_members(self, body: Node, found: SourceClass, depth: int, type_parameters: tuple[str, ...] = ()) -> None:
         for node in body.named_children if depth < MAX_DEPTH else ():
             kind = node.type
             if kind in _BLOCKS or kind == "template_declaration":
-                self._read_members(node, found, depth + 1)
+                self._read_members(node, found, depth + 1, _list_type_parameters(node))
             elif kind == "function_definition":
-                self._add_function(node, "", found, depth, ())
+                self._add_function(node, "", found, depth, type_parameters)
             elif kind in {"alias_declaration", "type_definition", "using_declaration"}:
                 self._read_alias(node, found.aliases)
             elif kind in _CLASSES:
@@ -411,6 +406,16 @@ class _Reader:
         line, column = node.start_point
         text = " ".join(_text(node)[: _MAX_TEXT * 2].split())[:_MAX_TEXT] if kind != "value" else ""
         return Expression(kind, text, line + 1, column + 1, value, tuple(parts))
+
+
+def _list_type_parameters(node: Node) -> tuple[str, ...]:
+    """Return the parameters of a template that are types."""
+    parameters = node.child_by_field_name("parameters")
+    return tuple(
+        _text(each.named_children[-1])
+        for each in (parameters.named_children if parameters is not None else ())
+        if each.type == "type_parameter_declaration" and each.named_children
+    )
 
 
 def _list_arguments(node: Node) -> list[Node]:

@@ -76,7 +76,8 @@ def add_up(values: Sequence[Value]) -> Value:
     if all(isinstance(each, list) for each in settled):
         return [item for each in settled for item in each][:MAX_ITEMS]
     joined = join_texts(values)
-    return NotImplemented if isinstance(joined, str) and len(joined) > _MAX_TEXT else joined
+    length = len(joined) if isinstance(joined, str) else len(joined.parts) * MAX_ITEMS
+    return NotImplemented if length > _MAX_TEXT else joined
 
 
 def fill_text(text: str, mark: str, values: Sequence[Value]) -> Value:

@@ -29,7 +29,7 @@ from archgen.plugins.ros.sources.walk_values import (
     settle,
 )
 
-_MAX_STEPS = 200_000
+_MAX_STEPS = 50_000
 _MAX_CALL_DEPTH = 25
 _MAX_FAMILY = 50
 _MAX_ALIASES = 8
@@ -307,6 +307,7 @@ class ProgramWalk(RosCallReader):
         self._name_node(made, arguments, keywords)
 
     def _walk_fields(self, found: SourceClass, made: WalkedObject, scope: Scope) -> None:
+        before, self.file = self.file, found.file
         for statement in found.field_values:
             if statement.kind == "set" and statement.value is not None and statement.targets[0].kind == "name":
                 made.fields.setdefault(statement.targets[0].value, self._evaluate(statement.value, scope))
@@ -316,6 +317,7 @@ class ProgramWalk(RosCallReader):
                 value = self.make_external(call, self._expand_type(type_name, scope), is_member=True)
                 if value is not NotImplemented:
                     made.fields[name] = value
+        self.file = before
 
     def _name_node(self, made: WalkedObject, arguments: list[Value], keywords: Mapping[str, Value]) -> None:
         if made.node is not None and made.is_node:

@@ -26,7 +26,7 @@ def make_slices(
     account: ImportAccount,
     distro: str,
 ) -> tuple[dict[str, Mapping[str, Any]], dict[str, Comments]]:
-    """Return the slices, one for each group and one for the variants, and the comments behind their lines."""
+    """Return the slices, one for each group, and the comments behind their lines."""
     sections = maker.make_sections([each.node for each in knowledge])
     by_id = {node_id: each for each in knowledge if (node_id := maker.find_node_id(each.node))}
     groups = _choose_groups({node_id: each.node for node_id, each in by_id.items()}, workspace)
@@ -57,8 +57,9 @@ def make_slices(
         sections = {}
     variants, variant_comments = _make_variants(written, inputs, wiring)
     if variants:
-        slices["variants.yaml"] = {**sections, "variants": variants}
-        comments["variants.yaml"] = variant_comments
+        file = next(iter(slices), f"{_ONE_GROUP}.yaml")
+        slices[file] = {**slices.get(file, sections), "variants": variants}
+        comments[file] = {**comments.get(file, {}), **variant_comments}
         account.count("variant", len(variants))
     return slices, comments
 
