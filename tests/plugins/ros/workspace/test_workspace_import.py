@@ -1,0 +1,300 @@
+"""`archgen import workspace`: launch files, packages, sources and the library that ships become one architecture."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from textwrap import dedent
+
+import pytest
+
+from tests.cli.conftest import Run
+
+MANIFEST = """<package format="3"><name>{name}</name><version>1.0.0</version><description>x</description>
+<license>MIT</license><buildtool_depend>{tool}</buildtool_depend><export><build_type>{tool}</build_type></export></package>
+"""
+BRINGUP = """
+    from launch import LaunchDescription
+    from launch.actions import DeclareLaunchArgument
+    from launch.conditions import IfCondition
+    from launch.substitutions import EnvironmentVariable, LaunchConfiguration
+    from launch_ros.actions import ComposableNodeContainer, Node
+    from launch_ros.descriptions import ComposableNode
+    from ament_index_python.packages import get_package_share_directory
+
+    def generate_launch_description():
+        return LaunchDescription([
+            DeclareLaunchArgument("rviz", default_value="false"),
+            Node(package="my_driver", executable="driver", name="front_driver", namespace="front",
+                 parameters=[get_package_share_directory("my_bringup") + "/config/driver.yaml"],
+                 remappings=[("odom", "/odom")]),
+            Node(package="robot_localization", executable="ekf_node", name="ekf",
+                 parameters=[{"odom0": "/odom"}], remappings=[("odometry/filtered", "odom/filtered")]),
+            Node(package="slam_toolbox", executable="async_slam_toolbox_node", name="slam",
+                 remappings=[("scan", EnvironmentVariable("MY_SCAN", default_value="scan"))]),
+            ComposableNodeContainer(package="rclcpp_components", executable="component_container", name="box",
+                namespace="", composable_node_descriptions=[
+                    ComposableNode(package="my_filter", plugin="my_filter::Filter", remappings=[("in", "/front/laser")])]),
+            Node(package="my_driver", executable="viewer", condition=IfCondition(LaunchConfiguration("rviz"))),
+        ])
+"""
+DRIVER = """
+    import rclpy
+    from rclpy.node import Node
+    from nav_msgs.msg import Odometry
+    from sensor_msgs.msg import LaserScan
+    from std_srvs.srv import Trigger
+    from my_msgs.msg import Bump
+
+    class Driver(Node):
+        def __init__(self):
+            super().__init__("driver")
+            self.declare_parameter("scan_topic", "scan")
+            self.create_publisher(LaserScan, self.get_parameter("scan_topic").value, 10)
+            self.create_publisher(Odometry, "odom", 10)
+            self.create_publisher(Bump, self.find_name(), 10)
+            self.create_service(Trigger, "~/reset", self.reset)
+
+        def find_name(self):
+            return open("/etc/hostname").read()
+
+    def main():
+        rclpy.init()
+        rclpy.spin(Driver())
+"""
+VIEWER = """
+    import rclpy
+    from nav_msgs.msg import Odometry
+
+    def main():
+        node = rclpy.create_node("viewer")
+        node.create_subscription(Odometry, "odom/filtered", print, 10)
+"""
+FILTER = """
+    #include <rclcpp/rclcpp.hpp>
+    namespace my_filter {
+    class Filter : public rclcpp::Node {
+    public:
+      explicit Filter(const rclcpp::NodeOptions & options) : Node("filter", options) {
+        sub_ = create_subscription<sensor_msgs::msg::LaserScan>("in", 10, [this](auto message) {});
+        pub_ = create_publisher<sensor_msgs::msg::LaserScan>("/scan", rclcpp::SensorDataQoS());
+        client_ = create_client<std_srvs::srv::Trigger>("/front/front_driver/reset");
+      }
+    };
+    }
+    RCLCPP_COMPONENTS_REGISTER_NODE(my_filter::Filter)
+"""
+WORKSPACE = {
+    "my_bringup/launch/robot.launch.py": BRINGUP,
+    "my_bringup/config/driver.yaml": "/front/front_driver:\n  ros__parameters: {scan_topic: laser, speed: 3}\n",
+    "my_driver/setup.py": """
+        from setuptools import setup
+        setup(entry_points={"console_scripts": ["driver = my_driver.driver:main", "viewer = my_driver.viewer:main"]})
+    """,
+    "my_driver/my_driver/__init__.py": "",
+    "my_driver/my_driver/driver.py": DRIVER,
+    "my_driver/my_driver/viewer.py": VIEWER,
+    "my_filter/CMakeLists.txt": """
+        project(my_filter)
+        set(SOURCES src/filter.cpp)
+        add_library(filter SHARED ${SOURCES})
+        rclcpp_components_register_node(filter PLUGIN "my_filter::Filter" EXECUTABLE filter_node)
+    """,
+    "my_filter/src/filter.cpp": FILTER,
+    "my_msgs/msg/Bump.msg": "bool hit\n",
+}
+
+
+def write_workspace(folder: Path, files: dict[str, str], tool: str = "ament_cmake") -> None:
+    for name, text in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(dedent(text).lstrip("\n"), encoding="utf-8")
+        manifest = folder / name.partition("/")[0] / "package.xml"
+        manifest.write_text(MANIFEST.format(name=name.partition("/")[0], tool=tool), encoding="utf-8")
+
+
+@pytest.fixture
+def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    pytest.importorskip("tree_sitter_cpp")
+    monkeypatch.chdir(tmp_path)
+    write_workspace(tmp_path / "src", WORKSPACE)
+    return tmp_path
+
+
+ROBOT = """\
+# From src by `archgen import workspace`; with --merge it is brought up to date.
+groups:
+  robot:
+    components:
+      front_driver:
+        outputs:
+          laser: sensor_msgs/msg/LaserScan
+          odom: nav_msgs/msg/Odometry
+          bump: my_msgs/msg/Bump  # name unknown: `open("/etc/hostname").read()`, my_driver/my_driver/driver.py:14
+          reset: std_srvs/srv/Trigger
+      ekf:
+        is: ros.ekf
+        inputs: {odom0: front_driver.odom}
+      slam:
+        is: ros.slam_toolbox
+        inputs: {scan: filter.scan}
+      filter:
+        inputs: {in: front_driver.laser, reset: front_driver.reset}
+        outputs: {scan: sensor_msgs/msg/LaserScan}
+containers:
+"""
+
+
+def test_workspace_of_ros_2(workspace: Path, run: Run) -> None:
+    """A component for each node, wired by topics after parameters, remaps and namespaces; what is computed is said."""
+    done = run("import", "workspace", "src", "--distro", "humble", "-o", "robot")
+    assert done.status == 0, done.err
+    assert done.out.startswith(
+        "taken: 4 connection, 8 endpoint, 1 endpoint without a name, 5 node, 2 node of the library, 3 node with sources, 1 variant\n"
+        '  noted: my_driver/my_driver/driver.py:14:9: name: the name of what it publishes is computed: `open("/etc/hostname").read()`\n'
+    )
+    text = Path("robot/robot.yaml").read_text(encoding="utf-8")
+    assert text.startswith(ROBOT)
+    assert (
+        "    implements: robot.front_driver\n    namespace: /front\n    package: my_driver\n    executable: driver\n"
+        "    status: existing\n    remaps:\n      odom: /odom\n    parameter_files:\n"
+        "      - $(find-pkg-share my_bringup)/config/driver.yaml\n    parameters:\n      scan_topic: laser\n"
+        "    publishes: {laser: {own_name: scan, named_by: scan_topic}, odom: {own_name: odom}, bump: {}}\n"
+        "    serves: {reset: \"~/reset\"}\n"
+    ) in text
+    shown = run("show", "-C", "robot", "filter").out
+    assert "subscribes to /front/laser (sensor_msgs/msg/LaserScan)" in shown
+    assert "calls /front/front_driver/reset (std_srvs/srv/Trigger)" in shown
+    checked = run("check", "robot")
+    assert checked.status == 0
+    assert "0 warnings" in checked.out or "warning" not in checked.out, checked.out
+    again = run("import", "workspace", "src", "--distro", "humble", "-o", "robot", "--merge")
+    assert "robot.yaml: as before" in again.out
+
+
+def test_nodes_off_by_default_are_variants(workspace: Path, run: Run) -> None:
+    """R14: what runs only by an argument stands in a variant, with its wiring; the project itself is what is launched."""
+    assert run("import", "workspace", "src", "--distro", "humble", "-o", "robot").status == 0
+    assert "viewer" not in run("list", "-C", "robot", "--of", "nodes").out
+    shown = run("show", "-C", "robot", "--variant", "rviz", "viewer").out
+    assert "odom <- robot.ekf.odometry_filtered" in shown or "filtered <- robot.ekf.odometry_filtered" in shown
+    assert run("check", "robot").status == 0
+    done = run("import", "workspace", "src", "rviz:=true", "--distro", "humble", "-o", "other")
+    assert "6 node" not in done.out
+    assert "viewer" in run("list", "-C", "other", "--of", "nodes").out
+
+
+def test_environment_is_given(workspace: Path, run: Run) -> None:
+    """R9: variables of the environment are what `--env` says; what is none is refused."""
+    done = run("import", "workspace", "src", "--distro", "humble", "--env", "MY_SCAN=/other", "-o", "robot")
+    assert done.status == 0, done.err
+    assert "scan: {external: Nobody here publishes /other}" in Path("robot/robot.yaml").read_text()
+    assert "`MY_SCAN` is no variable" in run("import", "workspace", "src", "--env", "MY_SCAN", "-o", "x").err
+    assert "--launch does not go with package" in run("import", "package", "src", "--launch", "a/b", "-o", "x").err
+
+
+def test_several_launch_files_are_other_robots(workspace: Path, run: Run) -> None:
+    """R6: which launch file starts the robot is asked where several do; `--launch` says it."""
+    launch = workspace / "src/my_driver/launch/driver.launch.xml"
+    launch.parent.mkdir()
+    launch.write_text('<launch><node pkg="my_driver" exec="driver"/></launch>')
+    done = run("import", "workspace", "src", "-o", "robot")
+    assert done.status == 1
+    assert "2 launch files start nodes, and none of them includes the others" in done.err
+    assert "`--launch`, likeliest first: my_bringup/launch/robot.launch.py (6 nodes), my_driver/launch/driver.launch.xml (1 nodes)" in done.err
+    assert not Path("robot").exists()
+    done = run("import", "workspace", "src", "--launch", "my_driver/driver.launch.xml", "-o", "robot")
+    assert done.status == 0, done.err
+    # What the program calls itself where the launch file names nothing (R8).
+    assert "ROS name:       /driver" in run("show", "-C", "robot", "driver").out
+    done = run("import", "workspace", "src", "--launch", "my_driver/none.launch.xml", "-o", "robot")
+    assert "there is no such launch file in the workspace" in done.err
+
+
+def test_without_the_extra_cpp_is_unread_and_said(workspace: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("archgen.plugins.ros.sources.source_index.make_cpp_parser", lambda: None)
+    done = run("import", "workspace", "src", "--distro", "humble", "-o", "robot")
+    assert done.status == 0
+    assert "sources in C++ are not read, those of `my_filter::Filter` for one" in done.out
+    assert "= help: `pip install 'archgen[sources]'` installs what reads them" in done.out
+    assert "  filter:  # what it says to ROS is not known: no sources, no type of the library" in Path("robot/robot.yaml").read_text()
+
+
+ROS_1 = {
+    "my_base/launch/base.launch": """
+        <launch>
+          <group ns="front">
+            <node pkg="my_base" type="drive.py" name="drive"><remap from="cmd_vel" to="/cmd_vel"/><param name="topic" value="speed"/></node>
+            <node pkg="my_base" type="motor" name="motor"/>
+          </group>
+        </launch>
+    """,
+    "my_base/scripts/drive.py": """
+        #!/usr/bin/env python
+        import rospy
+        from geometry_msgs.msg import Twist
+        rospy.init_node("any")
+        rospy.Subscriber("cmd_vel", Twist, print)
+        pub = rospy.Publisher(rospy.get_param("~topic", "none"), Twist, queue_size=1)
+    """,
+    "my_base/CMakeLists.txt": """
+        project(my_base)
+        file(GLOB SRC src/*.cpp)
+        foreach(name motor)
+          add_executable(${name} ${SRC})
+        endforeach()
+        catkin_install_python(PROGRAMS scripts/drive.py DESTINATION bin)
+    """,
+    "my_base/src/motor.cpp": """
+        #include <ros/ros.h>
+        void drive(const geometry_msgs::TwistConstPtr& message) {}
+        int main(int argc, char** argv) {
+          ros::init(argc, argv, "any");
+          ros::NodeHandle handle;
+          ros::NodeHandle own("~");
+          ros::Subscriber sub = handle.subscribe("speed", 1, drive);
+          ros::Publisher pub = own.advertise<std_msgs::Float64>("current", 1);
+          ros::spin();
+        }
+    """,
+}
+
+
+def test_workspace_of_ros_1(tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("tree_sitter_cpp")
+    monkeypatch.chdir(tmp_path)
+    write_workspace(tmp_path / "src", ROS_1, "catkin")
+    done = run("import", "workspace", "src", "-o", "robot")
+    assert done.status == 0, done.err
+    assert "distro: noetic" in Path("robot/archgen.yaml").read_text()
+    drive, motor = (run("show", "-C", "robot", name).out for name in ("drive", "motor"))
+    assert "publishes /front/speed (geometry_msgs/Twist)" in drive or "publishes /front/speed (geometry_msgs/msg/Twist)" in drive
+    assert "subscribes to /cmd_vel" in drive
+    assert "publishes /front/motor/current" in motor
+    assert "speed <- robot.drive.speed" in motor
+    assert run("check", "robot").status == 0
+
+
+def test_nothing_outside_of_the_workspace_is_read(workspace: Path, run: Run) -> None:
+    """Symbolic links, ignored and broken packages, two of one name, sources that do not parse: said, and the rest is read."""
+    secret = workspace / "secret.py"
+    secret.write_text("import rclpy\nrclpy.create_node('stolen').create_publisher(None, 'secret', 1)\n")
+    driver = workspace / "src/my_driver/my_driver/driver.py"
+    driver.unlink()
+    driver.symlink_to(secret)
+    (workspace / "src/my_driver/my_driver/viewer.py").write_text("def main(:\n")
+    (workspace / "src/broken").mkdir()
+    (workspace / "src/broken/package.xml").write_text("<package>")
+    write_workspace(workspace / "src/old", {"my_filter/src/a.cpp": "int x;"})
+    ignored = workspace / "src/ignored"
+    write_workspace(ignored, {"my_other/setup.py": ""})
+    (ignored / "COLCON_IGNORE").touch()
+    done = run("import", "workspace", "src", "--distro", "humble", "-o", "robot")
+    assert done.status == 0, done.err
+    assert "secret" not in Path("robot/robot.yaml").read_text() + done.out
+    assert "the sources of the program `driver` of `my_driver` were not found" in done.out
+    assert "my_driver/my_driver/viewer.py:1:10: sources: it is not read: invalid syntax" in done.out
+    assert "not taken: broken/package.xml:1:" in done.out
+    assert "old/my_filter/package.xml:1:1: package.xml: there is another package `my_filter`, my_filter/package.xml: that one counts" in done.out
+    assert "there is no package.xml in it" in run("import", "workspace", "robot", "-o", "x").err
+    assert "it is no folder" in run("import", "workspace", "secret.py", "-o", "x").err
