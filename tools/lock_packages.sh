@@ -12,5 +12,5 @@ compile() {
         --no-emit-index-url --quiet --output-file "ci/locked/$out"
 }
 compile run.txt pyproject.toml --group build
-compile check.txt pyproject.toml --extra xlsx --group build --group check
+compile check.txt pyproject.toml --extra xlsx --extra sources --group build --group check
 compile supply.txt --group supply

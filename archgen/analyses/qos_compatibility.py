@@ -212,11 +212,16 @@ def _report_qos_conflicts(
     if not all(verdicts):
         unsure = writer if writer.qos_if_ignored else reader
         assumption = f" (where `{unsure.node}` {'obeys' if verdicts[0] else 'ignores'} the overrides that it is given)"
+    # Of a program that exists, and of which nobody wrote an end down, the usual profile is no more than a guess.
+    is_guess = any(
+        _describe_assumption(each) and not each.written and architecture.nodes[each.node].status == "existing"
+        for each in (writer, reader)
+    )
     yield Diagnostic(
         "incompatible-qos",
         f"`{reader.node}` receives nothing from `{writer.node}` on `{topic.name}`: it asks for {requests}, and is offered {offers}{assumption}",
         _qos_span(architecture, reader),
-        severity=Severity.WARNING if assumption else None,
+        severity=Severity.NOTE if is_guess else Severity.WARNING if assumption else None,
         labels=(Label(_qos_span(architecture, writer), "offered here"),),
         help=f"needed: {'; '.join(conflict.remedy for conflict in conflicts)}",
         element=reader.node,
