@@ -263,12 +263,13 @@ class _Reader:
             body = node.child_by_field_name("body")
             start = node.child_by_field_name("initializer")
             unknown = self._make(node, "unknown")
-            target = _find_name(start.child_by_field_name("declarator")) if start is not None else ""
-            before = [Statement("set", unknown, (self._make(node, "name", target),))] if target else []
+            counter = _find_name(start.child_by_field_name("declarator")) if start is not None else ""
+            before = [Statement("set", unknown, (self._make(node, "name", counter),))] if counter else []
             inner = self._read_block(body, depth) if body is not None else ()
             return [*before, Statement("branch", unknown, body=inner)]
         if kind == "try_statement":
-            return [each for child in node.named_children for each in self._read_block(_find_body(child), depth)]
+            tried, *handlers = (self._read_block(_find_body(child), depth) for child in [node, *node.named_children[1:]])
+            return [*tried, *(Statement("branch", self._make(node, "unknown"), body=each) for each in handlers)]
         if kind == "return_statement":
             return [Statement("return", self._read(node.named_children[0], depth) if node.named_children else None)]
         if kind in {"alias_declaration", "type_definition", "using_declaration"}:

@@ -6,17 +6,18 @@ Of a condition that is not known both ways are walked. What cannot be told is un
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
 
 from archgen.plugin.importing import Span
 from archgen.plugins.ros.sources import plain_calls, ros_calls
 from archgen.plugins.ros.sources.cpp_sources import split_type_arguments
-from archgen.plugins.ros.sources.ros_call_reading import RosCall, RosCallReader
+from archgen.plugins.ros.sources.ros_call_reading import PARAMETER_HELPERS, RosCall, RosCallReader
 from archgen.plugins.ros.sources.source_code import Expression, Function, SourceClass, SourceFile, Statement
 from archgen.plugins.ros.sources.source_index import CppCode, SourceIndex
 from archgen.plugins.ros.sources.walk_values import (
     Alternatives,
-    Callable,
+    BoundFunction,
     ExternalName,
     FoundNode,
     NodeHandle,
@@ -29,7 +30,7 @@ from archgen.plugins.ros.sources.walk_values import (
     settle,
 )
 
-_MAX_STEPS = 50_000
+_MAX_STEPS = 100_000
 _MAX_CALL_DEPTH = 25
 _MAX_FAMILY = 50
 _MAX_ALIASES = 8
@@ -72,12 +73,12 @@ class ProgramWalk(RosCallReader):
         self._index = index
         self._cpp = cpp or CppCode()
         self._modules: dict[SourceFile, Scope] = {}
-        self._pending: list[tuple[Callable, FoundNode | None]] = []
+        self._pending: list[tuple[BoundFunction, FoundNode | None]] = []
         self._walked: set[tuple[int, int]] = set()
         self._steps = 0
         self.is_cut = False
         """Whether there was more than is walked."""
-        self._evaluators = {
+        self._evaluators: dict[str, Callable[[Any, Scope], Value]] = {
             "value": lambda expression, _: expression.value,
             "name": self._evaluate_name,
             "member": self._evaluate_member,
@@ -87,9 +88,9 @@ class ProgramWalk(RosCallReader):
             "dict": self._evaluate_dict,
             "index": self._evaluate_index,
             "choice": self._evaluate_choice,
-            "lambda": lambda each, scope: Callable(each.body, scope.self_object, scope),
+            "lambda": lambda each, scope: BoundFunction(each.body, scope.self_object, scope),
         }
-        self._walkers = {
+        self._walkers: dict[str, Callable[[Statement, Scope], bool]] = {
             "do": lambda statement, scope: self._evaluate(statement.value, scope) is NotImplemented,
             "set": self._walk_setting,
             "local": self._walk_local,
@@ -99,7 +100,7 @@ class ProgramWalk(RosCallReader):
             "import": self._walk_import,
         }
 
-    def expand_callback_type(self, callback: Callable) -> str:
+    def expand_callback_type(self, callback: BoundFunction) -> str:
         """Return the type of what a callback takes."""
         parameters = callback.function.parameters
         scope = Scope(callback.function.file, None, callback.self_object)
@@ -111,13 +112,13 @@ class ProgramWalk(RosCallReader):
         """Walk through a script of Python, or through a module and one function of it."""
         scope = self._open_module(file, "" if function_name else "__main__")
         for function in file.functions.get(function_name, ())[:1]:
-            self._call(Callable(function, None, scope), [], {})
+            self._call(BoundFunction(function, None, scope), [], {})
         self._walk_pending()
 
     def walk_main(self) -> None:
         """Walk through the `main` of a program in C++."""
         for function in self._cpp.functions.get("main", ())[:1]:
-            self._call(Callable(function), [], {})
+            self._call(BoundFunction(function), [], {})
         self._walk_pending()
 
     def walk_class(self, name: str) -> bool:
@@ -183,12 +184,12 @@ class ProgramWalk(RosCallReader):
         holder = self._find_class(outer, scope) if outer else owner.made_of if owner is not None else None
         method = self._find_method(holder, last) if holder is not None else None
         if method is not None and owner is not None:
-            return Callable(method[0], owner)
+            return BoundFunction(method[0], owner)
         found = self._find_class(name, scope)
         if found is not None:
             return found
         if last in self._cpp.functions and not name.startswith(("rclcpp::", "std::", "ros::")):
-            return Callable(self._cpp.functions[last][0])
+            return BoundFunction(self._cpp.functions[last][0])
         for file in self._cpp.files:
             if file.statements and last in (variables := self._open_module(file).variables):
                 return variables[last]
@@ -285,7 +286,7 @@ class ProgramWalk(RosCallReader):
         for name in names:
             method = self._find_method(found, name)
             if method and (name in ros_calls.HOOKS or (is_foreign and name not in {last, f"~{last}", "__init__"})):
-                self._pending.append((Callable(method[0], made), made.node))
+                self._pending.append((BoundFunction(method[0], made), made.node))
         self.current_node = made.node if before is None else before
         return made
 
@@ -299,7 +300,7 @@ class ProgramWalk(RosCallReader):
             self._find_method(found, "__init__") if is_python else found.functions.get(found.name.rpartition("::")[2])
         )
         if constructors:
-            self._call(Callable(_choose_overload(constructors, len(arguments)), made), arguments, keywords)
+            self._call(BoundFunction(_choose_overload(constructors, len(arguments)), made), arguments, keywords)
             return
         for base in () if is_python else self._list_bases(found):
             if isinstance(base, SourceClass):
@@ -394,7 +395,7 @@ class ProgramWalk(RosCallReader):
         elif base is owner.made_of:
             constructors = [each for each in base.functions[base.name.rpartition("::")[2]] if each.parameters]
             if constructors:
-                self._call(Callable(_choose_overload(constructors, len(arguments)), owner), arguments, {})
+                self._call(BoundFunction(_choose_overload(constructors, len(arguments)), owner), arguments, {})
         else:
             types = split_type_arguments(name.partition("<")[2].removesuffix(">"))
             owner.type_values |= dict(zip(base.type_parameters, types, strict=False))
@@ -438,7 +439,7 @@ class ProgramWalk(RosCallReader):
             whole = settle(self._evaluate(target.parts[0], scope))
             key = target.value if target.kind == "member" else settle(self._evaluate(target.parts[1], scope))
             holder_fields = whole.fields if isinstance(whole, WalkedObject) else whole
-            if isinstance(holder_fields, dict) and isinstance(key, str | int):
+            if isinstance(holder_fields, dict) and isinstance(key, str):
                 holder_fields[key] = value
 
     # Expressions
@@ -486,10 +487,10 @@ class ProgramWalk(RosCallReader):
             return self._evaluate(expression.parts[1 if verdict else 2], scope)
         return Alternatives(tuple(self._evaluate(part, scope) for part in expression.parts[1:]))
 
-    def _get_member(self, whole: Value, name: str, unknown: UnknownText) -> Value:  # noqa: PLR0911 - a kind of values each
+    def _get_member(self, whole: Value, name: str, unknown: UnknownText) -> Value:
         if isinstance(whole, WalkedObject):
             method = None if name in whole.fields else self._find_method(whole.made_of, name)
-            return whole.fields.get(name, unknown) if method is None else Callable(method[0], whole)
+            return whole.fields.get(name, unknown) if method is None else BoundFunction(method[0], whole)
         if isinstance(whole, SourceFile):
             found = self._find_in_module(whole, name)
             inner = self._index.find_module(f"{whole.path.parent.name}.{name}", whole.path)
@@ -497,7 +498,7 @@ class ProgramWalk(RosCallReader):
         if isinstance(whole, SourceClass):
             method = self._find_method(whole, name)
             constant = self._find_constant(whole, name, self._open_module(whole.file)) if method is None else _MISSING
-            return Callable(method[0]) if method is not None else unknown if constant is _MISSING else constant
+            return BoundFunction(method[0]) if method is not None else unknown if constant is _MISSING else constant
         if isinstance(whole, ExternalName):
             full_name = ExternalName(f"{whole.name}.{name}")
             qos = ros_calls.read_qos_name(full_name.name)
@@ -519,11 +520,13 @@ class ProgramWalk(RosCallReader):
             return self._call_super(arguments, keywords, scope)
         types = [self._expand_type(each, scope) for each in expression.type_arguments]
         whole = self._evaluate(called.parts[0], scope) if called.kind == "member" else None
-        if whole is None and is_cpp and "." not in name:
+        if whole is None and is_cpp and ("." not in name or name.endswith("_from_this")):
             whole = scope.self_object
+        if name.endswith("_from_this"):
+            return whole
         target = self._find_name(str(called.value), scope) if called.kind == "name" else self._evaluate(called, scope)
         call = RosCall(whole, target, name.rpartition(".")[2], arguments, keywords, types, self._span(expression))
-        if isinstance(target, Callable):
+        if isinstance(target, BoundFunction):
             return self._call_function(target, call, expression, scope)
         if isinstance(target, SourceClass):
             return self._construct_class(target, arguments, keywords, call.span, types)
@@ -544,12 +547,14 @@ class ProgramWalk(RosCallReader):
             return NotImplemented if is_unset else True
         return self._call_plainly(call, expression, scope) if result is NotImplemented else result
 
-    def _call_function(self, target: Callable, call: RosCall, expression: Expression, scope: Scope) -> Value:
+    def _call_function(self, target: BoundFunction, call: RosCall, expression: Expression, scope: Scope) -> Value:
         function, arguments = target.function, call.arguments
+        if function.name in PARAMETER_HELPERS:
+            return self.read_call(call)
         if function.file.language == "python":
             is_bare = target.self_object is None and function.owner and not function.is_static
             if is_bare and arguments and isinstance(arguments[0], WalkedObject):
-                return self._call(Callable(function, arguments[0]), arguments[1:], call.keywords)
+                return self._call(BoundFunction(function, arguments[0]), arguments[1:], call.keywords)
             return self._call(target, arguments, call.keywords)
         owner = target.self_object
         others = (
@@ -558,7 +563,7 @@ class ProgramWalk(RosCallReader):
             else self._cpp.functions.get(function.name)
         )
         if others and function in others:
-            target = Callable(_choose_overload(others, len(arguments)), owner, target.around)
+            target = BoundFunction(_choose_overload(others, len(arguments)), owner, target.around)
         variables: dict[str, Value] = {}
         returned = self._call(target, arguments, {}, call.types, variables)
         for parameter, each in zip(target.function.parameters, expression.parts[1:], strict=False):
@@ -569,7 +574,7 @@ class ProgramWalk(RosCallReader):
     def _mention(self, values: Sequence[Value]) -> None:
         """Remember functions that are handed over: somebody will call them."""
         for value in values:
-            if isinstance(value, Callable):
+            if isinstance(value, BoundFunction):
                 self._pending.append((value, self.find_node(value.self_object) or self.current_node))
             elif isinstance(value, list):
                 self._mention(value)
@@ -579,14 +584,14 @@ class ProgramWalk(RosCallReader):
         for base in self._list_bases(holder.variables["(class)"]) if holder is not None and owner is not None else ():
             method = self._find_method(base, "__init__") if isinstance(base, SourceClass) else None
             if method is not None and owner is not None:
-                self._call(Callable(method[0], owner), arguments, keywords)
+                self._call(BoundFunction(method[0], owner), arguments, keywords)
             elif owner is not None:
                 self._name_node(owner, arguments, keywords)
             return
 
     def _call(
         self,
-        target: Callable,
+        target: BoundFunction,
         arguments: list[Value],
         keywords: Mapping[str, Value],
         types: Sequence[str] = (),
@@ -686,7 +691,7 @@ class ProgramWalk(RosCallReader):
         if made is not None:
             return made
         first = arguments[0] if arguments else None
-        if method in _RESOLVERS or (method == "bind" and isinstance(first, Callable)):
+        if method in _RESOLVERS or (method == "bind" and isinstance(first, BoundFunction)):
             return first
         if isinstance(whole, TextStream) and method == "str":
             return join_texts(whole.parts)

@@ -96,8 +96,11 @@ class _Reader:
                 ]
                 return [*before, *self.read_body(node.body, depth)]
             case ast.Try() | ast.TryStar():
-                handlers = [each for handler in node.handlers for each in handler.body]
-                return list(self.read_body([*node.body, *node.orelse, *node.finalbody, *handlers], depth))
+                handlers = [self.read_body(handler.body, depth) for handler in node.handlers]
+                unknown = self._make(node, "unknown")
+                failing = [Statement("branch", unknown, body=each) for each in handlers]
+                tried = self.read_body([*node.body, *node.orelse], depth)
+                return [*tried, *failing, *self.read_body(node.finalbody, depth)]
             case ast.Import(names=names):
                 pairs = [(a.asname, a.name) if a.asname else (a.name.partition(".")[0],) * 2 for a in names]
                 return [Statement("import", names=tuple(pairs))]
@@ -180,8 +183,8 @@ class _Reader:
             case ast.Compare(
                 left=left, ops=[ast.Eq() | ast.NotEq() | ast.In() | ast.NotIn() | ast.Is() | ast.IsNot() as op]
             ):
-                sign = {"Eq": "==", "Is": "==", "NotEq": "!=", "IsNot": "!=", "In": "in", "NotIn": "not in"}
-                return self._read_operation(node, sign[type(op).__name__], (left, *node.comparators), depth)
+                signs = {"Eq": "==", "Is": "==", "NotEq": "!=", "IsNot": "!=", "In": "in", "NotIn": "not in"}
+                return self._read_operation(node, signs[type(op).__name__], (left, *node.comparators), depth)
             case ast.List(elts=items) | ast.Tuple(elts=items) | ast.Set(elts=items):
                 return self._make(node, "list", None, [self._read(each, depth) for each in items])
             case ast.Dict(keys=keys, values=values) if None not in keys:
@@ -197,7 +200,7 @@ class _Reader:
             case ast.Starred(value=inner) | ast.Await(value=inner):
                 return self._read(inner, depth)
             case ast.ListComp(elt=item, generators=[ast.comprehension(target=target, iter=iterable, ifs=[])]):
-                parts = (self._read(iterable, depth), self._read(target, depth), self._read(item, depth))
+                parts = [self._read(each, depth) for each in (iterable, target, item)]
                 return self._make(node, "call", None, (Expression("name", "for", node.lineno, 1, "for"), *parts))
         return self._make(node, "unknown")
 

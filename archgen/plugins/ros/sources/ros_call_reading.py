@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from archgen.plugin import dataclass
+from archgen.plugin import dataclass, replace
 from archgen.plugin.importing import Span
 from archgen.plugins.ros.sources import ros_calls
 from archgen.plugins.ros.sources.ros_calls import (
@@ -17,7 +17,7 @@ from archgen.plugins.ros.sources.ros_calls import (
 from archgen.plugins.ros.sources.source_code import Function, SourceFile
 from archgen.plugins.ros.sources.walk_values import (
     Alternatives,
-    Callable,
+    BoundFunction,
     FoundEndpoint,
     FoundNode,
     JoinedText,
@@ -35,7 +35,10 @@ _NAME_KEYS = ("topic", "topic_name", "srv_name", "action_name", "name", "service
 _TYPE_KEYS = ("msg_type", "srv_type", "action_type", "data_class", "service_class", "topic_type", "ActionSpec")
 _WRITING_GETTERS = frozenset({"get_parameter", "get_parameter_or", "getParam", "getParamCached", "get", "param"})
 _GETTERS = _WRITING_GETTERS | {"get_param", "get_param_cached"}
-_DECLARERS = frozenset({"declare_parameter", "declare_parameter_if_not_declared", "declare_or_get_parameter"})
+PARAMETER_HELPERS = frozenset({"declare_parameter_if_not_declared", "declare_or_get_parameter"})
+"""Functions of Nav2, which are parameters' declarations and no more."""
+_OWN_ARGUMENTS = "the arguments of its options"
+_DECLARERS = PARAMETER_HELPERS | {"declare_parameter"}
 _PARAMETER_MODULES = frozenset({"rospy", "ros.param"})
 
 
@@ -63,6 +66,8 @@ class RosCallReader:
 
     def __init__(self, given: Mapping[str, Value], *, is_ros_1: bool) -> None:
         self._given = given
+        self.node_names: dict[str, str] = {}
+        """The name and namespace that the node is started with, where it is given some."""
         self.is_ros_1 = is_ros_1
         self.nodes: list[FoundNode] = []
         self.current_node: FoundNode | None = None
@@ -76,7 +81,7 @@ class RosCallReader:
         """Whether the place is in C++."""
         return self.file is not None and self.file.language == "cpp"
 
-    def expand_callback_type(self, callback: Callable) -> str:
+    def expand_callback_type(self, callback: BoundFunction) -> str:
         """Return the type of what a callback takes."""
         raise NotImplementedError
 
@@ -98,6 +103,9 @@ class RosCallReader:
         node.name = name
         second = arguments[1] if len(arguments) > 1 and is_cpp else keywords.get("namespace")
         node.namespace = second if isinstance(settle(second), str) else None
+        # Options with arguments of their own may put it anywhere.
+        hidden = [each for each in arguments if isinstance(each, UnknownText) and each.text == _OWN_ARGUMENTS]
+        node.namespace = hidden[0] if hidden else node.namespace
 
     def find_node(self, value: Value) -> FoundNode | None:
         """Return the node that a value is, or speaks through."""
@@ -128,7 +136,7 @@ class RosCallReader:
         if last == "ImageTransport" and arguments:
             prefix = first.prefix if isinstance(first, NodeHandle) else ""
             return NodeHandle(self._need_node(call.span, first), prefix, "image_transport")
-        if dotted == "message_filters.Subscriber" and self.is_cpp or last == "SubscriberFilter":
+        if (dotted == "message_filters.Subscriber" and self.is_cpp) or last == "SubscriberFilter":
             message = (
                 read_message_name(inner.partition(",")[0].rstrip(">"), "topic") if inner else ros_calls.IMAGE_TYPES[0]
             )
@@ -179,6 +187,14 @@ class RosCallReader:
         types = f"<{call.types[0]}>" if call.types else ""
         if name and (made := self.make_external(call, name + types)) is not NotImplemented:
             return made
+        if method == "arguments" and call.arguments:
+            return UnknownText(_OWN_ARGUMENTS, call.span)
+        node = self.find_node(whole)
+        if node is not None and method.startswith("get_node_") and method.endswith("_interface"):
+            return NodeHandle(node)
+        if node is not None and method in {"get_name", "get_namespace"} and not call.arguments:
+            word = method.removeprefix("get_")
+            return self.node_names.get(word, node.name if word == "name" else node.namespace or "/")
         if method.endswith("NodeHandle") and method.startswith("get"):
             return NodeHandle(self._need_node(call.span, whole), "~" if "Private" in method else "")
         is_unclear = isinstance(whole, UnknownText | Alternatives)
@@ -219,13 +235,15 @@ class RosCallReader:
         return UnknownText(method, span)
 
     def _add_call(self, known: EndpointCall, call: RosCall, types: Sequence[str]) -> UnknownText:
-        first = call.get(0)
-        if known.has_node and self.is_ros_1 and self.find_node(first) is None:
-            # The sisters of ROS 1 may go without: `message_filters.Subscriber(topic, type)`.
-            known = known._replace(name_at=0, type_at=None if known.type_at is None else 1, has_node=False)
-        place = known.name_at + (not known.has_node and known.name_at == 0 and isinstance(first, NodeHandle))
-        handle = call.whole if isinstance(call.whole, NodeHandle) else first if known.has_node or place else None
-        name = call.get(place, _NAME_KEYS)
+        nodes = [each for each in call.arguments if self.find_node(each) is not None]
+        handle = call.whole if isinstance(call.whole, NodeHandle) else nodes[0] if nodes else None
+        # Interfaces of a node stand in front in any number; the sisters of ROS 1 go without: `Subscriber(topic, type)`.
+        rest = [each for each in call.arguments if self.find_node(each) is None]
+        is_sister = known.has_node and self.is_ros_1 and not nodes
+        call = replace(call, arguments=rest[int(known.has_node and not nodes and not is_sister) :])
+        if is_sister and known.type_at is not None:
+            known = known._replace(name_at=0, type_at=1)
+        name = call.get(known.name_at, _NAME_KEYS)
         if isinstance(handle, NodeHandle):
             name = _join_prefix(handle.prefix, name)
         elif self.is_ros_1 and isinstance(call.whole, UnknownText):
@@ -236,7 +254,7 @@ class RosCallReader:
             text = settle(given) if isinstance(settle(given), str) else spell_external(given)
             message = read_message_name(text.replace("/", "."), known.flow)
         callback = None if message or known.callback_at is None else call.get(known.callback_at)
-        if isinstance(callback, Callable):
+        if isinstance(callback, BoundFunction):
             message = read_message_name(self.expand_callback_type(callback), known.flow)
         qos = {} if self.is_ros_1 or known.qos_at is None else read_qos(call.get(known.qos_at, ("qos_profile",)))
         node = self._need_node(call.span, handle, call.whole)
@@ -262,7 +280,7 @@ class RosCallReader:
         method, arguments, whole = call.method, call.arguments, call.whole
         is_module = name.rpartition(".")[0] in _PARAMETER_MODULES
         is_unclear = isinstance(whole, UnknownText) and method not in {"get", "param"}
-        is_helper = method == "declare_parameter_if_not_declared"
+        is_helper = method in PARAMETER_HELPERS
         if not (is_module or is_unclear or is_helper or self.find_node(whole)) or (method == "get" and not is_module):
             return NotImplemented
         if method == "declare_parameters" and isinstance(call.get(1), list):

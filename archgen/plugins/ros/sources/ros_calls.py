@@ -11,7 +11,7 @@ from archgen.plugins.ros.sources.walk_values import ExternalName, Value, settle
 
 
 class EndpointCall(NamedTuple):
-    """What a call makes. Positions count its arguments from 0; without `type_at` the type stands in `<...>`, or is the callback's."""
+    """What a call makes. Positions count its arguments behind the node, from 0; without `type_at` the type stands in `<...>`, or is the callback's."""
 
     use: str
     flow: str
@@ -20,7 +20,7 @@ class EndpointCall(NamedTuple):
     qos_at: int | None = None
     callback_at: int | None = None
     has_node: bool = False
-    """Whether its first argument is the node."""
+    """Whether its first argument is a node."""
 
 
 def _make_endpoint_calls(
@@ -49,24 +49,24 @@ ROSCPP_METHODS = {
     "advertiseService": EndpointCall("serves", "service", 0, callback_at=1),
     "serviceClient": EndpointCall("calls", "service", 0),
 }
-_SERVER, _CLIENT = (EndpointCall(use, "action", 2, 1, has_node=True) for use in ("serves", "calls"))
+_SERVER, _CLIENT = (EndpointCall(use, "action", 1, 0, has_node=True) for use in ("serves", "calls"))
 FUNCTIONS = {
-    **{f"rclcpp.{name}": call for name, call in _make_endpoint_calls(name=1, kind=None, has_node=True).items()},
+    **{f"rclcpp.{name}": call for name, call in _make_endpoint_calls(name=0, kind=None, has_node=True).items()},
     **{f"rclpy.action.{inner}ActionServer": _SERVER for inner in ("", "server.")},
     **{f"rclpy.action.{inner}ActionClient": _CLIENT for inner in ("", "client.")},
     **{f"actionlib.{inner}ActionServer": EndpointCall("serves", "action", 0, 1) for inner in ("", "Simple")},
     **{f"actionlib.{inner}ActionClient": EndpointCall("calls", "action", 0, 1) for inner in ("", "Simple")},
-    "message_filters.Subscriber": EndpointCall("subscribes", "topic", 2, 1, has_node=True),
+    "message_filters.Subscriber": EndpointCall("subscribes", "topic", 1, 0, has_node=True),
     "rospy.Publisher": EndpointCall("publishes", "topic", 0, 1),
     "rospy.Subscriber": EndpointCall("subscribes", "topic", 0, 1),
     "rospy.wait_for_message": EndpointCall("subscribes", "topic", 0, 1),
     "rospy.Service": EndpointCall("serves", "service", 0, 1),
     "rospy.ServiceProxy": EndpointCall("calls", "service", 0, 1),
-    "rclcpp_action.create_server": EndpointCall("serves", "action", 1, has_node=True),
-    "rclcpp_action.create_client": EndpointCall("calls", "action", 1, has_node=True),
-    "nav2_util.SimpleActionServer": EndpointCall("serves", "action", 1, has_node=True),
+    "rclcpp_action.create_server": EndpointCall("serves", "action", 0, has_node=True),
+    "rclcpp_action.create_client": EndpointCall("calls", "action", 0, has_node=True),
+    "nav2_util.SimpleActionServer": EndpointCall("serves", "action", 0, has_node=True),
     "nav2_util.ServiceClient": EndpointCall("calls", "service", 0),
-    "realtime_tools.RealtimePublisher": EndpointCall("publishes", "topic", 1, has_node=True),
+    "realtime_tools.RealtimePublisher": EndpointCall("publishes", "topic", 0, has_node=True),
 }
 IMAGE_TYPES = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CameraInfo")
 _IMAGE_USES = {

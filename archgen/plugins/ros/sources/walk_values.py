@@ -102,7 +102,7 @@ class WalkedObject:
 
 
 @dataclass(slots=True, eq=False)
-class Callable:
+class BoundFunction:
     """A function, with the object whose method it is and the names around it."""
 
     function: Function
@@ -153,3 +153,13 @@ def find_unknown(value: Value) -> str:
     if isinstance(value, Alternatives):
         return "one of " + ", ".join(map(show_value, value.values))
     return value.text if isinstance(value, UnknownText) else value.name if isinstance(value, ExternalName) else ""
+
+
+def find_unknown_place(value: Value) -> Span | None:
+    """Return where the expression stands that is not known in a value."""
+    if isinstance(value, ParameterValue):
+        return find_unknown_place(value.value)
+    if isinstance(value, JoinedText | Alternatives):
+        parts = value.parts if isinstance(value, JoinedText) else value.values
+        return next(filter(None, map(find_unknown_place, parts)), None)
+    return value.span if isinstance(value, UnknownText) and value.span.line else None

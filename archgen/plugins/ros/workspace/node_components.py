@@ -23,8 +23,11 @@ from archgen.plugins.ros.ros_package.import_account import ImportAccount
 from archgen.plugins.ros.sources.walk_values import (
     FoundEndpoint,
     FoundNode,
+    JoinedText,
     ParameterValue,
+    UnknownText,
     find_unknown,
+    find_unknown_place,
     settle,
     show_value,
 )
@@ -129,15 +132,15 @@ class NodeWriter:
         if left_out:
             data.pop("parameters", None)
             parameters = nest_parameters({k: v for k, v in known.node.parameters.items() if k not in left_out})
-            data |= {"parameters": parameters} if parameters else {}
+            if parameters:
+                data["parameters"] = parameters
 
     def _write_found(self, written: WrittenNode, found: FoundNode, known: NodeKnowledge, *, is_first: bool) -> None:
         data, name, namespace = written.data, settle(found.name), settle(found.namespace)
-        if not known.node.name and isinstance(name, str) and not find_node_name_fault(name):
+        if (not is_first or not known.node.name) and isinstance(name, str) and not find_node_name_fault(name):
             data.pop("name", None)
-            data |= {"name": name} if name != written.id else {}
-        elif not is_first:
-            data["name"] = known.node.name
+            if name != written.id:
+                data["name"] = name
         if (
             not known.node.namespace
             and isinstance(namespace, str)
@@ -145,9 +148,11 @@ class NodeWriter:
             and not find_name_fault(namespace)
         ):
             data["namespace"] = f"/{namespace.strip('/')}"
-        if found.is_lifecycle:
+        if found.is_lifecycle and is_first:
             data.setdefault("kind", "lifecycle")
         for endpoint in found.endpoints:
+            if isinstance(namespace, UnknownText) and not show_value(endpoint.name).startswith("/"):
+                endpoint.name = JoinedText((namespace, "/", endpoint.name))
             self._write_endpoint(written, endpoint, is_ros_1=known.program is not None and known.program.is_ros_1)
         if len(found.periods) == 1 and found.periods[0] and not {"subscribes", "serves"} & set(data):
             data["timing"] = {"period": f"{found.periods[0] * 1000:.6g} ms"}
@@ -176,11 +181,12 @@ class NodeWriter:
             written.comments[side, port] = f"made under a condition, {place}"
         elif not text:
             shown = show_value(endpoint.name)
-            expression = find_unknown(endpoint.name) or shown
+            expression, at = find_unknown(endpoint.name) or shown, find_unknown_place(endpoint.name) or endpoint.span
+            place = f"{at.file}:{at.line}"
             known_part = f"`{shown}`, " if shown.strip("*/") else ""
             written.comments[side, port] = f"name unknown: {known_part}`{expression[:60]}`, {place}"
             words = f"the name of what it {endpoint.use} is computed: {known_part}`{expression}`"
-            self._account.add_note("name", words, endpoint.span, fate="noted")
+            self._account.add_note("name", words, at, fate="noted")
             self._account.count("endpoint without a name")
 
 

@@ -53,10 +53,10 @@ class ProgramReader:
             words = f"the sources of the program `{node.executable}` of `{node.package}` were not found: it is not known what it says"
             self._account.add_note("program", words, node.span, fate="noted")
         elif program.language == "python":
-            walk = self._walk_python(program, given, is_ros_1=is_ros_1)
+            walk = self._walk_python(program, given, node, is_ros_1=is_ros_1)
         elif self._has_cpp(node):
             code = self._gather(package, node.executable)
-            walk = ProgramWalk(self._index, code, given, is_ros_1=is_ros_1)
+            walk = self._start_walk(node, code, given, is_ros_1=is_ros_1)
             walk.walk_main()
         if walk is None or not walk.nodes:
             return None
@@ -68,11 +68,21 @@ class ProgramReader:
             self._account.add_note("program", words, main.span)
         return ReadProgram((main, *others), is_ros_1, walk.is_cut)
 
-    def _walk_python(self, program: ProgramSources, given: Mapping[str, Any], *, is_ros_1: bool) -> ProgramWalk | None:
+    def _start_walk(
+        self, node: LaunchedNode, code: CppCode | None, given: Mapping[str, Any], *, is_ros_1: bool
+    ) -> ProgramWalk:
+        walk = ProgramWalk(self._index, code, given, is_ros_1=is_ros_1)
+        names = {"name": node.name, "namespace": node.namespace}
+        walk.node_names = {key: name for key, name in names.items() if name}
+        return walk
+
+    def _walk_python(
+        self, program: ProgramSources, given: Mapping[str, Any], node: LaunchedNode, *, is_ros_1: bool
+    ) -> ProgramWalk | None:
         file = self._index.read_file(program.sources[0]) if program.sources else None
         if file is None:
             return None
-        walk = ProgramWalk(self._index, None, given, is_ros_1=is_ros_1)
+        walk = self._start_walk(node, None, given, is_ros_1=is_ros_1)
         walk.walk_script(file, program.function)
         return walk
 
@@ -101,7 +111,8 @@ class ProgramReader:
     ) -> ProgramWalk | None:
         if not self._has_cpp(node):
             return None
-        walk = ProgramWalk(self._index, self._gather(package, ""), given, is_ros_1=package.manifest.is_ros_1)
+        code = self._gather(package, "")
+        walk = self._start_walk(node, code, given, is_ros_1=package.manifest.is_ros_1)
         if walk.walk_class(plugin.replace("/", "::")) or walk.walk_class(plugin.rpartition("/")[2]):
             return walk
         words = f"the class `{plugin}` was not found in the libraries of `{package.manifest.name}`: it is not known what it says"

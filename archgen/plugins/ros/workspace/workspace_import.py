@@ -8,18 +8,21 @@ from pathlib import Path
 from archgen.plugin.importing import (
     ForeignFileError,
     ForeignImport,
+    MappingNode,
     Span,
     load_shipped_component_types,
     make_id,
+    node_to_data,
     title_from_id,
 )
 from archgen.plugins.ros.launch.launch_actions import LaunchedNode
 from archgen.plugins.ros.launch.launch_import import LaunchedFiles, find_stem, run_launch_files
 from archgen.plugins.ros.launch.launch_slices import SliceMaker
 from archgen.plugins.ros.ros_package.import_account import ImportAccount
+from archgen.plugins.ros.workspace.node_components import NodeKnowledge
 from archgen.plugins.ros.workspace.program_reading import ProgramReader
 from archgen.plugins.ros.workspace.program_sources import WorkspaceFiles
-from archgen.plugins.ros.workspace.node_components import NodeKnowledge
+from archgen.plugins.ros.workspace.used_messages import read_used_messages
 from archgen.plugins.ros.workspace.workspace_slices import make_slices
 
 _MAX_SHOWN = 12
@@ -64,6 +67,9 @@ def read_workspace(
     reader.tell_unread()
     uses_library = any(each.library_type for each in knowledge)
     slices, comments = make_slices(SliceMaker(launched.run), knowledge, workspace, account, known_distro)
+    types = read_used_messages(workspace, knowledge, account)
+    if types:
+        slices["messages.yaml"] = {"types": types}
     if not distro and not is_ros_1 and uses_library:
         words = f"the distribution of ROS is not known: types of the library are those of {known_distro}"
         account.add_note("library", words, Span.of_file("."), "`--distro NAME` says another", fate="noted")
@@ -84,14 +90,10 @@ def _find_library_type(node: LaunchedNode, distro: str) -> str:
     """Return the type of the library that ships which a node runs: known by its package and its plug-in or executable."""
     if not node.package:
         return ""
+    program = "plugin" if node.plugin else "executable"
     for name, entry in load_shipped_component_types(distro).items():
-        facts = entry.value.get("node")
-        texts = (
-            {key: getattr(facts.get(key), "text", "") for key in ("package", "executable", "plugin")}
-            if facts is not None
-            else {}
-        )
-        program = "plugin" if node.plugin else "executable"
+        facts = entry.value.get("node") if isinstance(entry.value, MappingNode) else None
+        texts = {each.key: node_to_data(each.value) for each in facts} if isinstance(facts, MappingNode) else {}
         if texts.get("package") == node.package and texts.get(program) == (node.plugin or node.executable):
             return name
     return ""

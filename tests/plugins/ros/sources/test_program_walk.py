@@ -287,7 +287,7 @@ def test_rclcpp(tmp_path: Path) -> None:
     made, _ = walk(tmp_path, files, "my_robot::Scanner", topic="/front/scan")
     assert tell(made) == [
         "node scanner lifecycle",
-        "publishes topic * sensor_msgs/msg/LaserScan (snprintf(text, 9, \"analog%02d\", 3))",
+        'publishes topic * sensor_msgs/msg/LaserScan (snprintf(text, 9, "analog%02d", 3))',
         "subscribes topic /front/scan sensor_msgs/msg/LaserScan",
         "serves service stop std_srvs/srv/Trigger",
         "publishes topic helper/a std_msgs/msg/String",
@@ -393,7 +393,10 @@ HOSTILE = {
     "growth.py": "x = 'a'\n" + "x = x + x\n" * 60,
     "times.py": "x = 'a' * 10**9\ny = [0] * 10**9\n",
     "sums.py": "x = " + "+".join(["'a'"] * 3000) + "\n",
-    "loops.py": "a = list(range(10**9))\n" + "".join("    " * d + f"for i{d} in range(60):\n" for d in range(6)) + "    " * 6 + "print(1)\n",
+    "loops.py": "a = list(range(10**9))\n"
+    + "".join("    " * d + f"for i{d} in range(60):\n" for d in range(6))
+    + "    " * 6
+    + "print(1)\n",
     "base.py": "class A(B):\n    pass\nclass B(A):\n    def __init__(self):\n        super().__init__()\nA()\n",
     "import.py": "from import_too import *\nimport nothing.at.all\nprint(x)\n",
     "import_too.py": "import os as x\nfrom . import *\n",

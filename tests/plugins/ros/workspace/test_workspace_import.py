@@ -160,7 +160,7 @@ def test_workspace_of_ros_2(workspace: Path, run: Run) -> None:
         "    status: existing\n    remaps:\n      odom: /odom\n    parameter_files:\n"
         "      - $(find-pkg-share my_bringup)/config/driver.yaml\n    parameters:\n      scan_topic: laser\n"
         "    publishes: {laser: {own_name: scan, named_by: scan_topic}, odom: {own_name: odom}, bump: {}}\n"
-        "    serves: {reset: \"~/reset\"}\n"
+        '    serves: {reset: "~/reset"}\n'
     ) in text
     shown = run("show", "-C", "robot", "filter").out
     assert "subscribes to /front/laser (sensor_msgs/msg/LaserScan)" in shown
@@ -201,7 +201,10 @@ def test_several_launch_files_are_other_robots(workspace: Path, run: Run) -> Non
     done = run("import", "workspace", "src", "-o", "robot")
     assert done.status == 1
     assert "2 launch files start nodes, and none of them includes the others" in done.err
-    assert "`--launch`, likeliest first: my_bringup/launch/robot.launch.py (6 nodes), my_driver/launch/driver.launch.xml (1 nodes)" in done.err
+    assert (
+        "`--launch`, likeliest first: my_bringup/launch/robot.launch.py (6 nodes), my_driver/launch/driver.launch.xml (1 nodes)"
+        in done.err
+    )
     assert not Path("robot").exists()
     done = run("import", "workspace", "src", "--launch", "my_driver/driver.launch.xml", "-o", "robot")
     assert done.status == 0, done.err
@@ -217,7 +220,10 @@ def test_without_the_extra_cpp_is_unread_and_said(workspace: Path, run: Run, mon
     assert done.status == 0
     assert "sources in C++ are not read, those of `my_filter::Filter` for one" in done.out
     assert "= help: `pip install 'archgen[sources]'` installs what reads them" in done.out
-    assert "  filter:  # what it says to ROS is not known: no sources, no type of the library" in Path("robot/robot.yaml").read_text()
+    assert (
+        "  filter:  # what it says to ROS is not known: no sources, no type of the library"
+        in Path("robot/robot.yaml").read_text()
+    )
 
 
 ROS_1 = {
@@ -268,7 +274,10 @@ def test_workspace_of_ros_1(tmp_path: Path, run: Run, monkeypatch: pytest.Monkey
     assert done.status == 0, done.err
     assert "distro: noetic" in Path("robot/archgen.yaml").read_text()
     drive, motor = (run("show", "-C", "robot", name).out for name in ("drive", "motor"))
-    assert "publishes /front/speed (geometry_msgs/Twist)" in drive or "publishes /front/speed (geometry_msgs/msg/Twist)" in drive
+    assert (
+        "publishes /front/speed (geometry_msgs/Twist)" in drive
+        or "publishes /front/speed (geometry_msgs/msg/Twist)" in drive
+    )
     assert "subscribes to /cmd_vel" in drive
     assert "publishes /front/motor/current" in motor
     assert "speed <- robot.drive.speed" in motor
@@ -295,6 +304,9 @@ def test_nothing_outside_of_the_workspace_is_read(workspace: Path, run: Run) -> 
     assert "the sources of the program `driver` of `my_driver` were not found" in done.out
     assert "my_driver/my_driver/viewer.py:1:10: sources: it is not read: invalid syntax" in done.out
     assert "not taken: broken/package.xml:1:" in done.out
-    assert "old/my_filter/package.xml:1:1: package.xml: there is another package `my_filter`, my_filter/package.xml: that one counts" in done.out
+    assert (
+        "old/my_filter/package.xml:1:1: package.xml: there is another package `my_filter`, my_filter/package.xml: that one counts"
+        in done.out
+    )
     assert "there is no package.xml in it" in run("import", "workspace", "robot", "-o", "x").err
     assert "it is no folder" in run("import", "workspace", "secret.py", "-o", "x").err
