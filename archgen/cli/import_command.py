@@ -66,7 +66,7 @@ class _ImportCommand(click.Command):
     "--format", "form", type=click.Choice(["text", "json"]), default="text", help="How to say what was taken."
 )
 @shared_options.project_option
-def command(  # noqa: PLR0913 - one for each option
+def command(  # noqa: PLR0913, PLR0917 - one for each option
     words: tuple[str, ...],
     output: Path | None,
     into: Path | None,
@@ -197,7 +197,7 @@ def _find_target(output: Path | None, project: Path | None) -> Path:
     return root
 
 
-def _import_slices(  # noqa: PLR0913 - what, where and how
+def _import_slices(  # noqa: PLR0913, PLR0917 - what, where and how
     import_format: ImportFormat,
     files: list[Path],
     given: dict[str, Any],

@@ -64,7 +64,9 @@ class _CmakeReader:
         ]
         yield from self._read_calls(calls, path.parent, depth)
 
-    def _read_calls(self, calls: list[tuple[str, str, int]], folder: Path, depth: int) -> Iterator[CmakeCall]:
+    def _read_calls(  # noqa: C901 - a command each
+        self, calls: list[tuple[str, str, int]], folder: Path, depth: int
+    ) -> Iterator[CmakeCall]:
         place = 0
         while place < len(calls) and self._count < _MAX_CALLS:
             self._count += 1

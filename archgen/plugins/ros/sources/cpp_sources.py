@@ -82,7 +82,9 @@ class _Reader:
         self.statements: list[Statement] = []
         self.includes: list[str] = []
 
-    def read_outside(self, block: Node, outer: str, depth: int, type_parameters: tuple[str, ...] = ()) -> None:
+    def read_outside(  # noqa: C901, PLR0912 - one for each form
+        self, block: Node, outer: str, depth: int, type_parameters: tuple[str, ...] = ()
+    ) -> None:
         """Read what stands outside of functions; `outer` is the namespace around it, with `::` behind it."""
         for node in block.named_children if depth < MAX_DEPTH else ():
             kind = node.type
@@ -139,7 +141,9 @@ class _Reader:
         self._file.classes[found.name] = found
         self._read_members(body, found, depth + 1)
 
-    def _read_members(self, body: Node, found: SourceClass, depth: int, type_parameters: tuple[str, ...] = ()) -> None:
+    def _read_members(  # noqa: C901 - one for each form
+        self, body: Node, found: SourceClass, depth: int, type_parameters: tuple[str, ...] = ()
+    ) -> None:
         for node in body.named_children if depth < MAX_DEPTH else ():
             kind = node.type
             if kind in _BLOCKS or kind == "template_declaration":
@@ -225,7 +229,7 @@ class _Reader:
         children = node.named_children if node.type in {"compound_statement", "case_statement"} else [node]
         return tuple(each for child in children for each in self._read_statement(child, depth + 1))
 
-    def _read_statement(self, node: Node, depth: int) -> list[Statement]:  # noqa: PLR0911 - one for each form
+    def _read_statement(self, node: Node, depth: int) -> list[Statement]:  # noqa: C901, PLR0911 - one for each form
         kind = node.type
         if kind in {"compound_statement", "case_statement", "else_clause", "labeled_statement", "ERROR"}:
             return [each for child in node.named_children for each in self._read_block(child, depth)]
@@ -268,7 +272,9 @@ class _Reader:
             inner = self._read_block(body, depth) if body is not None else ()
             return [*before, Statement("branch", unknown, body=inner)]
         if kind == "try_statement":
-            tried, *handlers = (self._read_block(_find_body(child), depth) for child in [node, *node.named_children[1:]])
+            tried, *handlers = (
+                self._read_block(_find_body(child), depth) for child in [node, *node.named_children[1:]]
+            )
             return [*tried, *(Statement("branch", self._make(node, "unknown"), body=each) for each in handlers)]
         if kind == "return_statement":
             return [Statement("return", self._read(node.named_children[0], depth) if node.named_children else None)]

@@ -42,7 +42,7 @@ def list_items(value: Value) -> list[Value] | None:
     return settled if isinstance(settled, list) else list(settled) if isinstance(settled, dict) else None
 
 
-def operate(sign: str, values: Sequence[Value]) -> Value:
+def operate(sign: str, values: Sequence[Value]) -> Value:  # noqa: PLR0911 - a kind of operators each
     """Return what an operator makes of values; NotImplemented where that is not known."""
     verdicts = [judge(each) for each in values]
     if sign == "not":

@@ -6,6 +6,7 @@ Of a condition that is not known both ways are walked. What cannot be told is un
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
@@ -33,6 +34,7 @@ from archgen.plugins.ros.sources.walk_values import (
 _MAX_STEPS = 100_000
 _MAX_CALL_DEPTH = 25
 _MAX_FAMILY = 50
+_MAX_BARREN_CALLS = 8
 _MAX_ALIASES = 8
 _MISSING = object()
 _PASSED_THROUGH = frozenset(
@@ -75,6 +77,8 @@ class ProgramWalk(RosCallReader):
         self._modules: dict[SourceFile, Scope] = {}
         self._pending: list[tuple[BoundFunction, FoundNode | None]] = []
         self._walked: set[tuple[int, int]] = set()
+        self._barren: Counter[tuple[int, int]] = Counter()
+        """How often a function was walked through in a row and gave nothing: loops over all that a node does take long."""
         self._steps = 0
         self.is_cut = False
         """Whether there was more than is walked."""
@@ -509,7 +513,7 @@ class ProgramWalk(RosCallReader):
 
     # Calls
 
-    def _evaluate_call(self, expression: Expression, scope: Scope) -> Value:
+    def _evaluate_call(self, expression: Expression, scope: Scope) -> Value:  # noqa: C901, PLR0911 - what may be called, in order
         called, is_cpp = expression.parts[0], scope.file.language == "cpp"
         name = str(called.value).replace("::", ".")
         if called.kind == "name" and name in plain_calls.OPERATORS | {"for", "<<"}:
@@ -601,7 +605,11 @@ class ProgramWalk(RosCallReader):
         function, owner = target.function, target.self_object
         if len(self.open_functions) >= _MAX_CALL_DEPTH or self.open_functions.count(function) > 1:
             return UnknownText(f"{function.name}(...)", Span.of_file(function.file.shown))
-        self._walked.add((id(function), id(owner)))
+        key = (id(function), id(owner))
+        if self._barren[key] > _MAX_BARREN_CALLS:
+            return None
+        self._walked.add(key)
+        found = sum(len(node.endpoints) for node in self.nodes)
         is_python = function.file.language == "python"
         scope = Scope(function.file, target.around or (self._open_module(function.file) if is_python else None), owner)
         scope.variables = {} if variables is None else variables
@@ -629,10 +637,14 @@ class ProgramWalk(RosCallReader):
         self.open_functions.pop()
         self.file, node = before
         self.current_node = node or self.current_node
-        returned = scope.returned
+        returned = [each for each in scope.returned if each is not None]
+        is_barren = not returned and found == sum(len(each.endpoints) for each in self.nodes)
+        self._barren[key] = self._barren[key] + 1 if is_barren else 0
         return None if not returned else returned[0] if len(returned) == 1 else Alternatives(tuple(returned))
 
-    def _construct(self, type_name: str, arguments: list[Value], expression: Expression, scope: Scope) -> Value:
+    def _construct(  # noqa: PLR0911 - a kind of types each
+        self, type_name: str, arguments: list[Value], expression: Expression, scope: Scope
+    ) -> Value:
         """Return an object of a type of C++."""
         full_type = self._expand_type(type_name.rstrip("*"), scope)
         name, _, inner = full_type.partition("<")
@@ -660,11 +672,10 @@ class ProgramWalk(RosCallReader):
         return first if len(arguments) == 1 else self._give_up(expression)
 
     def _make_settings(self, call: RosCall, name: str) -> tuple[Value, Value]:
-        made = (
+        return (
             ros_calls.make_qos(name, call.arguments, call.keywords),
             ros_calls.make_seconds(name, call.arguments, call.keywords),
         )
-        return made
 
     def _evaluate_operation(self, sign: str, expression: Expression, scope: Scope) -> Value:
         if sign == "for":
@@ -683,7 +694,9 @@ class ProgramWalk(RosCallReader):
         values[0].parts.append(values[1])
         return values[0]
 
-    def _call_plainly(self, call: RosCall, expression: Expression, scope: Scope) -> Value:
+    def _call_plainly(  # noqa: C901, PLR0911 - a kind of functions each
+        self, call: RosCall, expression: Expression, scope: Scope
+    ) -> Value:
         """Return what a function gives that neither the workspace nor ROS has."""
         whole, method, arguments = call.whole, call.method, call.arguments
         full_name = ros_calls.spell_external(call.target) or method

@@ -49,7 +49,7 @@ class _Reader:
             return ()
         return tuple(each for statement in body for each in self._read_statement(statement, depth + 1))
 
-    def _read_statement(self, node: ast.stmt, depth: int) -> list[Statement]:  # noqa: PLR0911 - one for each form
+    def _read_statement(self, node: ast.stmt, depth: int) -> list[Statement]:  # noqa: C901, PLR0911, PLR0912 - one for each form
         match node:
             case ast.FunctionDef() | ast.AsyncFunctionDef():
                 function = self._read_function(node, "", depth)

@@ -117,7 +117,9 @@ class RosCallReader:
 
     # Types whose objects speak to ROS by themselves
 
-    def make_external(self, call: RosCall, full_type: str, *, is_member: bool = False) -> Value:
+    def make_external(  # noqa: PLR0911 - a kind of types each
+        self, call: RosCall, full_type: str, *, is_member: bool = False
+    ) -> Value:
         """Return the object of a type of ROS that is made; NotImplemented for another type, or one that waits for arguments."""
         plain, _, inner = full_type.partition("<")
         dotted, arguments = plain.replace("::", ".").removeprefix("."), call.arguments
@@ -167,7 +169,7 @@ class RosCallReader:
 
     # Calls
 
-    def read_call(self, call: RosCall) -> Value:  # noqa: PLR0911 - a kind of calls each
+    def read_call(self, call: RosCall) -> Value:  # noqa: C901, PLR0911 - a kind of calls each
         """Return what a call gives, with the place of the argument that it writes into; NotImplemented where it is none of ROS."""
         whole, method, name = call.whole, call.method, spell_external(call.target)
         if isinstance(whole, dict) and (changed := ros_calls.change_qos(whole, method, call.arguments)) is not None:

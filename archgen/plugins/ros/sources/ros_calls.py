@@ -23,9 +23,7 @@ class EndpointCall(NamedTuple):
     """Whether its first argument is a node."""
 
 
-def _make_endpoint_calls(
-    *, name: int, kind: int | None, suffix: str = "", has_node: bool = False
-) -> dict[str, EndpointCall]:
+def _make_endpoint_calls(*, name: int, kind: int | None, has_node: bool = False) -> dict[str, EndpointCall]:
     """Return the four calls of a library that are alike, with the places of name and type."""
     qos = name + (2 if kind is not None else 1)
     return {

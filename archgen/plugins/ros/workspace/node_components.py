@@ -86,7 +86,9 @@ class NodeWriter:
         """Return a launched node, and others that its program makes; `data` is what the launch file says of it."""
         hints = data.get("hints", {}).get(_HINT, {})
         kept = {_HINT: {key: hints[key] for key in _KEPT_HINTS if key in hints}}
-        body = {key: value for key, value in data.items() if key != "hints"} | ({"hints": kept} if kept[_HINT] else {})
+        body = {key: value for key, value in data.items() if key != "hints"}
+        if kept[_HINT]:
+            body["hints"] = kept
         self._leave_out_filed(body, known)
         conditions = () if known.node.is_on else tuple(dict.fromkeys(known.node.conditions))
         written = WrittenNode(node_id, group, {"implements": f"{group}.{node_id}", **body}, {}, conditions)
@@ -113,7 +115,7 @@ class NodeWriter:
             for key in ("namespace", "status", "remaps", "arguments", "parameters")
             if key in first.data
         }
-        data = {"implements": f"{first.group}.{node_id}", **shared}
+        data: dict[str, Any] = {"implements": f"{first.group}.{node_id}", **shared}
         written = WrittenNode(node_id, first.group, data, {}, first.conditions)
         written.comments[()] = f"in the process of {first.id}"
         self._account.count("node")

@@ -199,7 +199,9 @@ class WorkspaceFiles:
         paths = [folder / end for folder in folders for end in (inner.with_suffix(".py"), inner / "__init__.py")]
         return next((path for path in paths if path in files), None)
 
-    def _read_cmake_call(self, package: WorkspacePackage, call: CmakeCall, files: frozenset[Path]) -> None:
+    def _read_cmake_call(  # noqa: C901 - a command each
+        self, package: WorkspacePackage, call: CmakeCall, files: frozenset[Path]
+    ) -> None:
         name, words = call.name.removeprefix("ament_auto_").removeprefix("cuda_"), list(call.words)
         if not words:
             return

@@ -26,6 +26,7 @@ from archgen.plugins.ros.workspace.used_messages import read_used_messages
 from archgen.plugins.ros.workspace.workspace_slices import make_slices
 
 _MAX_SHOWN = 12
+_FOLDER_HELP = "give the folder in which the packages lie, `src` as a rule"
 _ASSUMED_DISTRO = "jazzy"
 _GENERATED_NAMES = ("bringup", "robot")
 
@@ -46,15 +47,12 @@ def read_workspace(
     account = ImportAccount()
     for path in files:
         if not path.is_dir():
-            raise ForeignFileError(
-                "it is no folder", Span.of_file(str(path)), "give the folder in which the packages lie, `src` as a rule"
-            )
+            words = "it is no folder"
+            raise ForeignFileError(words, Span.of_file(str(path)), _FOLDER_HELP)
     workspace = WorkspaceFiles(files, account)
     if not workspace.packages:
         words = "there is no package.xml in it"
-        raise ForeignFileError(
-            words, Span.of_file(str(files[0])), "give the folder in which the packages lie, `src` as a rule"
-        )
+        raise ForeignFileError(words, Span.of_file(str(files[0])), _FOLDER_HELP)
     entries = [_find_entry(workspace, files, text) for text in launch_files]
     launched = run_launch_files([*entries, *files] if entries else files, arguments, environment)
     if not entries:
@@ -111,11 +109,8 @@ def _find_entry(workspace: WorkspaceFiles, folders: Sequence[Path], text: str) -
         if path.is_file() and path.resolve() in workspace.shown:
             return path
     launch_files = _list_launch_names(workspace)
-    raise ForeignFileError(
-        "there is no such launch file in the workspace",
-        Span.of_file(text),
-        f"there are {', '.join(launch_files[:_MAX_SHOWN]) or 'none'}",
-    )
+    words = "there is no such launch file in the workspace"
+    raise ForeignFileError(words, Span.of_file(text), f"there are {', '.join(launch_files[:_MAX_SHOWN]) or 'none'}")
 
 
 def _list_launch_names(workspace: WorkspaceFiles) -> list[str]:
@@ -131,11 +126,8 @@ def _choose_entry(launched: LaunchedFiles) -> LaunchedFiles:
     if len(started) == 1:
         return LaunchedFiles(launched.run, started)
     if not started:
-        raise ForeignFileError(
-            "its launch files start no node",
-            Span.of_file("."),
-            "name the launch file that starts the robot: `--launch PACKAGE/FILE`",
-        )
+        words = "its launch files start no node"
+        raise ForeignFileError(words, Span.of_file("."), "name the one that starts the robot: `--launch PACKAGE/FILE`")
     files = launched.run.files
 
     def rank(path: Path) -> tuple[bool, int, str]:

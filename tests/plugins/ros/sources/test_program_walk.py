@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 from textwrap import dedent
-from typing import Any
 
 import pytest
 
@@ -14,7 +13,7 @@ from archgen.plugins.ros.sources.walk_values import find_unknown, settle, show_v
 
 
 def walk(
-    folder: Path, files: dict[str, str], entry: str = "", *, is_ros_1: bool = False, **given: Any
+    folder: Path, files: dict[str, str], entry: str = "", *, is_ros_1: bool = False, **given: object
 ) -> tuple[ProgramWalk, SourceIndex]:
     """Walk through the program that the first file is, or through the class or function that `entry` names."""
     paths = []

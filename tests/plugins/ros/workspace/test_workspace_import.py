@@ -145,7 +145,8 @@ containers:
 """
 
 
-def test_workspace_of_ros_2(workspace: Path, run: Run) -> None:
+@pytest.mark.usefixtures("workspace")
+def test_workspace_of_ros_2(run: Run) -> None:
     """A component for each node, wired by topics after parameters, remaps and namespaces; what is computed is said."""
     done = run("import", "workspace", "src", "--distro", "humble", "-o", "robot")
     assert done.status == 0, done.err
@@ -172,7 +173,8 @@ def test_workspace_of_ros_2(workspace: Path, run: Run) -> None:
     assert "robot.yaml: as before" in again.out
 
 
-def test_nodes_off_by_default_are_variants(workspace: Path, run: Run) -> None:
+@pytest.mark.usefixtures("workspace")
+def test_nodes_off_by_default_are_variants(run: Run) -> None:
     """R14: what runs only by an argument stands in a variant, with its wiring; the project itself is what is launched."""
     assert run("import", "workspace", "src", "--distro", "humble", "-o", "robot").status == 0
     assert "viewer" not in run("list", "-C", "robot", "--of", "nodes").out
@@ -184,7 +186,8 @@ def test_nodes_off_by_default_are_variants(workspace: Path, run: Run) -> None:
     assert "viewer" in run("list", "-C", "other", "--of", "nodes").out
 
 
-def test_environment_is_given(workspace: Path, run: Run) -> None:
+@pytest.mark.usefixtures("workspace")
+def test_environment_is_given(run: Run) -> None:
     """R9: variables of the environment are what `--env` says; what is none is refused."""
     done = run("import", "workspace", "src", "--distro", "humble", "--env", "MY_SCAN=/other", "-o", "robot")
     assert done.status == 0, done.err
@@ -214,7 +217,8 @@ def test_several_launch_files_are_other_robots(workspace: Path, run: Run) -> Non
     assert "there is no such launch file in the workspace" in done.err
 
 
-def test_without_the_extra_cpp_is_unread_and_said(workspace: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.usefixtures("workspace")
+def test_without_the_extra_cpp_is_unread_and_said(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("archgen.plugins.ros.sources.source_index.make_cpp_parser", lambda: None)
     done = run("import", "workspace", "src", "--distro", "humble", "-o", "robot")
     assert done.status == 0
