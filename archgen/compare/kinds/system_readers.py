@@ -8,13 +8,15 @@ from typing import Any
 from archgen.compare.kinds.key_spec import ReadContext, Reader
 from archgen.model.architecture import Chain, Policy
 from archgen.model.coordinate_frames import Frame
+from archgen.model.declared_timing import list_fair_figures
 from archgen.model.deployment import Host, Link
 from archgen.model.variant import Variant
 
 
 def read_core_orders(host: Host, _context: ReadContext) -> Mapping[str, str]:
-    """Return the order in which each core takes what is ready."""
-    return {str(core): order for core, order in host.core_scheduling.items()}
+    """Return the order in which each core takes what is ready, and the figures of a fair one."""
+    orders = {str(core): str(order) for core, order in host.core_scheduling.items()}
+    return orders | {f"fair.{name}": figure for name, figure in list_fair_figures(host.fair)}
 
 
 def find_latency(link: Link, _context: ReadContext) -> Link:

@@ -33,6 +33,7 @@ _TIERS = {
     "dedicated": "no host is written: as if on a core of its own",
     "host": "one core, holds for any order of its work",
     "priorities": "by the priorities that are written",
+    "fair": "threads without a priority share the cores as Linux does it",
     "executor": "callbacks of one thread, holds for any order of them",
     "non_preemptive": "by the priorities that are written; what has begun is not interrupted",
     "fifo": "in the order in which things come",

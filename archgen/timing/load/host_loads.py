@@ -22,6 +22,7 @@ _TIER_SENTENCES = {
     "dedicated": "its own queue, on a core of its own",
     "host": "the longest time for which all work on {0} can keep it busy, in whatever order",
     "priorities": "everything of its priority or a higher one on {0}, over all activations of the busy period",
+    "fair": "all work of its own thread, and of each other one on {0} no more than that and a lead",
     "executor": "all work of its executor on {0}, in whatever order",
     "non_preemptive": "everything of its priority or a higher one on {0}, and the longest that may just have begun",
     "fifo": "all that may have come to {0} before it",

@@ -44,6 +44,7 @@ from archgen.timing.load.thread_work import (
     work_utilisation,
 )
 from archgen.timing.system.core_placement import ProcessingResource
+from archgen.timing.system.fair_hosts import PREEMPTIVE_ORDERS
 from archgen.timing.system.thread_pools import find_pool, is_reentrant, works_in_order
 from archgen.timing.system.timing_system import TimingSystem
 
@@ -292,7 +293,7 @@ def _ignores_priorities(system: TimingSystem, resource: ProcessingResource) -> b
     """Whether something other than preemptive priorities may decide who runs."""
     host = resource.host or ""
     orders = {system.host_orders.get(host), *(order for (name, _), order in system.core_orders.items() if name == host)}
-    return not orders <= {None, "fixed_priority"}
+    return not orders <= PREEMPTIVE_ORDERS
 
 
 def _name_tier(system: TimingSystem, resource: ProcessingResource) -> ResponseTier:

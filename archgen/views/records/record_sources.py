@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from archgen.model.component import Component, Group, Input, Output
-from archgen.model.declared_timing import Timing
+from archgen.model.declared_timing import Timing, list_fair_figures
 from archgen.model.deployment import Host
 from archgen.model.message_types import PART_KEYS
 from archgen.model.node import Endpoint, Evidence, Node
@@ -79,8 +79,9 @@ def _list_effective(node: Node, lookup: Lookup) -> dict[str, EffectiveParameter]
 
 
 def _read_host_order(host: Host, _lookup: Lookup) -> object:
-    """Return the order by core where single cores have one of their own."""
-    return host.core_scheduling or host.scheduling
+    """Return the order; as a mapping where single cores have one of their own, or figures of a fair one are written."""
+    fair = {"fair": dict(list_fair_figures(host.fair))} if host.fair else {}
+    return {**fair, **host.core_scheduling} or host.scheduling
 
 
 def _list_steps(use_case: Any, lookup: Lookup) -> list[ConnectedStep]:  # noqa: ANN401  # as all sources

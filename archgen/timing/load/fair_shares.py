@@ -1,0 +1,440 @@
+"""Response times of threads that Linux shares cores among: who has had least runs (EEVDF, and CFS before kernel 6.6).
+
+Each core has a queue of its own. Let a thread wake up when nothing of it is pending, and have A to do until some job of it
+has ended. While it waits, its core runs other threads of that core. One of them goes before it only as long as it has not
+been served more than a lead beyond what it is behind: no other thread is served more than A and the lead on that core
+while it waits, and none more than it has to do. So all others together take at most F, the sum of these. What was pending
+is within that, which is why no response of another thread need be known.
+
+A core without work takes what waits elsewhere. So all m cores are busy while the thread waits: for B at most, the greatest
+time with m B = sum of min(W, B) over the other threads. Both hold at once, and the job has ended A + min(F, B) after the
+thread woke up. F is not to be divided by m: all light threads may be on one core while long ones keep the others busy.
+
+A process with several threads is served as often as it has threads, and whichever of its threads takes a job wakes up for
+it: a lead more for each job. Threads with a priority (real-time ones) run before all others, and are not cut.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from itertools import accumulate
+from typing import NamedTuple, TypeVar
+
+from archgen.timing.figures.timing_values import UnknownCause, sum_fractions
+from archgen.timing.load.busy_cores import divide_among_cores, find_blocked_time
+from archgen.timing.load.busy_windows import ActivityWork, DivergedError, GrowingLoad, SearchBudget
+from archgen.timing.load.core_responses import CoreResponses
+from archgen.timing.load.event_streams import (
+    EventStream,
+    EventStreams,
+    delay_streams,
+    earliest_arrivals,
+    max_arrivals,
+    streams_of_calls,
+)
+from archgen.timing.load.run_ways import EntryWay
+from archgen.timing.load.storing_waits import longest_busy_window
+from archgen.timing.load.thread_work import WorstResponse, work_utilisation
+from archgen.timing.system.core_placement import ProcessingResource
+from archgen.timing.system.core_sets import ThreadUnit
+from archgen.timing.system.fair_hosts import find_fair_share
+from archgen.timing.system.thread_pools import (
+    find_crowded_pools,
+    find_pool,
+    find_thread_count,
+    is_reentrant,
+    works_in_order,
+)
+from archgen.timing.system.timing_system import TimingSystem
+
+_Amount = TypeVar("_Amount", int, Fraction)
+_ENDLESS = 1 << 200
+"""More work than comes in any window, in ticks."""
+_MAX_TURNS = 40
+"""Turns over all threads; after each, all that was found is a bound, and the next one may only make it smaller."""
+WayModel = Callable[[EntryWay], EventStreams | None]
+"""The event model of what enters by a way, None where it is not known."""
+
+
+class ThreadGroup(NamedTuple):
+    """The threads of a process: what each runs one after the other (`units`), and how many there are (`width`).
+
+    `width` is None where there may be any number. `is_urgent`: something in it has a priority.
+    """
+
+    units: tuple[ThreadUnit, ...]
+    width: int | None
+    is_urgent: bool
+
+    def cut_work(self, work: _Amount, cut: _Amount) -> _Amount:
+        """Return how much of its work may come before a thread: as often `cut` as it has threads, but for urgent ones."""
+        return work if self.is_urgent or self.width is None else min(work, self.width * cut)
+
+
+class FairThread(NamedTuple):
+    """A thread whose response is found, or a callback group of a process with several threads: then it `changes_threads`.
+
+    `own_ids` are the activities whose work it has to wait for as its own: those of the whole process where its threads
+    are too few. `rest` is what is left of its `process`.
+    """
+
+    unit: ThreadUnit
+    own_ids: tuple[str, ...]
+    changes_threads: bool
+    process: str
+    rest: ThreadGroup | None
+
+
+@dataclass(frozen=True, slots=True)
+class FairCores:
+    """Cores that threads share fairly, as far as no event counts."""
+
+    system: TimingSystem
+    core_count: int
+    lead: int
+    groups: Mapping[str, ThreadGroup]
+    """The threads of each process."""
+    threads: tuple[FairThread, ...]
+    ways_to: Mapping[str, tuple[EntryWay, ...]]
+
+
+def prepare_fair_cores(
+    system: TimingSystem, resource: ProcessingResource, ways_to: Mapping[str, tuple[EntryWay, ...]]
+) -> FairCores | None:
+    """Return what shares the cores of a resource, None where they are not shared fairly, or by a single thread."""
+    share = find_fair_share(system, resource)
+    units = (*resource.units, *resource.foreign_units)
+    if share is None or len(units) == 1:
+        return None
+    groups = _group_threads(system, units)
+    threads = tuple(_list_fair_threads(system, resource.units, groups))
+    return FairCores(system, resource.cores, share.lead, groups, threads, ways_to) if threads else None
+
+
+def _group_threads(system: TimingSystem, units: Iterable[ThreadUnit]) -> dict[str, ThreadGroup]:
+    """Return the groups of threads by what runs them."""
+    units_by_process: dict[str, list[ThreadUnit]] = {}
+    width_of: dict[str, int | None] = {}
+    for unit in units:
+        pool = find_pool(system, system.activities[unit[0]])
+        key = f"activity {unit[0]}" if pool is None else pool.key
+        units_by_process.setdefault(key, []).append(unit)
+        width_of[key] = 1 if pool is None else pool.threads
+    return {
+        key: ThreadGroup(
+            tuple(group),
+            width_of[key],
+            any(system.activities[name].priority is not None for unit in group for name in unit),
+        )
+        for key, group in units_by_process.items()
+    }
+
+
+def _list_fair_threads(
+    system: TimingSystem, units: Iterable[ThreadUnit], groups: Mapping[str, ThreadGroup]
+) -> Iterator[FairThread]:
+    """Yield the threads without a priority, of which all execution times are known and nothing works only once."""
+    key_of = {unit: key for key, group in groups.items() for unit in group.units}
+    crowded = find_crowded_pools(system, [system.activities[name] for unit in key_of for name in unit])
+    for unit in units:
+        group = groups[key_of[unit]]
+        is_whole = unit[0] in crowded or is_reentrant(system, system.activities[unit[0]])
+        own_units = group.units if is_whole else (unit,)
+        own_ids = tuple(name for each in own_units for name in each)
+        activities = [system.activities[name] for name in own_ids]
+        if group.is_urgent or any(each.wcet is None or (each.behaviour == "once" and each.wcet) for each in activities):
+            continue
+        rest = tuple(each for each in group.units if each not in own_units)
+        yield FairThread(unit, own_ids, group.width != 1, key_of[unit], group._replace(units=rest) if rest else None)
+
+
+class _LaneWork(NamedTuple):
+    """What a lane may do beside a thread: its work in a window, with what may be pending (None: any amount).
+
+    `least` comes at once; `share` is what it takes of a core in the long run; it may run on `width` cores at once.
+    """
+
+    within: Callable[[int], int] | None
+    share: Fraction | None
+    term_count: int
+    least: int
+    width: int
+
+
+class _OtherWork(NamedTuple):
+    """What all other groups may do beside a thread, lane by lane, and how many terms a look at them takes."""
+
+    groups: Sequence[tuple[ThreadGroup, Sequence[_LaneWork]]]
+    term_count: int
+
+
+@dataclass(slots=True)
+class FairSolver:
+    """Makes responses, ways and waits smaller by what a fair order makes of them; all that is found before is a bound."""
+
+    cores: FairCores
+    model_of: WayModel
+    foreign_models: Mapping[str, EventStreams | UnknownCause]
+    found: CoreResponses
+    """What is known of the cores' own activities, in any order. What is smaller is put there."""
+    foreign_responses: Mapping[str, WorstResponse]
+    budget: SearchBudget
+    is_improved: bool = False
+    _arrivals: dict[tuple[str, ThreadUnit], EventStreams | None] = field(default_factory=dict)
+    _lanes: dict[ThreadUnit, _LaneWork] = field(default_factory=dict)
+    _leasts: list[int] = field(default_factory=list)
+    """The least that each process does beside a thread, in ascending order."""
+    _least_sums: list[int] = field(default_factory=list)
+
+    def solve(self) -> None:
+        """Look at each thread, until nothing gets smaller."""
+        for _ in range(_MAX_TURNS):
+            self._arrivals.clear()
+            self._lanes.clear()
+            self._leasts = sorted(map(self._find_least, self.cores.groups.values()))
+            self._least_sums = list(accumulate(self._leasts, initial=0))
+            if not sum([self._improve_thread(thread) for thread in self.cores.threads]):
+                break
+            self.is_improved = True
+
+    def _improve_thread(self, thread: FairThread) -> bool:
+        """Make the figures of a thread smaller, and return whether any is."""
+        own_works = self._list_own(thread)
+        if own_works is None or not self._may_help(thread, own_works):
+            return False
+        others = self._collect_others(thread)
+        if not self._has_end(thread, own_works, others):
+            return False
+        try:
+            window = self._find_window(thread, own_works, others)
+            responses = dict.fromkeys(thread.unit, window)
+            if len(thread.own_ids) == 1 and works_in_order(
+                self.cores.system, self.cores.system.activities[thread.unit[0]]
+            ):
+                responses[thread.unit[0]] = self._follow_activations(thread, own_works[0], others)
+        except DivergedError:
+            return False
+        return sum([self._note(thread, name, responses[name], window) for name in thread.unit]) > 0
+
+    def _note(self, thread: FairThread, name: str, response: int, window: int) -> bool:
+        """Note the response of an activity, and the delays of the ways to it, where they are smaller."""
+        found, is_smaller = self.found, False
+        ways = list(found.ways_to.get(name, ()))
+        for number, way in enumerate(ways):
+            before = self._find_delay_before(way)
+            delay = None if before is None else before + response
+            if all(step in thread.unit for step in way.steps) and (delay is None or window < delay):
+                delay = window  # all of the run lies in one window of its thread
+            if delay is not None and (way.delay is None or delay < way.delay):
+                ways[number], is_smaller = way._replace(delay=delay), True
+        if is_smaller:
+            found.ways_to[name] = tuple(ways)
+        delays = [way.delay for way in ways]
+        if ways and None not in delays:
+            response = min(response, max((way.delay or 0) - way.best_before for way in ways))
+        old = found.response_of[name]
+        if old.tier not in {"declared", "unknown"} and (old.value is None or response < old.value):
+            found.response_of[name], is_smaller = WorstResponse(response, "fair"), True
+        return is_smaller
+
+    def find_hold(self, name: str) -> int | None:
+        """Return how long a message may wait to be stored until an activation of its reader that does not read it."""
+        thread = next((each for each in self.cores.threads if name in each.unit), None)
+        own_works = self._list_own(thread) if thread is not None else None
+        if thread is None or own_works is None:
+            return None
+        others = self._collect_others(thread)
+        if not self._has_end(thread, own_works, others):
+            return None
+        number, spend = thread.own_ids.index(name), self.budget.start_search()
+
+        def work_within(window: int, fewer: int) -> int:
+            counts = [max_arrivals(work.streams, window) for work in own_works]
+            if fewer:
+                # The activation itself comes at the end of the window.
+                counts[number] = max(max_arrivals(own_works[number].streams, window + 1) - 1, 0)
+            return self._find_time(thread, own_works, counts, others, window)
+
+        try:
+            window = 1
+            while (work := work_within(window, 0)) >= window:
+                spend(others.term_count)
+                window = work + 1
+            return longest_busy_window(lambda each: work_within(each, 1), window, spend, others.term_count)
+        except DivergedError:
+            return None
+
+    def _may_help(self, thread: FairThread, own_works: Sequence[ActivityWork]) -> bool:
+        """Whether what is found may be smaller than what is known: not where one job of each other takes as long."""
+        known = [self.found.response_of[name].value for name in thread.unit]
+        if None in known:
+            return True
+        own_cost = max(work.cost for work in own_works)
+        cut = own_cost + self.cores.lead
+        short_count = bisect_right(self._leasts, cut)
+        beside = self._least_sums[short_count] + cut * (len(self._leasts) - short_count)
+        beside -= min(self._find_least(self.cores.groups[thread.process]), cut)
+        return own_cost + beside < max(each or 0 for each in known)
+
+    def _find_least(self, group: ThreadGroup) -> int:
+        """Return how much of a process comes at once."""
+        return sum([self._look_up_lane(unit).least for unit in group.units])
+
+    def _find_window(self, thread: FairThread, own_works: Sequence[ActivityWork], others: _OtherWork) -> int:
+        """Return the least window in which all that comes for a thread is done."""
+        # What takes no time waits until nothing else does: as if it took the smallest part of a tick.
+        closing_tick = int(any(not work.cost for work in own_works))
+        spend, window = self.budget.start_search(), 1
+        while True:
+            spend(others.term_count)
+            looked_at = window + closing_tick
+            counts = [max_arrivals(work.streams, looked_at) for work in own_works]
+            needed = self._find_time(thread, own_works, counts, others, looked_at)
+            if needed <= window:
+                return needed if window == 1 else window
+            window = needed
+
+    def _follow_activations(self, thread: FairThread, own_work: ActivityWork, others: _OtherWork) -> int:
+        """Return the response of the only activity of a thread, over all its activations since it woke up."""
+        arrival_times, spend = earliest_arrivals(own_work.streams), self.budget.start_search()
+        closing_tick = int(not own_work.cost)
+        arrival, longest, count, window = next(arrival_times, 0), 0, 0, 1
+        while True:
+            count += 1
+            next_arrival = next(arrival_times, None)
+            while True:
+                spend(others.term_count)
+                needed = self._find_time(thread, (own_work,), (count,), others, window + closing_tick)
+                if needed <= window:
+                    break
+                window = needed
+            longest = max(longest, (needed if window == 1 else window) - arrival)
+            if next_arrival is None or window <= next_arrival:
+                return longest
+            arrival = next_arrival
+
+    def _find_time(
+        self,
+        thread: FairThread,
+        own_works: Sequence[ActivityWork],
+        counts: Sequence[int],
+        others: _OtherWork,
+        window: int,
+    ) -> int:
+        """Return how long all takes in a window with so many jobs of the thread's own: A + min(F, B)."""
+        own = sum([work.cost * count for work, count in zip(own_works, counts, strict=True)])
+        cut = own + self.cores.lead * (sum(counts) if thread.changes_threads else 1)
+        lane_works: list[int] = []
+        beside = 0
+        for group, lanes in others.groups:
+            group_work = 0
+            for lane in lanes:
+                work = _ENDLESS if lane.within is None else lane.within(window)
+                group_work += work
+                lane_works += [-(-work // lane.width)] * lane.width if lane.width > 1 else [work]
+            beside += group.cut_work(group_work, cut)
+        if self.cores.core_count > 1 and beside:
+            beside = min(beside, divide_among_cores(lane_works, 0, self.cores.core_count))
+        return own + beside
+
+    def _has_end(self, thread: FairThread, own_works: Sequence[ActivityWork], others: _OtherWork) -> bool:
+        """Whether less comes in the long run than is done."""
+        own = sum_fractions([Fraction(0), *(work_utilisation(work.cost, work.streams) for work in own_works)])
+        rate = sum_fractions([Fraction(0), *(work_utilisation(1, work.streams) for work in own_works)])
+        cut = own + rate * self.cores.lead if thread.changes_threads else own
+        beside, lane_shares = Fraction(0), [Fraction(0)]
+        for group, lanes in others.groups:
+            shares = [Fraction(_ENDLESS) if lane.share is None else lane.share for lane in lanes]
+            beside += group.cut_work(sum_fractions([Fraction(0), *shares]), cut)
+            for share, lane in zip(shares, lanes, strict=True):
+                lane_shares += [share / lane.width] * lane.width
+        numerator, denominator = find_blocked_time(lane_shares, Fraction(0), self.cores.core_count)
+        return own + min(beside, numerator / denominator) < 1
+
+    def _collect_others(self, thread: FairThread) -> _OtherWork:
+        """Return what all other groups may do beside a thread."""
+        groups = [group for key, group in self.cores.groups.items() if key != thread.process]
+        lanes = [
+            [self._look_up_lane(unit) for unit in group.units] for group in (*groups, *filter(None, (thread.rest,)))
+        ]
+        term_count = 1 + sum(lane.term_count for each in lanes for lane in each)
+        return _OtherWork(list(zip((*groups, *filter(None, (thread.rest,))), lanes, strict=True)), term_count)
+
+    def _look_up_lane(self, unit: ThreadUnit) -> _LaneWork:
+        """Return what a lane may do beside a thread, as far as it is known now."""
+        known = self._lanes.get(unit)
+        if known is None:
+            known = self._lanes[unit] = self._find_lane(unit)
+        return known
+
+    def _find_lane(self, unit: ThreadUnit) -> _LaneWork:
+        activities = self.cores.system.activities
+        works = [self._find_work_of_other(name) for name in unit]
+        width = 1
+        if is_reentrant(self.cores.system, activities[unit[0]]):
+            width = min(find_thread_count(self.cores.system, unit[0]) or self.cores.core_count, self.cores.core_count)
+        least = sum([activities[name].wcet or 0 for name in unit if self._arrivals_at(name, ()) != ()])
+        sure_works = [work for work in works if work is not None]
+        if len(sure_works) < len(works):
+            return _LaneWork(None, None, 1, least, width)
+        demand = GrowingLoad(sure_works).demand_function()
+        shares = [work_utilisation(each.cost, each.streams) for each in sure_works]
+        return _LaneWork(demand.within, sum_fractions([Fraction(0), *shares]), demand.term_count, least, width)
+
+    def _find_work_of_other(self, name: str) -> ActivityWork | None:
+        """Return the work of an activity beside a thread, of what may be pending too; None where it is not known."""
+        activity = self.cores.system.activities[name]
+        streams = self._arrivals_at(name, ())
+        if streams == () or activity.wcet == 0:
+            return ActivityWork(0, ())
+        response = self.found.response_of.get(name) or self.foreign_responses.get(name)
+        if streams is None or activity.wcet is None or response is None or response.value is None:
+            return None
+        if activity.response is not None:
+            return None  # when its work is done is not what is declared
+        return ActivityWork(activity.wcet, delay_streams(streams, response.value))
+
+    def _list_own(self, thread: FairThread) -> list[ActivityWork] | None:
+        """Return what comes for a thread itself, None where some of it is not known."""
+        works: list[ActivityWork] = []
+        for name in thread.own_ids:
+            streams = self._arrivals_at(name, thread.own_ids if not thread.changes_threads else ())
+            if streams is None:
+                return None
+            works.append(ActivityWork(self.cores.system.activities[name].wcet or 0, streams))
+        return works
+
+    def _arrivals_at(self, name: str, idle_ids: tuple[str, ...]) -> EventStreams | None:
+        """Return when an activity is activated; what reaches it through `idle_ids` alone is not late before the window."""
+        key = (name, idle_ids)
+        if key not in self._arrivals:
+            self._arrivals[key] = self._find_arrivals(name, idle_ids)
+        return self._arrivals[key]
+
+    def _find_arrivals(self, name: str, idle_ids: tuple[str, ...]) -> EventStreams | None:
+        ways = self.found.ways_to.get(name) or self.cores.ways_to.get(name)
+        if ways is None:
+            model = self.foreign_models[name]
+            return None if isinstance(model, UnknownCause) else model
+        streams: list[EventStream] = []
+        for way in ways:
+            model = self.model_of(way)
+            if model is None:
+                return None
+            before = 0 if all(step in idle_ids for step in way.steps[:-1]) else self._find_delay_before(way)
+            if before is None:
+                return None
+            entering = streams_of_calls(model, Fraction(way.multiplicity)) if way.multiplicity > 1 else model
+            streams += delay_streams(entering, max(before - way.best_before, 0))
+        return tuple(streams)
+
+    def _find_delay_before(self, way: EntryWay) -> int | None:
+        """Return how long a way takes to the step before its last one, None where that is not bounded."""
+        if len(way.steps) == 1:
+            return 0
+        known = self.found.ways_to.get(way.steps[-2]) or self.cores.ways_to[way.steps[-2]]
+        before = next(each for each in known if each.entry == way.entry and each.steps == way.steps[:-1])
+        return before.delay
