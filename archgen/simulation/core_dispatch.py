@@ -91,6 +91,9 @@ def _start_thread(run: SimulationRun, now: int, thread: int, running: list[int])
         slice_time = run.processors.slice_time[threads.processor[thread]] or remaining
         threads.time_after_slice[thread] = max(remaining - slice_time, 0)
         remaining = min(remaining, slice_time)
+        processor = threads.processor[thread]
+        run.processors.least_served[processor] = max(threads.served[thread], run.processors.least_served[processor])
+        threads.served[thread] += remaining
     running.append(thread)
     threads.end_time[thread] = now + remaining
     heappush(run.heap, (now + remaining << 2 | JOB_END, thread, threads.end_version[thread]))

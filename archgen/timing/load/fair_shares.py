@@ -25,7 +25,7 @@ from typing import NamedTuple, TypeVar
 
 from archgen.timing.figures.timing_values import UnknownCause, sum_fractions
 from archgen.timing.load.busy_cores import divide_among_cores, find_blocked_time
-from archgen.timing.load.busy_windows import ActivityWork, DivergedError, GrowingLoad, SearchBudget
+from archgen.timing.load.busy_windows import ActivityWork, DivergedError, GrowingLoad, SearchBudget, WorstActivation
 from archgen.timing.load.core_responses import CoreResponses
 from archgen.timing.load.event_streams import (
     EventStream,
@@ -38,6 +38,7 @@ from archgen.timing.load.event_streams import (
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.storing_waits import longest_busy_window
 from archgen.timing.load.thread_work import WorstResponse, work_utilisation
+from archgen.timing.load.work_terms import ANY_AMOUNT
 from archgen.timing.system.core_placement import ProcessingResource
 from archgen.timing.system.core_sets import ThreadUnit
 from archgen.timing.system.fair_hosts import find_fair_share
@@ -51,9 +52,7 @@ from archgen.timing.system.thread_pools import (
 from archgen.timing.system.timing_system import TimingSystem
 
 _Amount = TypeVar("_Amount", int, Fraction)
-_ENDLESS = 1 << 200
-"""More work than comes in any window, in ticks."""
-_MAX_TURNS = 40
+_MAX_TURNS = 30
 """Turns over all threads; after each, all that was found is a bound, and the next one may only make it smaller."""
 WayModel = Callable[[EntryWay], EventStreams | None]
 """The event model of what enters by a way, None where it is not known."""
@@ -162,6 +161,16 @@ class _LaneWork(NamedTuple):
     term_count: int
     least: int
     width: int
+    works: Sequence[tuple[str, ActivityWork]] = ()
+
+    def count_work(self, window: int) -> int:
+        """Return its work in a window."""
+        return ANY_AMOUNT if self.within is None else self.within(window)
+
+    def split_work(self, window: int) -> list[int]:
+        """Return its work in a window, in the parts that one core at a time may do."""
+        work = self.count_work(window)
+        return [work] if self.width == 1 else [-(-work // self.width)] * self.width
 
 
 class _OtherWork(NamedTuple):
@@ -169,6 +178,30 @@ class _OtherWork(NamedTuple):
 
     groups: Sequence[tuple[ThreadGroup, Sequence[_LaneWork]]]
     term_count: int
+
+
+class FairBlock(NamedTuple):
+    """What may come before a thread that has so much of its `own` to do, in ticks.
+
+    Others are `served` for so long on its core, no thread of them for longer than the `cut`: the own work and so many
+    leads. All cores are `blocked` for so long at most.
+    """
+
+    own: int
+    leads: int
+    cut: int
+    served: int
+    blocked: int
+
+
+class FairBound(NamedTuple):
+    """What bounds a thread: the `window` in which all that comes for it is done, and which activation takes longest."""
+
+    thread: FairThread
+    own_works: Sequence[ActivityWork]
+    others: _OtherWork
+    window: int
+    worst: WorstActivation
 
 
 @dataclass(slots=True)
@@ -202,22 +235,22 @@ class FairSolver:
 
     def _improve_thread(self, thread: FairThread) -> bool:
         """Make the figures of a thread smaller, and return whether any is."""
+        bound = self.find_bound(thread) if self._may_help(thread) else None
+        if bound is None:
+            return False
+        return sum([self._note(thread, name, bound.worst.response, bound.window) for name in thread.unit]) > 0
+
+    def find_bound(self, thread: FairThread) -> FairBound | None:
+        """Return the window in which a thread has done all that came, and its worst activation; None without an end."""
         own_works = self._list_own(thread)
-        if own_works is None or not self._may_help(thread, own_works):
-            return False
         others = self._collect_others(thread)
-        if not self._has_end(thread, own_works, others):
-            return False
+        if own_works is None or not self._has_end(thread, own_works, others):
+            return None
         try:
             window = self._find_window(thread, own_works, others)
-            responses = dict.fromkeys(thread.unit, window)
-            if len(thread.own_ids) == 1 and works_in_order(
-                self.cores.system, self.cores.system.activities[thread.unit[0]]
-            ):
-                responses[thread.unit[0]] = self._follow_activations(thread, own_works[0], others)
+            return FairBound(thread, own_works, others, window, self._find_worst(thread, own_works, others, window))
         except DivergedError:
-            return False
-        return sum([self._note(thread, name, responses[name], window) for name in thread.unit]) > 0
+            return None
 
     def _note(self, thread: FairThread, name: str, response: int, window: int) -> bool:
         """Note the response of an activity, and the delays of the ways to it, where they are smaller."""
@@ -267,12 +300,12 @@ class FairSolver:
         except DivergedError:
             return None
 
-    def _may_help(self, thread: FairThread, own_works: Sequence[ActivityWork]) -> bool:
+    def _may_help(self, thread: FairThread) -> bool:
         """Whether what is found may be smaller than what is known: not where one job of each other takes as long."""
         known = [self.found.response_of[name].value for name in thread.unit]
         if None in known:
             return True
-        own_cost = max(work.cost for work in own_works)
+        own_cost = max(self.cores.system.activities[name].wcet or 0 for name in thread.unit)
         cut = own_cost + self.cores.lead
         short_count = bisect_right(self._leasts, cut)
         beside = self._least_sums[short_count] + cut * (len(self._leasts) - short_count)
@@ -297,23 +330,29 @@ class FairSolver:
                 return needed if window == 1 else window
             window = needed
 
-    def _follow_activations(self, thread: FairThread, own_work: ActivityWork, others: _OtherWork) -> int:
-        """Return the response of the only activity of a thread, over all its activations since it woke up."""
-        arrival_times, spend = earliest_arrivals(own_work.streams), self.budget.start_search()
-        closing_tick = int(not own_work.cost)
-        arrival, longest, count, window = next(arrival_times, 0), 0, 0, 1
+    def _find_worst(
+        self, thread: FairThread, own_works: Sequence[ActivityWork], others: _OtherWork, whole_window: int
+    ) -> WorstActivation:
+        """Return what takes longest: of the only activity of a thread, each activation since it woke up is looked at."""
+        if len(own_works) > 1 or not works_in_order(self.cores.system, self.cores.system.activities[thread.unit[0]]):
+            return WorstActivation(0, 0, whole_window)
+        arrival_times, spend = earliest_arrivals(own_works[0].streams), self.budget.start_search()
+        closing_tick = int(not own_works[0].cost)
+        arrival, count, window = next(arrival_times, 0), 0, 1
+        worst = WorstActivation(0, 0, 0)
         while True:
             count += 1
             next_arrival = next(arrival_times, None)
             while True:
                 spend(others.term_count)
-                needed = self._find_time(thread, (own_work,), (count,), others, window + closing_tick)
+                needed = self._find_time(thread, own_works, (count,), others, window + closing_tick)
                 if needed <= window:
                     break
                 window = needed
-            longest = max(longest, (needed if window == 1 else window) - arrival)
+            if window - arrival > worst.response:
+                worst = WorstActivation(count, arrival, needed if window == 1 else window)
             if next_arrival is None or window <= next_arrival:
-                return longest
+                return worst
             arrival = next_arrival
 
     def _find_time(
@@ -325,20 +364,29 @@ class FairSolver:
         window: int,
     ) -> int:
         """Return how long all takes in a window with so many jobs of the thread's own: A + min(F, B)."""
+        block = self.find_block(thread, own_works, counts, others, window)
+        return block.own + min(block.served, block.blocked)
+
+    def find_block(
+        self,
+        thread: FairThread,
+        own_works: Sequence[ActivityWork],
+        counts: Sequence[int],
+        others: _OtherWork,
+        window: int,
+    ) -> FairBlock:
+        """Return what may come before a thread in a window in which so many jobs of its own are done."""
         own = sum([work.cost * count for work, count in zip(own_works, counts, strict=True)])
-        cut = own + self.cores.lead * (sum(counts) if thread.changes_threads else 1)
+        leads = sum(counts) if thread.changes_threads else 1
+        cut, served = own + self.cores.lead * leads, 0
         lane_works: list[int] = []
-        beside = 0
         for group, lanes in others.groups:
-            group_work = 0
-            for lane in lanes:
-                work = _ENDLESS if lane.within is None else lane.within(window)
-                group_work += work
-                lane_works += [-(-work // lane.width)] * lane.width if lane.width > 1 else [work]
-            beside += group.cut_work(group_work, cut)
-        if self.cores.core_count > 1 and beside:
-            beside = min(beside, divide_among_cores(lane_works, 0, self.cores.core_count))
-        return own + beside
+            works = [work for lane in lanes for work in lane.split_work(window)]
+            lane_works += works
+            served += group.cut_work(sum(works), cut)
+        core_count = self.cores.core_count
+        blocked = divide_among_cores(lane_works, 0, core_count) if core_count > 1 and served else served
+        return FairBlock(own, leads, cut, served, blocked)
 
     def _has_end(self, thread: FairThread, own_works: Sequence[ActivityWork], others: _OtherWork) -> bool:
         """Whether less comes in the long run than is done."""
@@ -347,7 +395,7 @@ class FairSolver:
         cut = own + rate * self.cores.lead if thread.changes_threads else own
         beside, lane_shares = Fraction(0), [Fraction(0)]
         for group, lanes in others.groups:
-            shares = [Fraction(_ENDLESS) if lane.share is None else lane.share for lane in lanes]
+            shares = [Fraction(ANY_AMOUNT) if lane.share is None else lane.share for lane in lanes]
             beside += group.cut_work(sum_fractions([Fraction(0), *shares]), cut)
             for share, lane in zip(shares, lanes, strict=True):
                 lane_shares += [share / lane.width] * lane.width
@@ -382,7 +430,9 @@ class FairSolver:
             return _LaneWork(None, None, 1, least, width)
         demand = GrowingLoad(sure_works).demand_function()
         shares = [work_utilisation(each.cost, each.streams) for each in sure_works]
-        return _LaneWork(demand.within, sum_fractions([Fraction(0), *shares]), demand.term_count, least, width)
+        named_works = tuple(zip(unit, sure_works, strict=True))
+        share = sum_fractions([Fraction(0), *shares])
+        return _LaneWork(demand.within, share, demand.term_count, least, width, named_works)
 
     def _find_work_of_other(self, name: str) -> ActivityWork | None:
         """Return the work of an activity beside a thread, of what may be pending too; None where it is not known."""
@@ -433,8 +483,12 @@ class FairSolver:
 
     def _find_delay_before(self, way: EntryWay) -> int | None:
         """Return how long a way takes to the step before its last one, None where that is not bounded."""
+        before = self.find_way_before(way)
+        return before.delay if before else 0
+
+    def find_way_before(self, way: EntryWay) -> EntryWay | None:
+        """Return the way to the step before the last one of a way."""
         if len(way.steps) == 1:
-            return 0
+            return None
         known = self.found.ways_to.get(way.steps[-2]) or self.cores.ways_to[way.steps[-2]]
-        before = next(each for each in known if each.entry == way.entry and each.steps == way.steps[:-1])
-        return before.delay
+        return next(each for each in known if each.entry == way.entry and each.steps == way.steps[:-1])

@@ -22,7 +22,7 @@ _TIER_SENTENCES = {
     "dedicated": "its own queue, on a core of its own",
     "host": "the longest time for which all work on {0} can keep it busy, in whatever order",
     "priorities": "everything of its priority or a higher one on {0}, over all activations of the busy period",
-    "fair": "all work of its own thread, and of each other one on {0} no more than that and a lead",
+    "fair": "all work of its own thread, and of each other one on {0} no more than that and {2}",
     "executor": "all work of its executor on {0}, in whatever order",
     "non_preemptive": "everything of its priority or a higher one on {0}, and the longest that may just have begun",
     "fifo": "all that may have come to {0} before it",
@@ -59,10 +59,12 @@ def _build_response_time(
     sentence_arguments = (_cores_text(resource), resource.cores) if resource else ("", 1)
     if worst_response.tier == "whole host":
         sentence_arguments = (activity.host or "", 1)
+    if share := state.system.fair_shares.get(activity.host or ""):
+        sentence_arguments = (*sentence_arguments, share.figures)
     span = activity.places.get("response" if worst_response.tier == "declared" else "wcet", activity.at)
     return ResponseTime(
         best,
-        _worst_value(activity, worst_response, tick, resource),
+        _worst_value(state.system, activity, worst_response, resource),
         worst_response.tier,
         (Reason(sentence, span, sentence_arguments),),
     )
@@ -75,7 +77,10 @@ def build_run_responses(state: PropagationState, responses: Mapping[str, Respons
         delays = [way.delay for way in ways if way.delay is not None]
         arcs = state.run_arcs.get(name, ())
         if len(delays) == len(ways) and arcs and responses[name].tier != "declared":
-            runs[name] = RunResponse(replace(responses[name].worst, value=max(delays) * state.system.tick), arcs)
+            step_notes = (note for way in ways for step in way.steps for note in responses[step].worst.assumptions)
+            worst = responses[name].worst
+            notes = tuple(dict.fromkeys((*worst.assumptions, *step_notes)))
+            runs[name] = RunResponse(replace(worst, value=max(delays) * state.system.tick, assumptions=notes), arcs)
     return runs
 
 
@@ -87,7 +92,8 @@ def build_storing_waits(state: PropagationState) -> dict[str, TimingValue]:
 def _build_storing_wait(state: PropagationState, name: str, wait: WorstResponse) -> TimingValue:
     """Return one reader's wait, with what is missing; a declared response says that what it reads is stored in time."""
     if wait.value is not None:
-        return TimingValue(wait.value * state.system.tick) if wait.value else ZERO_VALUE
+        notes = _list_fair_notes(state.system, state.system.activities[name], wait)
+        return TimingValue(wait.value * state.system.tick, assumptions=notes) if wait.value else ZERO_VALUE
     if state.responses[name].value is None:
         return ZERO_VALUE  # the response says what is missing: to say it twice makes it no worse
     if state.system.activities[name].response is not None:
@@ -103,11 +109,18 @@ def _cores_text(resource: ProcessingResource | None) -> str:
     return f"{resource.id} and on those that wait with it for a container's threads (one of them works while any waits)"
 
 
+def _list_fair_notes(system: TimingSystem, activity: Activity, worst: WorstResponse) -> tuple[str, ...]:
+    """Return what a figure assumes of how the threads of its host share the cores."""
+    share = system.fair_shares.get(activity.host or "")
+    return (share.assumption,) if worst.tier == "fair" and share is not None and share.assumption else ()
+
+
 def _worst_value(
-    activity: Activity, worst_response: WorstResponse, tick: Fraction, resource: ProcessingResource | None
+    system: TimingSystem, activity: Activity, worst_response: WorstResponse, resource: ProcessingResource | None
 ) -> TimingValue:
     """Return the worst response with what it assumes, or what is missing."""
-    notes = list(worst_response.cause.notes)
+    tick = system.tick
+    notes = [*worst_response.cause.notes, *_list_fair_notes(system, activity, worst_response)]
     if worst_response.tier == "declared":
         notes.append("assumed")
     elif resource is None:

@@ -29,7 +29,7 @@ from archgen.timing.load.busy_windows import (
     longest_wait_for_turn,
     worst_response,
 )
-from archgen.timing.load.event_streams import EventStreams, delay_streams
+from archgen.timing.load.event_streams import EventStreams, delay_streams, max_arrivals
 from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.resource_waits import Rivals, find_load, find_rivals, find_use_times
 from archgen.timing.load.single_cores import delay_by_response
@@ -44,6 +44,7 @@ from archgen.timing.load.thread_work import (
     work_utilisation,
 )
 from archgen.timing.system.core_placement import ProcessingResource
+from archgen.timing.system.core_sets import ThreadUnit
 from archgen.timing.system.fair_hosts import PREEMPTIVE_ORDERS
 from archgen.timing.system.thread_pools import find_pool, is_reentrant, works_in_order
 from archgen.timing.system.timing_system import TimingSystem
@@ -121,11 +122,13 @@ def _bound_unit(
         return WorstResponse(None, tier, unite_causes(causes))
     interference = _divide_demand(others, 1 if resource.joined else resource.cores)
     is_in_order = not any_order and len(own_ids) == 1 and works_in_order(system, system.activities[own_ids[0]])
-    # Use by use, or all uses of others in the whole time at once: either may be the smaller one.
-    candidates = [
-        _bound_with(waits, interference, budget, in_order=is_in_order)
-        for waits in (_waits_by_use(state, own_ids, budget), _waits_together(state, own_ids))
-    ]
+    waits = _waits_by_use(state, own_ids, budget)
+    candidates = [_bound_with(waits, interference, budget, in_order=is_in_order)]
+    # Use by use, or all uses of others in the whole time at once: either may be the smaller one, but for a single activation.
+    if isinstance(bound := candidates[0], UnknownCause) or any(
+        max_arrivals(work.streams, bound + 1) > 1 for work in waits.works
+    ):
+        candidates.append(_bound_with(_waits_together(state, own_ids), interference, budget, in_order=is_in_order))
     bounds = [bound for bound in candidates if not isinstance(bound, UnknownCause)]
     if bounds:
         return WorstResponse(min(bounds), tier)
@@ -270,23 +273,38 @@ def _list_others(
     system = state.system
     is_late = resource.cores > 1 or resource.joined
     strangers = {name for unit in resource.stranger_units for name in unit}
-    models = {
-        name: delayed_model(state, name, waiting_ids, always=is_late or name in strangers)
-        for unit in resource.foreign_units
-        for name in unit
-        if name not in own_ids
-    }
-    models |= {name: state.event_models[name] for name in own_ids}
     other_units = [
         rest for unit in resource.foreign_units if (rest := tuple(name for name in unit if name not in own_ids))
     ]
-    threads = lower_crowded_threads(
-        system, [build_thread(system, unit, models) for unit in (resource.units[0], *other_units)], models
-    )
+    models = {name: state.event_models[name] for name in own_ids}
+    others = [
+        _build_late_thread(state, unit, models, waiting_ids, is_late=is_late or unit[0] in strangers)
+        for unit in other_units
+    ]
+    threads = lower_crowded_threads(system, [build_thread(system, resource.units[0], models), *others], models)
     level = None if _ignores_priorities(system, resource) else threads[0].lowest_priority
     for thread in threads[1:]:
         if level is None or (thread.highest_priority is not None and thread.highest_priority >= level):
             yield thread
+
+
+def _build_late_thread(
+    state: PropagationState,
+    unit: ThreadUnit,
+    models: dict[str, EventStreams | UnknownCause],
+    waiting_ids: Collection[str],
+    *,
+    is_late: bool,
+) -> ThreadWork:
+    """Return a thread as others on its core see it, and put the event models of its members into `models`."""
+    responses = [state.work_ends.get(name, state.responses.get(name)) for name in unit]
+    found_from = (is_late, *(state.event_models[name] for name in unit), *responses)
+    known = state.late_threads.get(unit)
+    if known is None or known[0] != found_from:
+        late = {name: delayed_model(state, name, waiting_ids, always=is_late) for name in unit}
+        known = state.late_threads[unit] = found_from, build_thread(state.system, unit, late)
+    models.update((name, state.event_models[name]) for name in unit)
+    return known[1]
 
 
 def _ignores_priorities(system: TimingSystem, resource: ProcessingResource) -> bool:

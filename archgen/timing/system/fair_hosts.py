@@ -21,8 +21,10 @@ def build_fair_share(host: Host, tick_unit: TickUnit) -> FairShare:
     lead = written.lead or ASSUMED_LEAD
     figures = f"{lead} times a slice of {slice_time} and a tick of {tick_time}"
     is_all_written = None not in (host.scheduling, written.slice, written.tick, written.lead)
+    turn = tick_unit.ns_to_ticks(slice_time.value + tick_time.value)
     return FairShare(
-        lead * tick_unit.ns_to_ticks(slice_time.value + tick_time.value),
+        lead * turn,
+        turn,
         written.other_load or Fraction(0),
         "" if is_all_written else f"threads of {host.id} lead one another by at most {figures}",
         figures,

@@ -54,7 +54,8 @@ def build_system(
         threads={each.id: find_container_threads(architecture, each) for each in architecture.containers.values()},
         executors={executor.id: executor for executor in _build_executors(architecture)},
         resources={
-            resource.id: SharedResource(resource.id, resource.host, resource.scheduling)
+            # What drivers do, where nobody wrote anything else.
+            resource.id: SharedResource(resource.id, resource.host, resource.scheduling or "fifo", not resource.scheduling)
             for resource in architecture.resources.values()
         },
         host_orders={host.id: host.scheduling for host in architecture.hosts.values() if host.scheduling},

@@ -55,17 +55,20 @@ class SharedResource:
     id: str
     host: str | None
     order: SchedulingOrder | None = None
+    is_order_assumed: bool = False
+    """Whether nobody wrote the order."""
 
 
 @dataclass(frozen=True, slots=True)
 class FairShare:
     """How the threads of a host without a priority share its cores.
 
-    While one of them waits, no other one is served more than it and `lead` (ticks): some times a slice and a tick.
-    `other_load` is the share of each core that other programs take.
+    While one of them waits, no other one is served more than it and `lead` (ticks): some times a `turn`, which is a slice
+    and a tick. `other_load` is the share of each core that other programs take.
     """
 
     lead: int
+    turn: int
     other_load: Fraction = Fraction(0)
     assumption: str = ""
     """What nobody wrote of it, as answers say it; empty where all is written."""
