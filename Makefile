@@ -6,7 +6,7 @@ TESTS ?= tests
 # A process of tests for each core: to collect the tests costs each of them as much as hundreds of tests.
 WORKERS ?= $(shell getconf _NPROCESSORS_ONLN)
 
-.PHONY: demo test test-all properties check lint format bench mutants golden covered size language pages clean
+.PHONY: demo test test-all properties check lint format bench mutants golden covered size language pages lock audit sbom test-lowest clean
 .DEFAULT_GOAL := help
 
 .PHONY: help
@@ -23,6 +23,9 @@ help:
 	@echo "make bench     measure speed and scale"
 	@echo "make golden    renew the expected outputs of example_ramcip"
 	@echo "make language  renew what follows from the description of the language in language/"
+	@echo "make lock      renew the versions and hashes in ci/locked, of all packages that CI and the actions install"
+	@echo "make audit     look up known holes in these packages; make sbom lists them with their licences"
+	@echo "make test-lowest  the tests of what is written, with the lowest versions of packages that are allowed"
 	@echo "make pages     renew what is generated: rule pages, interface data, the page of the ROS library"
 
 demo: .make/run
@@ -89,25 +92,67 @@ pages: .make/test
 	$(BIN)/python tools/make_module_pages.py
 	$(BIN)/python tools/make_plugin_page.py
 
+lock:
+	mkdir -p .make
+	PYTHON=$(PYTHON) sh tools/lock_packages.sh
+
+# What is known of holes in what is locked, by the database of the Python Packaging Authority.
+audit: .make/supply
+	.make/supply-tools/bin/pip-audit --strict --disable-pip --require-hashes -r ci/locked/run.txt
+	.make/supply-tools/bin/pip-audit --strict --disable-pip --require-hashes -r ci/locked/check.txt
+
+# What archgen comes with: each package, its version, its licence, as CycloneDX.
+sbom: .make/supply
+	rm -rf .make/sbom && $(PYTHON) -m venv --without-pip .make/sbom
+	.make/supply-tools/bin/python -m pip --python .make/sbom/bin/python install --quiet --require-hashes -r ci/locked/run.txt
+	mkdir -p archgen-out
+	.make/supply-tools/bin/cyclonedx-py environment --output-reproducible --pyproject pyproject.toml -o archgen-out/sbom.json .make/sbom/bin/python
+
+# Tests with the lowest versions that pyproject.toml allows.
+test-lowest: .make/test
+	sh tools/test_lowest_versions.sh
+
 clean:
 	rm -rf .venv .make archgen-out dist tests/judges/node_modules
+
+# With LOCKED=1 the versions are those of ci/locked, each file known by its hash, as in our own CI.
+ifdef LOCKED
+PACKAGES := --require-hashes --requirement ci/locked/check.txt
+TEST_PACKAGES := $(PACKAGES)
+CHECK_PACKAGES := $(PACKAGES)
+else
+TEST_PACKAGES := --group test
+CHECK_PACKAGES := --group check
+endif
 
 # What archgen needs to run: a virtual environment, and the system libraries that draw pictures.
 .make/run: pyproject.toml tools/system_packages.sh
 	sh tools/system_packages.sh run
 	test -x $(BIN)/python || $(PYTHON) -m venv .venv
+ifdef LOCKED
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check $(PACKAGES)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --no-index --editable .
+else
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
+endif
 	mkdir -p .make && touch $@
 
 # What `make test` needs beside: packages of Python, for which nobody must be root.
 .make/test: .make/run
+ifndef LOCKED
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade "pip>=25.1"
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group test
+endif
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check $(TEST_PACKAGES)
 	touch $@
 
 # The tools of the check, which are packages of Python, too.
 .make/check: .make/test
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group check
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check $(CHECK_PACKAGES)
+	touch $@
+
+.make/supply: ci/locked/supply.txt
+	mkdir -p .make && $(PYTHON) -m venv .make/supply-tools
+	.make/supply-tools/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes --requirement ci/locked/supply.txt
 	touch $@
 
 # What the other tests need: browsers, an office, compilers and the judges.

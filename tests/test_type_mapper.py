@@ -18,7 +18,7 @@ from rosbags.typesys import Stores, get_typestore
 from rosbags.typesys.store import Typestore
 
 from archgen.link.interface_sources import load_interfaces
-from archgen.link.shipped_types import load_shipped_types
+from archgen.link.project_types import load_shipped_types
 from archgen.model.message_types import full_message_name
 
 ROOT = Path(__file__).resolve().parents[1]

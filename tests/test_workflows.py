@@ -19,7 +19,13 @@ from tests.outside_tools import run_judge
 from tests.property_sizes import mark_further_samples
 from tests.running import ROOT
 
-FILES = ("action.yml", "comment/action.yml", ".github/workflows/ci.yml", ".github/workflows/action.yml")
+FILES = (
+    "action.yml",
+    "comment/action.yml",
+    ".github/workflows/ci.yml",
+    ".github/workflows/action.yml",
+    ".github/workflows/supply.yml",
+)
 ROBOT = """\
 archgen: 1
 partners: {p: {title: P}, q: {title: Q}}

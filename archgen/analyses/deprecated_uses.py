@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN
+from archgen.model.component_nesting import list_described_outputs, list_relied_outputs
 from archgen.model.deprecation_lookup import find_deprecation, find_replacement
 from archgen.model.generic_names import read_generic_name
-from archgen.model.relied_outputs import list_described_outputs, list_relied_outputs
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.suggestions import find_closest
+from archgen.model.component_nesting import list_described_outputs
 from archgen.model.coordinate_frames import walk_ancestors
-from archgen.model.relied_outputs import list_described_outputs
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN
-from archgen.model.relied_outputs import list_described_outputs
+from archgen.model.component_nesting import list_described_outputs
 from archgen.model.ros_distro import is_ros_1
 from archgen.timing.chains.limit_states import LimitState, judge_lower_limit, judge_upper_limit
 from archgen.timing.chains.read_ages import find_sent_ages

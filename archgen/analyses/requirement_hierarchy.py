@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.model.requirement_tree import add_wholes, index_parts
+from archgen.model.requirement import add_wholes, index_parts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.suggestions import did_you_mean, find_closest
-from archgen.model.requirement_tree import add_wholes, index_parts
+from archgen.model.requirement import add_wholes, index_parts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 from archgen.frozen import dataclass
 from archgen.model.annotated_elements import list_annotated_elements
 from archgen.model.port_media import uses_ros
-from archgen.model.requirement_tree import add_wholes
+from archgen.model.requirement import add_wholes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

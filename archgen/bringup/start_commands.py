@@ -1,17 +1,24 @@
-"""The commands that start nodes and containers, as lists of words. They are shown, and never run."""
+"""The commands that start nodes and containers, as lists of words. They are shown, and never run.
+
+What ROS is told where nodes and containers start: package and program, names, and the values of parameters.
+
+The words of commands that give parameters to nodes, each as ROS 2 and ROS 1 read it.
+"""
 
 from __future__ import annotations
 
-from archgen.bringup.parameter_words import (
-    list_loading_options,
-    list_ros_1_options,
-    list_ros_1_preparations,
-    list_ros_2_options,
-)
+import json
+import math
+import re
+from collections.abc import Iterator, Mapping
+
 from archgen.bringup.plan_shapes import RosLaunch
+from archgen.bringup.program_names import ProgramNames
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Container
 from archgen.model.node import Node
+from archgen.model.parameter_values import canonical_name, find_declarations
+from archgen.model.process_threads import MANY_THREADED, find_container_threads
 from archgen.model.ros_distro import is_ros_1
 from archgen.model.start_up import NO_START
 
@@ -82,14 +89,14 @@ def _list_remaps(launch: RosLaunch) -> tuple[str, ...]:
 
 
 def _build_ros_1_command(node: Node, launch: RosLaunch) -> tuple[str, ...]:
-    words = (*launch.arguments, *_name_in_ros_1(launch), *_list_remaps(launch), *list_ros_1_options(launch))
+    words = (*launch.arguments, *_rename_in_ros_1(launch), *_list_remaps(launch), *list_ros_1_options(launch))
     if "nodelet" in node.kinds and launch.plugin:
         verb = ("load", launch.plugin, launch.container) if launch.container else ("standalone", launch.plugin)
         return ("rosrun", "nodelet", "nodelet", *verb, *words)
     return ("rosrun", launch.package, launch.executable, *words) if launch.package and launch.executable else ()
 
 
-def _name_in_ros_1(launch: RosLaunch) -> tuple[str, ...]:
+def _rename_in_ros_1(launch: RosLaunch) -> tuple[str, ...]:
     return (f"__name:={launch.name}", *((f"__ns:={launch.namespace}",) if launch.namespace != "/" else ()))
 
 
@@ -99,7 +106,7 @@ def build_container_command(architecture: Architecture, container: Container, la
         return _run_in_ros_2(launch)
     manager = () if container.package else ("manager",)
     program = (launch.package or "", launch.executable or "")
-    return ("rosrun", *program, *manager, *_name_in_ros_1(launch), *list_ros_1_options(launch))
+    return ("rosrun", *program, *manager, *_rename_in_ros_1(launch), *list_ros_1_options(launch))
 
 
 def list_preparations(architecture: Architecture, launch: RosLaunch | None) -> tuple[tuple[str, ...], ...]:
@@ -126,3 +133,165 @@ def list_needed_rights(node: Node) -> tuple[str, ...]:
     if program in _SYSTEM_PROGRAMS:
         rights.append(f"to change the system with {program}")
     return tuple(rights)
+
+
+_FLOAT_TYPES = frozenset({"float", "float[]"})
+
+
+def describe_node_launch(architecture: Architecture, node: Node, program_names: ProgramNames) -> RosLaunch | None:
+    """Return what ROS is told about a node; None for a program that is none, and for a node with a command of its own."""
+    if node.command or node.is_program:
+        return None
+    container = architecture.containers.get(node.container or "")
+    ros_1 = is_ros_1(architecture.distro)
+    declarations = find_declarations(architecture, node)
+    float_names = {name for name, each in declarations.items() if each.type in _FLOAT_TYPES}
+
+    def give(values: Iterator[tuple[str, object]]) -> dict[str, object]:
+        named = ((canonical_name(name, ros_1=ros_1), value) for name, value in values if value is not None)
+        return {name: _write_as_float(value) if name in float_names else value for name, value in named}
+
+    own_values = give((each.name, each.value) for each in node.own_values)
+    commands = {canonical_name(name, ros_1=ros_1): words for name, words in node.parameter_commands.items()}
+    program = program_names.find_program(node)
+    is_loaded = container is not None and not ros_1
+    return RosLaunch(
+        name=node.name,
+        namespace=node.namespace,
+        package=program.package,
+        # A container loads the class; a program beside it is no node of the architecture.
+        executable=node.executable if is_loaded else program.executable,
+        plugin=program.plugin,
+        container=container.full_name if container else None,
+        earlier_values=give((each.name, each.value) for each in architecture.ros_parameters)
+        | give((name, each.value) for name, each in declarations.items()),
+        parameter_files=node.parameter_files,
+        file_values=give((each.name, each.value) for each in node.file_values),
+        own_values=own_values,
+        value_commands={name: words for name, words in commands.items() if name not in own_values},
+        arguments=node.arguments,
+        remaps=program_names.find_remaps(node),
+    )
+
+
+def describe_container_launch(architecture: Architecture, container: Container) -> RosLaunch:
+    """Return what ROS is told about a container: its own program, else ROS's."""
+    own_values = dict(_flatten_values("", container.parameters))
+    if is_ros_1(architecture.distro):
+        package, executable = container.package or "nodelet", container.executable or "nodelet"
+    else:
+        threads = find_container_threads(architecture, container)
+        default = "component_container" if threads == 1 else MANY_THREADED
+        package, executable = container.package or "rclcpp_components", container.executable or default
+        if executable == MANY_THREADED and threads is not None:
+            own_values = {"thread_num": threads, **own_values}
+    return RosLaunch(
+        name=container.name or container.id,
+        namespace=container.namespace,
+        package=package,
+        executable=executable,
+        own_values=own_values,
+    )
+
+
+def _flatten_values(prefix: str, values: Mapping[str, object]) -> Iterator[tuple[str, object]]:
+    for key, value in values.items():
+        if isinstance(value, Mapping):
+            yield from _flatten_values(f"{prefix}{key}.", value)
+        elif value is not None:
+            yield f"{prefix}{key}", value
+
+
+def _write_as_float(value: object) -> object:
+    """Return the whole numbers of a value as floats: ROS does not take `1` for a parameter that is a float."""
+    if isinstance(value, (list, tuple)):
+        return [_write_as_float(item) for item in value]
+    return float(value) if isinstance(value, int) and not isinstance(value, bool) else value
+
+
+_SIMPLE_WORD = re.compile(r"[A-Za-z_/][A-Za-z0-9_./-]*\Z")
+_GLOBAL_IN_ROS_1 = "use_sim_time"
+"""In ROS 1 it is one parameter of all nodes."""
+_SPECIAL_WORDS = frozenset({"true", "false", "yes", "no", "on", "off", "y", "n", "null", "nan", "inf", "infinity"})
+"""Texts that YAML or ROS takes for something else."""
+_ESCAPES = {code: f"\\u{code:04x}" for code in (*range(0x7F, 0xA0), 0x2028, 0x2029, 0xFEFF, 0xFFFE, 0xFFFF)}
+"""What YAML wants escaped in quotes, and JSON does not."""
+
+
+def list_ros_2_options(launch: RosLaunch) -> Iterator[str]:
+    """Yield the words behind `--ros-args` that give a node its parameters: those that count most stand last."""
+    for name, value in launch.earlier_values.items():
+        yield from ("-p", f"{name}:={_format_value(value)}")
+    for path in launch.parameter_files:
+        yield from ("--params-file", path)
+    for name, value in launch.own_values.items():
+        # With the node's name it counts more than what a file says to this node, and to all nodes alike.
+        place = f"{launch.name}:" if name in launch.file_values and launch.namespace == "/" else ""
+        yield from ("-p", f"{place}{name}:={_format_value(value)}")
+
+
+def list_loading_options(launch: RosLaunch) -> Iterator[str]:
+    """Yield the words that give a loaded node its parameters in ROS 2: who loads it reads no files."""
+    for name, value in {**launch.earlier_values, **launch.file_values, **launch.own_values}.items():
+        yield from ("-p", f"{name}:={_format_value(value)}")
+
+
+def list_ros_1_preparations(launch: RosLaunch) -> Iterator[tuple[str, ...]]:
+    """Yield the commands that give a node its parameters in ROS 1 before it starts, where its own words cannot."""
+    for name, value in launch.earlier_values.items():
+        if launch.parameter_files or not _is_word_in_ros_1(name, value):
+            yield _set_in_ros_1(launch, name, value)
+    for path in launch.parameter_files:
+        yield ("rosparam", "load", path, launch.full_name)
+    for name, value in launch.own_values.items():
+        if not _is_word_in_ros_1(name, value):
+            yield _set_in_ros_1(launch, name, value)
+
+
+def list_ros_1_options(launch: RosLaunch) -> Iterator[str]:
+    """Yield the words that give a node its parameters in ROS 1: plain ones, which each client library reads alike."""
+    earlier_values = {} if launch.parameter_files else launch.earlier_values
+    for name, value in {**earlier_values, **launch.own_values}.items():
+        if _is_word_in_ros_1(name, value):
+            yield f"_{_nest_in_ros_1(name)}:={_format_value(value)}"
+
+
+def _set_in_ros_1(launch: RosLaunch, name: str, value: object) -> tuple[str, ...]:
+    place = "" if name == _GLOBAL_IN_ROS_1 else launch.full_name
+    return ("rosparam", "set", f"{place}/{_nest_in_ros_1(name)}", _format_value(value))
+
+
+def _nest_in_ros_1(name: str) -> str:
+    return name.replace(".", "/")
+
+
+def _is_word_in_ros_1(name: str, value: object) -> bool:
+    """Whether a value is a number, a boolean, or a text that nothing takes for something else."""
+    if isinstance(value, str):
+        return _is_simple(value)
+    return isinstance(value, (int, float)) and name != _GLOBAL_IN_ROS_1
+
+
+def _is_simple(text: str) -> bool:
+    return _SIMPLE_WORD.match(text) is not None and text.lower() not in _SPECIAL_WORDS
+
+
+def _format_value(value: object) -> str:
+    """Format a value on one line as YAML that ROS 1 and 2 read alike."""
+    if isinstance(value, Mapping):
+        return f"{{{', '.join(f'{_format_value(key)}: {_format_value(item)}' for key, item in value.items())}}}"
+    if isinstance(value, (list, tuple)):
+        return f"[{', '.join(_format_value(item) for item in value)}]"
+    if isinstance(value, float):
+        return _format_float(value)
+    if isinstance(value, str):
+        return value if _is_simple(value) else json.dumps(value, ensure_ascii=False).translate(_ESCAPES)
+    return json.dumps(value)
+
+
+def _format_float(value: float) -> str:
+    if not math.isfinite(value):
+        return ".nan" if math.isnan(value) else ".inf" if value > 0 else "-.inf"
+    text = repr(value)
+    # Without a point, YAML 1.1 reads a text.
+    return text.replace("e", ".0e") if "e" in text and "." not in text else text

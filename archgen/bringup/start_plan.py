@@ -9,16 +9,16 @@ from heapq import heapify, heappop, heappush
 
 from archgen.bringup.plan_shapes import FIRM_NEED, AwaitedStep, DroppedWait, StartPlan, StartStep, StepKind, Wait
 from archgen.bringup.program_names import ProgramNames
-from archgen.bringup.ros_launches import describe_container_launch, describe_node_launch
 from archgen.bringup.start_commands import (
     build_command,
     build_container_command,
+    describe_container_launch,
+    describe_node_launch,
     list_needed_rights,
     list_preparations,
     list_transitions,
 )
-from archgen.bringup.start_waits import StartWaits, group_by_waiting, name_container
-from archgen.bringup.wait_circles import keep_acyclic
+from archgen.bringup.wait_circles import StartWaits, group_by_waiting, keep_acyclic, name_container
 from archgen.derivation.wire.remap_rules import NodeNames
 from archgen.derivation.wire.running_state import find_environment
 from archgen.model.architecture import Architecture

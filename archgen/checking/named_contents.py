@@ -7,10 +7,9 @@ from archgen.checking.merged_project import MergedProject
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.frozen import replace
 from archgen.link import (
-    chapter_pictures,
     hint_checks,
     named_files,
-    parameter_file_search,
+    node_parameter_files,
     report_chapters,
     verification_files,
 )
@@ -24,7 +23,7 @@ def read_named_contents(
     loaded_project, merged_table = merged_project.loaded_project, merged_project.table
     is_folder = merged_project.is_folder
     project_chapters, chapter_findings = report_chapters.read_chapters(merged_table, loaded_project.files)
-    missing_pictures = chapter_pictures.find_missing_pictures(
+    missing_pictures = report_chapters.find_missing_pictures(
         project_chapters, report_chapters.locate_packed_texts(merged_table), loaded_project.sources
     )
     files_by_element = tuple(
@@ -33,7 +32,7 @@ def read_named_contents(
     project_chapters = replace(project_chapters, image_paths=named_files.list_image_paths(files_by_element))
     named_file_findings = named_files.find_missing_files(files_by_element, project_chapters, is_folder=is_folder)
     missing_files = (
-        tuple(parameter_file_search.find_missing_parameter_files(merged_table, loaded_project.files))
+        tuple(node_parameter_files.find_missing_parameter_files(merged_table, loaded_project.files))
         if is_folder
         else ()
     )

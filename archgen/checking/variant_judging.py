@@ -17,8 +17,8 @@ from archgen.frozen import replace
 from archgen.link import mapping_values, slice_merging
 from archgen.link.variants import variant_order
 from archgen.model.variant import BASE_NAME
-from archgen.project.variant_settings import adopt_settings, changes_settings
-from archgen.syntax.remembered_files import RememberedFiles
+from archgen.project.project_loading import adopt_settings, changes_settings
+from archgen.syntax.project_files import RememberedFiles
 from archgen.syntax.yaml_tree import list_spans
 from archgen.timing.run_analysis import AnalysisMemory
 

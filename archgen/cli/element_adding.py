@@ -12,8 +12,8 @@ from archgen.cli import command_support, shared_options
 
 if TYPE_CHECKING:
     from archgen.diagnostics.source_span import Span
+    from archgen.edit.edit_proof import NewElement
     from archgen.edit.element_place import ElementPlace
-    from archgen.edit.new_element import NewElement
     from archgen.model.component import Component
     from archgen.pipeline import CheckedProject
 

@@ -17,7 +17,7 @@ from archgen.model.known_interfaces import KNOWN_DISTROS
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from archgen.importers.imported_tables import ImportedTables
+    from archgen.importers.foreign_import import ImportedTables
     from archgen.pipeline import CheckedProject
     from archgen.start.project_plan import ProjectPlan
     from archgen.start.start_answers import StartAnswers
@@ -158,7 +158,7 @@ def _set_up_merge_hook(target: Path) -> None:
     """Let git check the project after each merge, and say what there is."""
     from archgen.diagnostics.safe_text import make_visible
     from archgen.git import GitError
-    from archgen.start.merge_hook_setup import install_merge_hook
+    from archgen.start.merge_driver_setup import install_merge_hook
 
     try:
         with command_support.explain_write_errors():
@@ -211,7 +211,7 @@ def _parse_headings(headings: tuple[str, ...]) -> Mapping[str, str]:
 
 def _import_tables(tables: tuple[Path, ...], distro: str, heading_map: Mapping[str, str]) -> ImportedTables:
     """Read the tables. Print what was not imported; where nothing could be, end with status 1."""
-    from archgen.importers.imported_tables import MAX_OFFICE_BYTES
+    from archgen.importers.foreign_import import MAX_OFFICE_BYTES
     from archgen.installed_plugins import load_reader
 
     imported: ImportedTables = load_reader("tables")(
@@ -230,15 +230,10 @@ def _import_tables(tables: tuple[Path, ...], distro: str, heading_map: Mapping[s
 
 def _write_project(target: Path, answers: StartAnswers, imported: ImportedTables | None) -> None:
     from archgen.emit import new_files
-    from archgen.start import starter_slices
-    from archgen.start.project_plan import has_other_yaml, judge_files, plan_files
+    from archgen.start.project_plan import example_files, has_other_yaml, imported_files, judge_files, plan_files
 
     other_files = has_other_yaml(target)
-    files = (
-        starter_slices.imported_files(answers, imported.data, other_files)
-        if imported
-        else starter_slices.example_files(answers, other_files)
-    )
+    files = imported_files(answers, imported.data, other_files) if imported else example_files(answers, other_files)
     checked_project = judge_files(files, answers.id)
     project_plan = plan_files(target, answers, files, checked_project)
     _refuse_replacing_slices(project_plan, target, files)

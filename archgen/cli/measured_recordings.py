@@ -15,7 +15,7 @@ from archgen.diagnostics.text_columns import find_width, wrap_line
 
 if TYPE_CHECKING:
     from archgen.edit.measured_slice import MeasuredSlice
-    from archgen.importers.recorded_files import ReadRecordings
+    from archgen.importers.foreign_import import ReadRecordings
     from archgen.model.architecture import Architecture
     from archgen.pipeline import CheckedProject
     from archgen.timing.analysis import Analysis, ChainResult
@@ -82,7 +82,7 @@ def _compare_recordings(
 def _read_recordings(
     paths: Sequence[Path], architecture: Architecture, analysis: Analysis, chains: Mapping[str, ChainResult]
 ) -> ReadRecordings:
-    from archgen.importers.recorded_files import RecordingRefusedError
+    from archgen.importers.foreign_import import RecordingRefusedError
     from archgen.installed_plugins import load_reader
 
     read_measured = load_reader("recordings")

@@ -35,7 +35,7 @@ command.add_command(new_variant.add_variant)
 def add_group(name: str, title: str | None, owner: str | None, project: Path | None, *, dry_run: bool) -> None:
     """Add a functional group, in a file of its own where the others have one."""
     from archgen.edit import element_place
-    from archgen.edit.new_element import NewElement
+    from archgen.edit.edit_proof import NewElement
     from archgen.model.path_resolver import title_from_id
 
     checked_project = command_support.check_or_exit(project)
@@ -75,7 +75,7 @@ def add_component(  # noqa: PLR0913, PLR0917 - one for each option
     GROUP.COMPONENT.ID adds it inside of a component that holds components.
     """
     from archgen.edit import element_place
-    from archgen.edit.new_element import NewElement
+    from archgen.edit.edit_proof import NewElement
     from archgen.model.path_resolver import title_from_id
 
     checked_project = command_support.check_or_exit(project)
@@ -122,7 +122,7 @@ def add_node(  # noqa: PLR0913, PLR0917 - one for each option
 ) -> None:
     """Add a ROS node, in the file where the nodes of the same components or groups stand."""
     from archgen.edit import edit_proof, element_place
-    from archgen.edit.new_element import NewElement
+    from archgen.edit.edit_proof import NewElement
 
     checked_project = command_support.check_or_exit(project)
     element_adding.require_free_id(
@@ -151,7 +151,7 @@ def add_node(  # noqa: PLR0913, PLR0917 - one for each option
 def add_partner(name: str, title: str | None, reviewers: str | None, project: Path | None, *, dry_run: bool) -> None:
     """Add a partner, with the file in which it agrees to changes that break it."""
     from archgen.edit import element_place
-    from archgen.edit.new_element import NewElement
+    from archgen.edit.edit_proof import NewElement
     from archgen.model.path_resolver import title_from_id
 
     checked_project = command_support.check_or_exit(project)

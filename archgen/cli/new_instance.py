@@ -34,7 +34,7 @@ def add_type(  # noqa: PLR0913, PLR0917 - one for each option
 ) -> None:
     """Add a component type, in the file that holds most of them."""
     from archgen.edit import element_place
-    from archgen.edit.new_element import NewElement
+    from archgen.edit.edit_proof import NewElement
     from archgen.model.path_resolver import title_from_id
 
     checked_project = command_support.check_or_exit(project)
@@ -90,7 +90,7 @@ def add_instance(  # noqa: PLR0913, PLR0917 - one for each option
     """Add an instance of a component type, with its inputs to be filled. ID is GROUP.ID; TYPE is as in `filter<Pose>`."""
     from archgen.diagnostics.common_wording import join_words
     from archgen.edit import element_place
-    from archgen.edit.new_element import NewElement
+    from archgen.edit.edit_proof import NewElement
     from archgen.model.path_resolver import title_from_id
 
     checked_project = command_support.check_or_exit(project)

@@ -27,7 +27,7 @@ def add_variant(  # noqa: PLR0913 - one for each option
 ) -> None:
     """Add a variant, in the file that holds most of them. What it changes is written below `changes`."""
     from archgen.edit import element_place
-    from archgen.edit.new_element import NewElement
+    from archgen.edit.edit_proof import NewElement
     from archgen.model.path_resolver import title_from_id
     from archgen.model.variant import BASE_NAME
 

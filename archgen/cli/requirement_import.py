@@ -14,8 +14,8 @@ from archgen.diagnostics.safe_text import make_visible
 
 if TYPE_CHECKING:
     from archgen.edit.requirement_slice import RequirementSlice
+    from archgen.importers.foreign_import import ImportedRequirements
     from archgen.importers.import_formats import ImportFormat
-    from archgen.importers.imported_requirements import ImportedRequirements
     from archgen.pipeline import CheckedProject
 
 DEFAULT_SLICE = "requirements.yaml"

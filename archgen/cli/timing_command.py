@@ -124,7 +124,7 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
 
 
 def _apply_overrides(architecture: Architecture, overrides: tuple[str, ...]) -> Architecture:
-    from archgen.link.override_values import OverrideError
+    from archgen.link.process_overrides import OverrideError
     from archgen.link.timing_overrides import apply_overrides
 
     try:

@@ -8,7 +8,7 @@ from dataclasses import field
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
-from archgen.model.component_type_patterns import TypePatterns
+from archgen.model.component import TypePatterns
 from archgen.timing.analysis import Analysis
 
 

@@ -12,9 +12,9 @@ from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.timing_pair import TimingPair
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
+from archgen.model.component_nesting import list_described_outputs, list_relied_outputs
 from archgen.model.promise import FIGURE_KEYS, Promise
 from archgen.model.quantity import Quantity
-from archgen.model.relied_outputs import list_described_outputs, list_relied_outputs
 from archgen.timing.analysis import Analysis
 from archgen.timing.chains.limit_states import LimitState, find_worst_state
 from archgen.timing.chains.read_ages import find_read_ages

@@ -3,6 +3,8 @@
 What comes out is a project as if everything had been written by hand: the groups hold leaves, by their path inside the
 group (`arm.motor`). Nodes of the tree keep their places, so that what is wrong with an instance points at the type's
 line. A project without types and composed components comes out as it went in.
+
+What a reference (`same_as`) may say: it is its type exactly, and has only a place and a name of its own.
 """
 
 from __future__ import annotations
@@ -13,7 +15,6 @@ from archgen.compose.expanded_project import ComponentShell, ExpandedProject, Ex
 from archgen.compose.instance_containers import make_instance_containers
 from archgen.compose.instance_overlay import InstanceOverlay
 from archgen.compose.library_types import library_of_type, list_type_entries
-from archgen.compose.same_as_checks import find_same_as_changes
 from archgen.compose.type_expressions import TypeExpression
 from archgen.compose.type_table import MissingTypeDescriber, TypeTable, diagnose_circle, list_generic_names
 from archgen.diagnostics.diagnostic import Diagnostic, Label
@@ -308,3 +309,30 @@ def _diagnose_two_types(body: MappingNode, component_id: str) -> Diagnostic:
 
 def _format_count(count: int) -> str:
     return f"{count:,}" if count < 10**12 else f"10^{len(str(count)) - 1}"
+
+
+_OWN_KEYS = frozenset({"same_as", "is", "title", "owner", "layout", "from", "inputs", "node"})
+_OWN_INPUT_KEYS = frozenset({"from", "external"})
+_OWN_NODE_KEYS = frozenset({"host", "namespace", "start"})
+
+
+def find_same_as_changes(body: MappingNode, component_id: str, type_name: str) -> list[Diagnostic]:
+    """Return what a reference says that its type decides."""
+    changed = [entry for entry in body if entry.key not in _OWN_KEYS]
+    inputs, node = body.get("inputs"), body.get("node")
+    for port in inputs if isinstance(inputs, MappingNode) else ():
+        changed += (
+            [e for e in port.value if e.key not in _OWN_INPUT_KEYS] if isinstance(port.value, MappingNode) else []
+        )
+    changed += [e for e in node if e.key not in _OWN_NODE_KEYS] if isinstance(node, MappingNode) else []
+    return [_diagnose_change(entry, component_id, type_name) for entry in changed]
+
+
+def _diagnose_change(entry: MappingEntry, component_id: str, type_name: str) -> Diagnostic:
+    return Diagnostic(
+        "changed-reference",
+        f"`{component_id}` is the same as `{type_name}`, which decides its `{entry.key}`",
+        entry.key_span,
+        help=f"write `is: {type_name}` instead of `same_as` if this one differs, or change the type",
+        element=component_id,
+    )

@@ -1,4 +1,7 @@
-"""Plan how to add an element to a project: find its place, make the new text, prove it. Nothing is written here."""
+"""Plan how to add an element to a project: find its place, make the new text, prove it. Nothing is written here.
+
+Insert an element into a file's text as the last of its mapping; every other character stays as it is.
+"""
 
 from __future__ import annotations
 
@@ -10,12 +13,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.edit import edit_proof, text_insertion
+from archgen.diagnostics.source_span import Span
+from archgen.edit import edit_proof
+from archgen.edit.edit_proof import NewElement
 from archgen.edit.element_place import ElementPlace
-from archgen.edit.new_element import NewElement
-from archgen.edit.text_insertion import CannotInsertError
 from archgen.pipeline import CheckedProject
+from archgen.syntax import yaml_parser
 from archgen.syntax.project_files import FileRefusal
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlNode
 
 SCHEMA_LINE_PATTERN = re.compile(r"\A\s*# yaml-language-server: \$schema=(\S+)")
 
@@ -110,7 +115,7 @@ def _insert_element(place: ElementPlace, element: NewElement, text: str) -> str:
     byte_order_mark = _BYTE_ORDER_MARK if text.startswith(_BYTE_ORDER_MARK) else ""
     plain_text = text.removeprefix(_BYTE_ORDER_MARK)
     try:
-        for candidate in text_insertion.propose_texts(place.file, plain_text, place.path, element):
+        for candidate in propose_texts(place.file, plain_text, place.path, element):
             if edit_proof.adds_only_element(plain_text, candidate, place.path, element):
                 return byte_order_mark + candidate
     except CannotInsertError as error:
@@ -137,3 +142,203 @@ def _first_changed_line(old_text: str, new_text: str) -> int:
         min(len(old_lines), len(new_lines)),
     )
     return next((index + 1 for index in range(unchanged, len(new_lines)) if new_lines[index].strip()), unchanged + 1)
+
+
+_LINE_PATTERN = re.compile(r"[^\r\n]*(?:\r\n|\n|\r)|[^\r\n]+\Z")
+_EMPTY_VALUE = re.compile(r"[\"']?\s*:[ \t]*(?:#.*)?\Z")
+# A comment is taken to the end of its line and never given back: a comma in it separates nothing.
+_UNTIL_COMMA = re.compile(r"(?:\s++|#[^\r\n]*+)*+,")
+_DEFAULT_INDENT = 2
+
+
+class CannotInsertError(Exception):
+    """The text has a form into which nothing is inserted by machine. The message says which."""
+
+
+@dataclass(frozen=True, slots=True)
+class _ParsedText:
+    """A file's text as lines with their line endings, and its tree."""
+
+    lines: tuple[str, ...]
+    root: MappingNode
+
+    @property
+    def line_ending(self) -> str:
+        first = self.lines[0] if self.lines else "\n"
+        return first[len(first.rstrip("\r\n")) :] or "\n"
+
+    def offset_of(self, line: int, column: int) -> int:
+        return sum(len(text) for text in self.lines[: line - 1]) + column - 1
+
+    def text_from(self, value: YamlNode) -> str:
+        """Return the text from where a value begins, behind its anchor, to the end of the line."""
+        remainder = (
+            self.lines[value.span.line - 1][value.span.column - 1 :] if value.span.line <= len(self.lines) else ""
+        )
+        return re.sub(r"\A&\S+[ \t]*", "", remainder)
+
+
+def propose_texts(file: str, text: str, path: tuple[str, ...], element: NewElement) -> Iterator[str]:
+    """Yield texts with the element at a path of mappings, the likeliest first; the caller proves which one is right.
+
+    Raise CannotInsertError.
+    """
+    document, _ = yaml_parser.parse_yaml(file, text)
+    if document is None:
+        msg = f"{file} cannot be parsed: `archgen check` says where"
+        raise CannotInsertError(msg)
+    # YAML takes a lone carriage return for a line break and editors mostly do not: line numbers would not fit.
+    if _has_bare_returns(text):
+        msg = f"{file} holds line breaks that editors and parsers see differently"
+        raise CannotInsertError(msg)
+    parsed = _ParsedText(tuple(_LINE_PATTERN.findall(text)), document.root)
+    holder, missing_keys = _find_holder(parsed, path)
+    entry = holder.entries.get(missing_keys[0]) if missing_keys else None
+    if entry is not None:
+        yield from _insert_below_empty(parsed, holder, entry, element.nested_below(missing_keys[1:]))
+    elif parsed.text_from(holder).startswith("{") and holder.span != Span.of_file(file):
+        yield _insert_in_braces(parsed, holder, element.without_empty_keys().nested_below(missing_keys))
+    else:
+        yield from _insert_in_block(parsed, holder, element.nested_below(missing_keys))
+
+
+def _has_bare_returns(text: str) -> bool:
+    """Return whether a text has line breaks that are a carriage return only."""
+    return re.search(r"\r(?!\n)", text) is not None
+
+
+def _find_holder(parsed: _ParsedText, path: tuple[str, ...]) -> tuple[MappingNode, tuple[str, ...]]:
+    """Follow a path as far as its mappings are written; return the last of them and the keys that are left."""
+    table = parsed.root
+    for depth, key in enumerate(path):
+        entry = table.entries.get(key)
+        if entry is None or not isinstance(entry.value, MappingNode):
+            return table, path[depth:]
+        # An insertion would appear wherever the anchor is used.
+        if parsed.text_from(entry.value).startswith("*"):
+            msg = f"`{key}` is written once and used here by its anchor ({entry.value.span})"
+            raise CannotInsertError(msg)
+        table = entry.value
+    return table, ()
+
+
+def _insert_below_empty(
+    parsed: _ParsedText, holder: MappingNode, entry: MappingEntry, element: NewElement
+) -> Iterator[str]:
+    """Insert the element below a key without a value."""
+    line = parsed.lines[entry.key_span.end_line - 1].rstrip("\r\n")
+    is_empty = isinstance(entry.value, ScalarNode) and entry.value.value is None
+    if (
+        not is_empty
+        or not _EMPTY_VALUE.match(line[entry.key_span.end_column - 1 :])
+        or parsed.text_from(holder).startswith("{")
+    ):
+        msg = f"`{entry.key}` is not a mapping that is written out ({entry.key_span})"
+        raise CannotInsertError(msg)
+    indent_width = _indent_width(parsed.root)
+    indent = " " * (entry.key_span.column - 1 + indent_width)
+    yield _join_lines(
+        parsed,
+        _end_of_comments(parsed, entry.key_span.end_line, len(indent)),
+        element.to_block(indent, indent_width),
+        is_spaced=False,
+    )
+
+
+def _insert_in_block(parsed: _ParsedText, table: MappingNode, element: NewElement) -> Iterator[str]:
+    """Insert the element behind the last one of a block."""
+    entries = list(table)
+    if not entries:
+        yield _join_lines(parsed, len(parsed.lines), element.to_block("", _DEFAULT_INDENT), is_spaced=False)
+        return
+    last_entry = entries[-1]
+    indent = " " * (last_entry.key_span.column - 1)
+    indent_width = _indent_width(MappingNode({last_entry.key: last_entry}, table.span), _indent_width(parsed.root))
+    compact_element = element.without_empty_keys()
+    may_be_short = len(entries) > 1 or table is not parsed.root
+    in_braces = may_be_short and parsed.text_from(last_entry.value).startswith("{") and _is_all_braces(parsed, entries)
+    lines = [indent + compact_element.to_flow()] if in_braces else element.to_block(indent, indent_width)
+    # A block's span may end at the beginning of the line behind it.
+    end = last_entry.value.span.end_line - (
+        1 if last_entry.value.span.end_column == 1 and last_entry.value.span.end_line > last_entry.key_span.line else 0
+    )
+    is_spaced = _has_blank_lines(parsed, entries)
+    trimmed = end
+    while trimmed > last_entry.key_span.line and not parsed.lines[trimmed - 1].strip():
+        trimmed -= 1
+    # Blank lines at the end belong to a block text (`|+`) or to the layout: the proof tells which, so both are tried.
+    for line in dict.fromkeys(
+        (_end_of_comments(parsed, trimmed, len(indent)), _end_of_comments(parsed, end, len(indent)))
+    ):
+        yield _join_lines(parsed, line, lines, is_spaced=is_spaced)
+
+
+def _is_all_braces(parsed: _ParsedText, entries: list[MappingEntry]) -> bool:
+    """Return whether everything in a block is written in braces or in short form, each on one line."""
+    return all(
+        not isinstance(entry.value, MappingNode)
+        or (parsed.text_from(entry.value).startswith("{") and entry.value.span.end_line == entry.key_span.line)
+        for entry in entries
+    )
+
+
+def _insert_in_braces(parsed: _ParsedText, table: MappingNode, element: NewElement) -> str:
+    """Insert the element before a closing brace, on a line of its own where the others have one."""
+    text = "".join(parsed.lines)
+    element_text = element.to_flow()
+    entries = list(table)
+    if not entries:
+        opening = parsed.offset_of(table.span.line, table.span.column) + text[
+            parsed.offset_of(table.span.line, table.span.column) :
+        ].index("{")
+        return text[: opening + 1] + element_text + text[opening + 1 :]
+    last_entry = entries[-1]
+    end = parsed.offset_of(last_entry.value.span.end_line, last_entry.value.span.end_column)
+    comma = _UNTIL_COMMA.match(text, end)
+    position = comma.end() if comma else end
+    indentation = parsed.lines[last_entry.key_span.line - 1][: last_entry.key_span.column - 1]
+    separator = f"{parsed.line_ending}{indentation}" if not indentation.strip() else " "
+    return text[:position] + ("" if comma else ",") + separator + element_text + text[position:]
+
+
+def _end_of_comments(parsed: _ParsedText, line: int, column: int) -> int:
+    """Return the line behind which to insert: comments that are indented as far belong to what is above them."""
+    end = line
+    for number in range(line, len(parsed.lines)):
+        text = parsed.lines[number]
+        stripped = text.lstrip(" ")
+        if stripped.startswith("#") and len(text) - len(stripped) >= column:
+            if column:
+                end = number + 1
+        elif stripped.strip():
+            break
+    return end
+
+
+def _has_blank_lines(parsed: _ParsedText, entries: list[MappingEntry]) -> bool:
+    """Return whether blank lines separate the elements of a block."""
+    number = entries[-1].key_span.line - 1
+    while number > 0 and parsed.lines[number - 1].lstrip().startswith("#"):
+        number -= 1
+    return number > 0 and not parsed.lines[number - 1].strip()
+
+
+def _indent_width(table: MappingNode, default_width: int = _DEFAULT_INDENT) -> int:
+    """Return how many columns a file indents by: those of its first mapping that is written below its key."""
+    for entry in table:
+        if isinstance(entry.value, MappingNode) and entry.value.entries:
+            first_entry = next(iter(entry.value))
+            if first_entry.key_span.line > entry.key_span.line and first_entry.key_span.column > entry.key_span.column:
+                return first_entry.key_span.column - entry.key_span.column
+    return default_width
+
+
+def _join_lines(parsed: _ParsedText, line_count: int, lines: list[str], *, is_spaced: bool) -> str:
+    """Return the text with lines inserted behind a line."""
+    ending = parsed.line_ending
+    before, after = "".join(parsed.lines[:line_count]), "".join(parsed.lines[line_count:])
+    if before and before[-1] not in "\r\n":
+        before += ending
+    if is_spaced and before and parsed.lines[line_count - 1].strip():
+        before += ending
+    return before + "".join(f"{line}{ending}" for line in lines) + after

@@ -12,10 +12,16 @@ from typing import Any
 
 from archgen import pipeline
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.edit import slice_update
-from archgen.edit.earlier_import import ImportOrigin, keep_places, list_known_ids, read_earlier_import
+from archgen.edit import earlier_import
+from archgen.edit.earlier_import import (
+    ImportOrigin,
+    keep_places,
+    leave_out_said,
+    list_known_ids,
+    list_said_values,
+    read_earlier_import,
+)
 from archgen.edit.edit_proof import list_new_errors
-from archgen.edit.said_elsewhere import leave_out_said, list_said_values
 from archgen.importers.foreign_import import ForeignImport
 from archgen.model import element_ids
 from archgen.pipeline import CheckedProject
@@ -23,8 +29,7 @@ from archgen.project import PROJECT_FILE
 from archgen.project.project_loading import load_from_files
 from archgen.syntax import file_patterns
 from archgen.syntax.folder_files import FolderFiles
-from archgen.syntax.overlaid_files import OverlaidFiles
-from archgen.syntax.project_files import MAX_BYTES, read_text_file
+from archgen.syntax.project_files import MAX_BYTES, OverlaidFiles, read_text_file
 from archgen.syntax.yaml_writer import write_yaml
 
 _HOLDERS = frozenset(
@@ -63,7 +68,6 @@ class ImportPlan:
 
     root: Path
     slices: list[PlannedSlice]
-    is_new_project: bool
     checked_project: CheckedProject
     errors: tuple[Diagnostic, ...]
     """Errors that the project has only with what is imported."""
@@ -115,7 +119,7 @@ def plan_import(imported: ForeignImport, origin: ImportOrigin, folder: Path, *, 
         before = pipeline.judge_project(load_from_files(files, PROJECT_FILE))
         errors = list(list_new_errors(before, judged))
     left_files = tuple(f"{prefix}{name}" for name in earlier if name not in new_slices)
-    return ImportPlan(root, slices, is_new_project, judged, tuple(errors), moves, left_files, tuple(differences))
+    return ImportPlan(root, slices, judged, tuple(errors), moves, left_files, tuple(differences))
 
 
 def _leave_out_said(
@@ -126,7 +130,7 @@ def _leave_out_said(
     said = list_said_values(load_from_files(files, PROJECT_FILE).documents, own_files)
     kept_slices: dict[str, Mapping[str, Any]] = {}
     for name, data in new_slices.items():
-        normal_data = slice_update.read_slice_content(name, write_yaml(data)).data
+        normal_data = earlier_import.read_slice_content(name, write_yaml(data)).data
         left_out = leave_out_said(data, normal_data, said)
         differences += left_out.differences
         if left_out.data:
@@ -198,20 +202,20 @@ def _read_record(files: FolderFiles, file: str, origin: ImportOrigin) -> Mapping
     record = read_text_file(files, path)
     if record.problem or not origin.is_of(record.text):
         return {}
-    return slice_update.read_slice_content(path, record.text).data
+    return earlier_import.read_slice_content(path, record.text).data
 
 
 def _update_slice(file: str, old_text: str, new_text: str, base: Mapping[str, Any]) -> PlannedSlice:
-    old_content = slice_update.read_slice_content(file, old_text)
+    old_content = earlier_import.read_slice_content(file, old_text)
     if old_content.diagnostics:
         msg = f"{file} cannot be brought up to date; nothing was written"
         raise ImportRefusedError(msg, old_content.diagnostics)
     # Read back, so that both sides are in the same normal form.
-    new_content = slice_update.read_slice_content(file, new_text)
+    new_content = earlier_import.read_slice_content(file, new_text)
     removed: list[str] = []
     old_data = _take_away_unsaid(old_content.data, base, new_content.data, removed)
     merged = _lay_over(old_data, new_content.data)
-    updated = slice_update.update_slice_text(old_text, write_yaml(old_content.data), write_yaml(merged))
+    updated = earlier_import.update_slice_text(old_text, write_yaml(old_content.data), write_yaml(merged))
     return PlannedSlice(
         file,
         updated.text,

@@ -11,7 +11,7 @@ from typing import Any
 
 from archgen import pipeline
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.edit import slice_update
+from archgen.edit import earlier_import
 from archgen.edit.edit_proof import list_new_errors, load_with_text
 from archgen.link import mapping_values
 from archgen.pipeline import CheckedProject
@@ -77,14 +77,14 @@ def _update_text(old_text: str, base: str, new: str, result: RequirementSlice) -
     """Return the slice with what is new in it."""
     if not old_text.strip():
         return _HEADER + new
-    updated = slice_update.update_slice_text(old_text, base, new)
+    updated = earlier_import.update_slice_text(old_text, base, new)
     result.is_rewritten = updated.is_rewritten
     return updated.text
 
 
 def _read_slice(file: str, text: str) -> tuple[dict[str, Any], tuple[Diagnostic, ...]]:
     """Return what the slice holds in normal form, and why it cannot be read."""
-    content = slice_update.read_slice_content(file, text)
+    content = earlier_import.read_slice_content(file, text)
     if content.diagnostics:
         return {}, content.diagnostics
     foreign = next((entry for entry in content.entries if entry.key not in _SECTIONS), None)
@@ -126,7 +126,7 @@ def _merge_section(
             if key == "hints":
                 _lay_hints(new_body, value, mapping_values.get_mapping(other_body, key))
             elif key in other_body.entries and key not in new_body:
-                if slice_update.to_texts(other_body.entries[key].value) != value:
+                if earlier_import.to_texts(other_body.entries[key].value) != value:
                     result.written_elsewhere.append(f"{key} of {name}")
             else:
                 new_body[key] = value

@@ -1,12 +1,22 @@
-"""What an importer of another tool's model returns: slices of the language, and an account of what was not taken."""
+"""What an importer of another tool's model returns: slices of the language, and an account of what was not taken.
+
+What a reader of tables of components and connections returns, for `archgen init --from`. What a reader of recordings
+returns: observations of a design's elements, and what has no place in it. What a reader of another tool's requirements
+returns: requirements as data of the language, and what became of each object.
+"""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import field
+from typing import Any, Literal
 
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.source_span import SourceTexts, Span
+from archgen.frozen import dataclass
+from archgen.timing.chains.measured_comparison import Observation
+from archgen.timing.chains.sample_statistics import UnmappedSamples
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,3 +56,61 @@ class ForeignFileError(Exception):
     def __init__(self, message: str, span: Span, help_line: str) -> None:
         super().__init__(message)
         self.message, self.span, self.help_line = message, span, help_line
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectAccount:
+    """What became of an object of the file: taken as `id`, left out on purpose, or not taken, and why."""
+
+    fate: Literal["taken", "left out", "not taken"]
+    name: str
+    place: str
+    id: str = ""
+    reason: str = ""
+
+
+@dataclass(slots=True)
+class ImportedRequirements:
+    """Requirements and use cases as data of the language by id, and the accounts of all objects, attributes, relations."""
+
+    requirements: dict[str, dict[str, Any]] = field(default_factory=dict)
+    use_cases: dict[str, dict[str, Any]] = field(default_factory=dict)
+    accounts: list[ObjectAccount] = field(default_factory=list)
+    unread_attributes: Counter[str] = field(default_factory=Counter)
+    """How many objects have each attribute that is not taken."""
+    unread_relations: Counter[str] = field(default_factory=Counter)
+    closing_relations: tuple[tuple[str, str], ...] = ()
+    """What is not taken, as (part, parent), since it would make a requirement a part of itself."""
+
+
+class RecordingRefusedError(Exception):
+    """What was named is no recording that can be read; the text says what to do."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReadRecordings:
+    """What recordings say of a design's elements, and what of them has no place in it.
+
+    `texts` holds the files that people wrote, for excerpts in findings; recordings may be far too large for that.
+    """
+
+    observations: tuple[Observation, ...]
+    unmapped: tuple[UnmappedSamples, ...]
+    diagnostics: tuple[Diagnostic, ...]
+    texts: tuple[tuple[str, str], ...]
+
+
+MAX_OFFICE_BYTES = 64 * 1024 * 1024
+"""The most bytes that a workbook or document may have, and each of its parts unpacked: a sheet of 300,000 cells has 20 MiB."""
+
+
+@dataclass(frozen=True, slots=True)
+class ImportedTables:
+    """Sections of the language as plain data, none where nothing could be imported, and what is to be said of it."""
+
+    data: Mapping[str, Any]
+    diagnostics: tuple[Diagnostic, ...]
+    sources: SourceTexts
+    """The texts of the tables, for excerpts in findings."""
+    summary: tuple[str, ...]
+    """Lines that say of each table what its headings were taken for, and which cells were not taken."""

@@ -1,6 +1,8 @@
 """Read an XML file as a tree that knows its places: in time and memory in proportion to the file, whatever it holds.
 
 Entities and document types are refused: nothing is expanded, and nothing outside the file is asked for.
+
+Say in plain words why an XML parser refuses a file.
 """
 
 from __future__ import annotations
@@ -10,7 +12,7 @@ from types import MappingProxyType
 from xml.parsers import expat
 
 from archgen.diagnostics.source_span import Span
-from archgen.importers import xml_errors
+from archgen.frozen import dataclass
 from archgen.importers.foreign_import import ForeignFileError
 
 MAX_DEPTH = 200
@@ -86,23 +88,21 @@ class _TreeBuilder:
         try:
             self._parser.Parse(data, True)  # noqa: FBT003 - expat's signature
         except expat.ExpatError as error:
-            problem = xml_errors.explain_syntax(
-                error, is_root_seen=self._root is not None, malformed_help=_MALFORMED_HELP
-            )
+            problem = explain_syntax(error, is_root_seen=self._root is not None, malformed_help=_MALFORMED_HELP)
             raise self._refuse(problem, None if problem.is_at_end else error) from None
         except (LookupError, ValueError) as error:
-            raise self._refuse(xml_errors.explain_encoding(error)) from None
+            raise self._refuse(explain_encoding(error)) from None
         assert self._root is not None  # noqa: S101 - a file without an element is a syntax error
         return self._root
 
-    def _refuse(self, problem: xml_errors.XmlProblem, error: expat.ExpatError | None = None) -> ForeignFileError:
+    def _refuse(self, problem: XmlProblem, error: expat.ExpatError | None = None) -> ForeignFileError:
         line = error.lineno if error else self._parser.CurrentLineNumber
         column = (error.offset if error else self._parser.CurrentColumnNumber) + 1
         return ForeignFileError(problem.message, Span(self._file, line, column, line, column + 1), problem.help_line)
 
     def _refuse_doctype(self, *_: object) -> None:
         words = "it declares a document type or entities, which archgen does not follow"
-        raise self._refuse(xml_errors.XmlProblem(words, "models need neither: take out the `<!DOCTYPE ...>`"))
+        raise self._refuse(XmlProblem(words, "models need neither: take out the `<!DOCTYPE ...>`"))
 
     def _start(self, name: str, attributes: dict[str, str]) -> None:
         namespaces = self._open[-1][1] if self._open else _NO_NAMESPACES
@@ -121,11 +121,11 @@ class _TreeBuilder:
             self._root = element
         if len(self._open) >= MAX_DEPTH:
             words = f"its elements nest deeper than {MAX_DEPTH}"
-            raise self._refuse(xml_errors.XmlProblem(words, "no model does: export it again"))
+            raise self._refuse(XmlProblem(words, "no model does: export it again"))
         self._count += 1
         if self._count > MAX_ELEMENTS:
             words = f"it has more than {MAX_ELEMENTS:,} elements"
-            raise self._refuse(xml_errors.XmlProblem(words, "export the model in parts"))
+            raise self._refuse(XmlProblem(words, "export the model in parts"))
         self._open.append((element, namespaces, []))
 
     def _add_text(self, text: str) -> None:
@@ -140,3 +140,42 @@ class _TreeBuilder:
 
 def _declares_namespace(attribute: str) -> bool:
     return attribute == "xmlns" or attribute.startswith("xmlns:")
+
+
+_ENCODING_HELP = "save it as UTF-8, and let its first line say so"
+_WRONG_ENCODINGS = frozenset({expat.errors.XML_ERROR_UNKNOWN_ENCODING, expat.errors.XML_ERROR_INCORRECT_ENCODING})
+_UNENDED = frozenset(
+    {
+        expat.errors.XML_ERROR_NO_ELEMENTS,
+        expat.errors.XML_ERROR_UNCLOSED_TOKEN,
+        expat.errors.XML_ERROR_PARTIAL_CHAR,
+        expat.errors.XML_ERROR_UNCLOSED_CDATA_SECTION,
+    }
+)
+
+
+@dataclass(frozen=True, slots=True)
+class XmlProblem:
+    """Why a file is not read, and what to do."""
+
+    message: str
+    help_line: str
+    is_at_end: bool = False
+    """Whether it shows at the place that the parser has come to, rather than at the error's own."""
+
+
+def explain_syntax(error: expat.ExpatError, *, is_root_seen: bool, malformed_help: str) -> XmlProblem:
+    """Explain what is wrong with the text of a file; `malformed_help` says what to do where it is no XML."""
+    message = expat.ErrorString(error.code)
+    if message in _UNENDED:
+        words = "only the first part of a file is there: it ends before its elements do"
+        words = words if is_root_seen else "it is empty, or no XML: there is no element in it"
+        return XmlProblem(words, "export it again, or copy it again as a whole", is_at_end=True)
+    if message in _WRONG_ENCODINGS:
+        return XmlProblem(f"its encoding cannot be read ({message})", _ENCODING_HELP, is_at_end=True)
+    return XmlProblem(f"this is not XML as it should be ({message})", malformed_help)
+
+
+def explain_encoding(error: LookupError | ValueError) -> XmlProblem:
+    """Explain that Python, which expat asks, does not know the encoding of the file's first line."""
+    return XmlProblem(f"its encoding cannot be read ({error})", _ENCODING_HELP, is_at_end=True)

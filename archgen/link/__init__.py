@@ -2,24 +2,18 @@
 
 from __future__ import annotations
 
-from archgen.link import composition_rules, reference_rules, slice_merging
-from archgen.link.chapter_pictures import MISSING_PICTURE
-from archgen.link.data_types import type_rules
+from archgen.link import linking_rules, slice_merging
 from archgen.link.declare.frame_declaration import DUPLICATE_FRAME
 from archgen.link.hint_checks import WRONG_HINT
 from archgen.link.named_files import MISSING_FILE
-from archgen.link.parameter_file_search import MISSING_PARAMETER_FILE
+from archgen.link.node_parameter_files import MISSING_PARAMETER_FILE
 from archgen.link.project_linking import link_project
-from archgen.link.report_chapters import MISSING_CHAPTER
-from archgen.link.variants import variant_rules
+from archgen.link.report_chapters import MISSING_CHAPTER, MISSING_PICTURE
 from archgen.link.verification_files import MISSING_VERIFICATION
 
 RULES = (
     *slice_merging.RULES,
-    *reference_rules.RULES,
-    *composition_rules.RULES,
-    *type_rules.RULES,
-    *variant_rules.RULES,
+    *linking_rules.RULES,
     DUPLICATE_FRAME,
     MISSING_CHAPTER,
     MISSING_PICTURE,

@@ -15,10 +15,8 @@ from typing import NamedTuple
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import find_closest
-from archgen.link.data_types.field_types import UNKNOWN_FIELD_TYPE
-from archgen.link.data_types.generic_types import TypeMention
-from archgen.link.data_types.message_definitions import TypeDefinition
-from archgen.link.data_types.message_names import CONFLICTING_MESSAGE
+from archgen.link.data_types.field_types import UNKNOWN_FIELD_TYPE, TypeMention
+from archgen.link.data_types.message_definitions import CONFLICTING_MESSAGE, TypeDefinition
 from archgen.link.shipped_interfaces import LazyInterfaces, list_answering_distros, load_shipped_interfaces
 from archgen.model.graph_search import find_rings
 from archgen.model.known_interfaces import Interface, Interfaces

@@ -1,17 +1,19 @@
-"""What a parameter file says to which node: files of ROS 2 by node names with wildcards, files of ROS 1 by nesting."""
+"""What a parameter file says to which node: files of ROS 2 by node names with wildcards, files of ROS 1 by nesting.
+
+Nested parameters in YAML as values by their dotted names, each with its place.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 
 from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass
-from archgen.link.parameter_flattening import flatten_parameters
 from archgen.model.node import Node
-from archgen.model.parameter import FileRemark, ParameterValue
+from archgen.model.parameter import MAX_NAME_LENGTH, FileRemark, ParameterValue
 from archgen.syntax.yaml_parser import parse_yaml
-from archgen.syntax.yaml_tree import IgnoreComment, MappingNode, ScalarNode, YamlNode
+from archgen.syntax.yaml_tree import IgnoreComment, MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
 
 _VALUE_KEY = "ros__parameters"
 _TRUE_WORDS = frozenset({"yes", "Yes", "YES", "on", "On", "ON"})
@@ -212,3 +214,35 @@ def _find_mappings(root: MappingNode, name: tuple[str, ...]) -> list[MappingNode
             and key_parts == parts[: len(key_parts)]
         ]
     return mappings
+
+
+ScalarReader = Callable[[ScalarNode], object]
+
+
+def _read_plain(scalar: ScalarNode) -> object:
+    return scalar.value
+
+
+def flatten_parameters(mapping: MappingNode, read_scalar: ScalarReader = _read_plain) -> Iterator[ParameterValue]:
+    """Yield the values of nested parameters by their dotted names, as `ros2 param list` shows them.
+
+    A set without anything in it has no value. Where names become too long, all that is below is one value.
+    """
+    # A stack taken from its end, filled in reverse, so that values come in the order of the file.
+    pending: list[tuple[str, MappingEntry]] = [(entry.key, entry) for entry in mapping][::-1]
+    while pending:
+        name, entry = pending.pop()
+        node = entry.value
+        if isinstance(node, MappingNode) and len(name) <= MAX_NAME_LENGTH:
+            pending += [(f"{name}.{inner.key}", inner) for inner in reversed(list(node))]
+        else:
+            short_name = name[: MAX_NAME_LENGTH + 1]
+            yield ParameterValue(short_name, _read_value(node, read_scalar), node.span, entry.key_span)
+
+
+def _read_value(node: YamlNode, read_scalar: ScalarReader) -> object:
+    if isinstance(node, ScalarNode):
+        return read_scalar(node)
+    if isinstance(node, SequenceNode):
+        return [_read_value(item, read_scalar) for item in node.items]
+    return {entry.key: _read_value(entry.value, read_scalar) for entry in node}

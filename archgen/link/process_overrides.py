@@ -1,4 +1,7 @@
-"""Override how processes, hosts and resources run what is on them, without touching a file: `sensor_box.threads=2`."""
+"""Override how processes, hosts and resources run what is on them, without touching a file: `sensor_box.threads=2`.
+
+Read the values of overrides, and say what is wrong with them.
+"""
 
 from __future__ import annotations
 
@@ -10,8 +13,6 @@ from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.rule_options import parse_percentage
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.frozen import dataclass
-from archgen.link import override_values
-from archgen.link.override_values import OverrideError
 from archgen.model.architecture import Architecture
 from archgen.model.declared_timing import EXECUTOR_ORDERS, HOST_ORDERS, RESOURCE_ORDERS, FairScheduling
 from archgen.model.deployment import Container, Host
@@ -77,14 +78,14 @@ def _parse_value(  # noqa: PLR0913, PLR0917 - the parts of one override
     value: object | None
     if key == "callback_groups":
         components = architecture.nodes[element_id].implements
-        value = _find_members(components, override_values.split_list(text)) if part else None
+        value = _find_members(components, split_list(text)) if part else None
         expected = f"components of `{element_id}`, as in callback_groups.GROUP={components[0] if components else 'a'}"
     elif part and (section, key) != ("hosts", "scheduling"):
         value, expected = None, "a value of its own, without a part below it"
     elif key == "scheduling" and part.startswith("fair."):
         value, expected = _parse_fair_figure(part.removeprefix("fair."), text)
     elif key == "scheduling":
-        is_core = not part or override_values.parse_count(part) is not None
+        is_core = not part or parse_count(part) is not None
         value = text if text in _ORDERS[section] and is_core else None
         expected = ", ".join(_ORDERS[section]) + (", by host or by the number of a core" if section == "hosts" else "")
     elif key == "host":
@@ -93,8 +94,8 @@ def _parse_value(  # noqa: PLR0913, PLR0917 - the parts of one override
     elif key == "reentrant":
         value, expected = {"true": True, "false": False}.get(text), "true or false"
     else:
-        value, expected = override_values.parse_count(text) or None, "a whole number from 1"
-    return override_values.require_value(name, text, value, expected)
+        value, expected = parse_count(text) or None, "a whole number from 1"
+    return require_value(name, text, value, expected)
 
 
 def _parse_fair_figure(name: str, text: str) -> tuple[object | None, str]:
@@ -164,3 +165,38 @@ def _change_groups(node: Node, override: ProcessOverride) -> dict[str, Any]:
         and (remaining := tuple(component for component in members if component not in override.value))
     }
     return {"callback_groups": {**other_groups, override.part: override.value}, "reentrant": False}
+
+
+_MAX_COUNT_DIGITS = 9
+
+
+class OverrideError(ValueError):
+    """A figure cannot be overridden; the message says why."""
+
+
+def parse_count(text: str) -> int | None:
+    """Return a whole number, None for any other text."""
+    return int(text) if text.isascii() and text.isdigit() and len(text) <= _MAX_COUNT_DIGITS else None
+
+
+def parse_counts(text: str) -> tuple[int, ...] | None:
+    """Return a list of whole numbers in ascending order, each once; None for any other text."""
+    numbers = [parse_count(word) for word in split_list(text)]
+    return (
+        tuple(sorted({number for number in numbers if number is not None})) if numbers and None not in numbers else None
+    )
+
+
+def split_list(text: str) -> list[str]:
+    """Return the entries of a list as files have it; its brackets may be left out."""
+    inner = text[1:-1] if text.startswith("[") and text.endswith("]") else text
+    return [word.strip() for word in inner.split(",")] if inner.strip() else []
+
+
+def require_value(key: str, text: str, parsed_value: object | None, expected: str) -> object:
+    """Return a value that could be read. Raises `OverrideError` where it is None."""
+    if parsed_value is not None:
+        return parsed_value
+    digits_hint = "; that has too many digits" if sum(map(str.isdigit, text)) > _MAX_COUNT_DIGITS else ""
+    msg = f"`{key}` takes {expected}, not `{text}`{digits_hint}"
+    raise OverrideError(msg)

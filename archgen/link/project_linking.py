@@ -1,13 +1,22 @@
-"""Turn the merged project into the architecture: declare every element, resolve every reference."""
+"""Turn the merged project into the architecture: declare every element, resolve every reference.
+
+Link component types by themselves, as if each had one instance that says nothing of its own.
+
+What such an instance has is what the type says: a comparison holds the instances of a project against it.
+"""
 
 from __future__ import annotations
 
-from archgen.compose import ExpandedProject
+from collections.abc import Mapping
+
+from archgen.compose import ExpandedProject, expand_project, list_type_entries
+from archgen.compose.type_expressions import TypeExpression
+from archgen.compose.type_table import TypeTable
 from archgen.derivation.wire.remap_rules import apply_launch_names
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.link import mapping_values
-from archgen.link.declare import agreement_declaration, policy_declaration, property_declaration, section_declaration
+from archgen.link.declare import element_declaration, section_declaration
 from archgen.link.declare.component_nodes import declare_component_nodes
 from archgen.link.declare.component_type_declaration import declare_component_types
 from archgen.link.declare.element_declaration import declare_elements, declare_sections
@@ -15,18 +24,19 @@ from archgen.link.declare.frame_declaration import declare_frames
 from archgen.link.declare.group_declaration import declare_groups
 from archgen.link.declare.handed_parameters import HandedParameters
 from archgen.link.declare.node_declaration import NodeContext, declare_nodes, resolve_implements
+from archgen.link.declare.section_declaration import declare_variants
 from archgen.link.declare.type_declaration import DeclaredTypes
 from archgen.link.declare.use_case_declaration import declare_use_cases
-from archgen.link.declare.variant_declaration import declare_variants
-from archgen.link.element_outline import ElementOutline, diagnose_undeclared_inputs
+from archgen.link.element_outline import ElementOutline, build_outline, diagnose_undeclared_inputs
 from archgen.link.link_memory import LinkMemory
 from archgen.link.merged_timing import TimingMerger, find_shared_components
-from archgen.link.parameter_flattening import flatten_parameters
+from archgen.link.parameter_texts import flatten_parameters
 from archgen.link.reference_resolution import SECTIONS_OF_PLAIN_NAMES, ReferenceResolver
 from archgen.model.architecture import Architecture
+from archgen.model.component import PATTERN_GROUP, TypePatterns
 from archgen.model.deployment import Container
 from archgen.model.known_interfaces import Interfaces
-from archgen.syntax.yaml_tree import MappingNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
 
 def link_project(  # noqa: PLR0913 - all by name
@@ -84,9 +94,9 @@ def link_project(  # noqa: PLR0913 - all by name
     shell_entries = {shell.id: shell.entry for shell in element_outline.shells.values()}
     frames = declare_frames(root, {**element_outline.components, **shell_entries}, resolver, parameters)
     component_types = declare_component_types(expansion, resolver)
-    policies = policy_declaration.declare_policies(root, resolver)
+    policies = section_declaration.declare_policies(root, resolver)
     views = section_declaration.declare_views(root, resolver)
-    glossary = property_declaration.declare_glossary(root, diagnostics)
+    glossary = element_declaration.declare_glossary(root, diagnostics)
     suspected_ids = resolver.finish_resolving()
     architecture = Architecture(  # of values only: nothing below resolves a reference
         project=section_declaration.declare_project(root, default_id, default_title),
@@ -114,7 +124,7 @@ def link_project(  # noqa: PLR0913 - all by name
         chains=chains,
         views=views,
         policies=policies,
-        agreements=agreement_declaration.declare_agreements(root, resolver),
+        agreements=section_declaration.declare_agreements(root, resolver),
         variants=declare_variants(root),
         glossary=glossary,
         review=section_declaration.declare_review(root),
@@ -158,3 +168,56 @@ def make_resolver(  # noqa: PLR0913, PLR0917 - what a resolver knows
     return ReferenceResolver(
         spans, plain_spans, diagnostics, lost_keys, damaged_elements, make_index=make_index, all_names=all_names
     )
+
+
+_OUTER_SECTIONS = ("component_types", "libraries", "types", "ros", "project")
+"""What a type may refer to. Nodes, chains and the like are about instances."""
+
+
+def link_type_patterns(merged_table: MappingNode, architecture: Architecture) -> TypePatterns:
+    """Return what the component types of a project say, nothing for a project without any.
+
+    What is wrong in them was reported where the project was linked.
+    """
+    if not architecture.component_types:
+        return TypePatterns()
+    outer_entries = {name: entry for name, entry in merged_table.entries.items() if name in _OUTER_SECTIONS}
+    table = TypeTable(list_type_entries(merged_table), [])
+    type_bodies = {
+        name: table.get_body(TypeExpression(name, component_type.generic)) or MappingNode({}, component_type.at)
+        for name, component_type in architecture.component_types.items()
+    }
+    expansion = expand_project(_write_patterns(outer_entries, type_bodies))
+    patterns = _link_expansion(expansion, architecture)
+    components = {**patterns.components, **patterns.shells}
+    return TypePatterns(
+        {_drop_group(component_id): component for component_id, component in components.items()},
+        {node.implements[0]: node for node in patterns.nodes.values() if len(node.implements) == 1},
+    )
+
+
+def _write_patterns(outer_entries: Mapping[str, MappingEntry], type_bodies: Mapping[str, MappingNode]) -> MappingNode:
+    """Return a project of one group, which has a component for each type."""
+    components = {name: MappingEntry(name, body.span, body) for name, body in type_bodies.items()}
+    groups = _nest_mapping(_nest_mapping(MappingNode(components, NO_SPAN), "components"), PATTERN_GROUP)
+    return MappingNode({**outer_entries, **_nest_mapping(groups, "groups").entries}, NO_SPAN)
+
+
+def _nest_mapping(value: MappingNode, key: str) -> MappingNode:
+    return MappingNode({key: MappingEntry(key, NO_SPAN, value)}, NO_SPAN)
+
+
+def _link_expansion(expansion: ExpandedProject, architecture: Architecture) -> Architecture:
+    patterns, _ = link_project(
+        expansion,
+        build_outline(expansion),
+        default_id=architecture.project.id,
+        default_title=architecture.project.title,
+        declared_types=DeclaredTypes(architecture.types),
+        interfaces=architecture.interfaces,
+    )
+    return patterns
+
+
+def _drop_group(component_id: str) -> str:
+    return component_id.removeprefix(f"{PATTERN_GROUP}.")

@@ -16,7 +16,7 @@ from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
 _DIMENSIONS = {"rate": "frequency", "max_gap": "duration", "max_age": "duration"}
 _LIMIT = re.compile(
-    r"(?P<number>[-+]?(?:[0-9][0-9_]*\.?[0-9]*(?:[eE][-+]?[0-9]+)?|\.[0-9]+(?:[eE][-+]?[0-9]+)?|\.inf)) ?(?P<unit>\S*)\Z",
+    r"(?P<number>[-+]?(?>[0-9][0-9_]*\.?[0-9]*(?:[eE][-+]?[0-9]+)?|\.[0-9]+(?:[eE][-+]?[0-9]+)?|\.inf)) ?(?P<unit>\S*+)\Z",
     re.IGNORECASE,
 )
 _MAX_LENGTH = 400
@@ -113,17 +113,16 @@ def read_deprecation(holder: MappingNode, element_id: str, diagnostics: list[Dia
     if entry is None or not isinstance(entry.value, MappingNode):
         return None
     body = entry.value
-    until, until_at = mapping_values.get_text(body, "until"), mapping_values.get_span(body, "until")
+    until = mapping_values.get_text(body, "until")
     if until is not None and not _is_day(until):
         message = f"there is no day `{until}`"
         help_line = "a day is year, month and day, such as `2027-03-01`"
-        diagnostics.append(_diagnose_value(message, until_at, help_line, element_id))
+        diagnostics.append(_diagnose_value(message, mapping_values.get_span(body, "until"), help_line, element_id))
         until = None
     return Deprecation(
         until=until,
         use=mapping_values.get_text(body, "use"),
         at=entry.key_span,
-        until_at=until_at,
         use_at=mapping_values.get_span(body, "use"),
     )
 

@@ -1,23 +1,31 @@
-"""Read the report's chapters: which ones, in what order, the text of the project's own, and the pictures in them."""
+"""Read the report's chapters: which ones, in what order, the text of the project's own, and the pictures in them.
+
+Look for the pictures that the report's chapters show. Read what a project says of its report beside the chapters.
+
+Clean the SVG pictures that a project brings: nothing in them runs, and nothing is loaded from elsewhere.
+
+Opened on its own, an SVG is a document like a page: scripts in it run in the origin of the site that holds it.
+"""
 
 from __future__ import annotations
 
 import base64
 import binascii
 import posixpath
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import field
 from typing import NamedTuple
-from urllib.parse import unquote
+from urllib.parse import quote, unquote
 
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.frozen import dataclass
-from archgen.link.report_front import read_report_settings
-from archgen.link.svg_cleaning import clean_project_svg, is_svg
+from archgen.link import mapping_values
+from archgen.link.value_readers import read_values
 from archgen.model.document_chapters import GENERATED_CHAPTERS, Chapter
-from archgen.model.report_settings import ReportSettings
+from archgen.model.report_settings import HistoryEntry, ReportSettings
 from archgen.syntax.project_files import ProjectFiles, read_binary_file, read_text_file
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode
 
@@ -175,3 +183,128 @@ def _read_chapter(files: ProjectFiles, name: str, span: Span) -> tuple[str, Diag
         message = f"the chapter `{name}` cannot be read: {file_text.problem.message.removeprefix('the file cannot be read: ')}"
         return "", Diagnostic("missing-chapter", message, span, help=file_text.problem.help)
     return file_text.text, None
+
+
+_KEPT_DATA = {"image": ["png", "jpeg", "gif"]}
+_REFERENCE = re.compile(rb"""(\s)(?:xlink:)?href="(?!#|data:image/)[^"]*\"""")
+_STYLE_ADDRESS = re.compile(rb"""url\((?!\s*['"]?(?:#|data:image/))[^)]*\)""", re.IGNORECASE)
+
+
+def is_svg(data: bytes) -> bool:
+    """Whether bytes are markup, and no picture of pixels: a browser takes what begins with `<` for a document."""
+    return data[:4096].lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<")
+
+
+def clean_project_svg(data: bytes) -> bytes | None:
+    """Return the picture without scripts, handlers, foreign objects and outside addresses; None if it is no sound SVG."""
+    # Imported here: only projects that show an SVG need it. It knows the elements and attributes of SVG that are harmless.
+    from py_svg_hush import filter_svg
+
+    if b"<!ENTITY" in data:  # entities may name files, or grow without end; drawing programs write none that matter
+        return None
+    try:
+        harmless: bytes = filter_svg(data, keep_data_url_mime_types=_KEPT_DATA)
+    except ValueError:
+        return None
+    # Of foreign addresses it keeps the path (`https://a.org/b.png` becomes `/b.png`), and it keeps relative ones: they
+    # would be loaded from the site itself, or from the disk where the site is opened from there.
+    return _STYLE_ADDRESS.sub(b"url(#)", _REFERENCE.sub(rb"\1", harmless))
+
+
+def read_report_settings(root: MappingNode) -> ReportSettings:
+    """Read the section `report` of the merged project; what is of the wrong kind reads as not written."""
+    report = mapping_values.get_mapping(root, "report")
+    abbreviations = mapping_values.get_mapping(report, "abbreviations")
+    return ReportSettings(
+        **read_values("report", ReportSettings, report),
+        history=tuple(_list_versions(report)),
+        abbreviations=tuple(
+            (entry.key, entry.value.text)
+            for entry in abbreviations
+            if isinstance(entry.value, ScalarNode) and entry.value.value is not None
+        ),
+        lists=tuple(
+            name  # type: ignore[misc]
+            for name in dict.fromkeys(mapping_values.get_texts(report, "lists"))
+            if name in {"figures", "tables"}
+        ),
+    )
+
+
+def _list_versions(report: MappingNode) -> Iterator[HistoryEntry]:
+    node = report.get("history")
+    for item in node.items if isinstance(node, SequenceNode) else ():
+        if isinstance(item, MappingNode):
+            values = (mapping_values.get_text(item, key) or "" for key in ("version", "date", "author", "change"))
+            yield HistoryEntry(*values)
+
+
+MISSING_PICTURE = Rule(
+    "missing-picture",
+    Severity.WARNING,
+    "A chapter of the report shows a picture that is not there.",
+    # A chapter has no comments of YAML that could silence a line.
+    setting="rules: {missing-picture: note}  # off, note, warning or error",
+)
+_PLAIN_PICTURE = re.compile(r"""!\[[^\[\]]*\]\(([^\s()<>\\]+)(?:[ \t]+"[^"\n]*")?\)""")
+
+
+def find_missing_pictures(
+    chapters: ReportChapters, text_spans: Mapping[str, Span], sources: SourceTexts
+) -> Iterator[Diagnostic]:
+    """Report the pictures of chapters that the project does not hold; their texts join the sources, to be quoted.
+
+    `text_spans` are the places of the texts that a packed project holds itself, by chapter.
+    """
+    for path, chapter in chapters.texts.items():
+        if not _may_lack_picture(chapters, chapter.folder, chapter.text):
+            continue
+        absent: dict[str, ShownPicture] = {}
+        for picture in find_shown_pictures(chapter.text):
+            if _is_missing(chapters, chapter.folder, picture.path):
+                absent.setdefault(picture.path, picture)
+        file = posixpath.normpath(path)
+        if absent and path not in text_spans:
+            sources.add_text(file, chapter.text)
+        lines = chapter.text.splitlines()
+        for picture in absent.values():
+            span = text_spans.get(path) or _locate_picture(file, lines, picture)
+            yield _report_picture(chapters.files, path, chapter.folder, picture.path, span)
+
+
+def _may_lack_picture(chapters: ReportChapters, folder: str, text: str) -> bool:
+    """Tell whether a text may show a picture that is not there; reading it as Markdown takes longer than the rest of a check."""
+    paths = _PLAIN_PICTURE.findall(text)
+    return len(paths) != text.count("![") or any(_is_missing(chapters, folder, path) for path in paths)
+
+
+def _is_missing(chapters: ReportChapters, folder: str, name: str) -> bool:
+    path = posixpath.normpath(posixpath.join(folder, name))
+    return path not in chapters.packed_pictures and not (_is_inside(path) and chapters.files.has_path(path))
+
+
+def _is_inside(path: str) -> bool:
+    """Tell whether a normal path stays within the project's folder: outside nobody looks, not even whether it exists."""
+    return not path.startswith(("/", "../")) and path not in (".", "..") and "\\" not in path
+
+
+def _locate_picture(file: str, lines: list[str], picture: ShownPicture) -> Span:
+    """Return the place of a picture's path, or of the block that shows it where the path stands elsewhere."""
+    for number in range(picture.first_line, min(picture.end_line, len(lines) + 1)):
+        for written in (picture.path, quote(picture.path)):
+            place = re.search(rf"[(<]{re.escape(written)}", lines[number - 1])
+            if place:
+                return Span(file, number, place.start() + 2, number, place.end() + 1)
+    return Span(file, picture.first_line, 1, picture.first_line, 2)
+
+
+def _report_picture(files: ProjectFiles, chapter: str, folder: str, name: str, span: Span) -> Diagnostic:
+    path = posixpath.normpath(posixpath.join(folder, name))
+    message = f"the picture `{name}` of the chapter `{chapter}`"
+    if not _is_inside(path):
+        help_line = "copy it into the project; `/` parts the folders of a path"
+        return Diagnostic("missing-picture", f"{message} lies outside the project's folder", span, help=help_line)
+    parent, file_name = posixpath.split(path)
+    _, _, neighbours = next(iter(files.walk_folders(parent)), ("", [], []))
+    help_line = did_you_mean(file_name, neighbours) or "write its path from the chapter's folder"
+    return Diagnostic("missing-picture", f"{message} is not there", span, help=help_line)

@@ -13,9 +13,8 @@ from typing import Any, get_args
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.suggestions import NAMES_HELP, did_you_mean
 from archgen.frozen import dataclass
-from archgen.link import override_values, process_overrides
-from archgen.link.override_values import OverrideError
-from archgen.link.process_overrides import ProcessOverride
+from archgen.link import process_overrides
+from archgen.link.process_overrides import OverrideError, ProcessOverride
 from archgen.link.sanity_checks import drop_senseless
 from archgen.model.architecture import Architecture
 from archgen.model.declared_timing import (
@@ -184,15 +183,15 @@ def _parse_value(key: str, text: str) -> object:
         expected = f"a {dimension} such as {'120 ms' if dimension == _DURATION else '10 Hz'}"
         expected += f" (units: {' '.join(UNIT_FACTORS[dimension])})"
     elif key in _COUNT_KEYS:
-        parsed_value, expected = override_values.parse_count(text), "a whole number"
+        parsed_value, expected = process_overrides.parse_count(text), "a whole number"
     elif key == "cores":
-        parsed_value, expected = override_values.parse_counts(text), "whole numbers, such as 2, 3"
+        parsed_value, expected = process_overrides.parse_counts(text), "whole numbers, such as 2, 3"
     elif key == "trigger":
         parsed_value = Trigger(text) if text in {"any", "all"} else None  # type: ignore[arg-type]
         expected = "any or all"
     else:
         parsed_value, expected = text if text in _WORD_KEYS[key] else None, ", ".join(_WORD_KEYS[key])
-    return override_values.require_value(key, text, parsed_value, expected)
+    return process_overrides.require_value(key, text, parsed_value, expected)
 
 
 def _find_activities(architecture: Architecture, element: str) -> tuple[tuple[str, str], ...]:

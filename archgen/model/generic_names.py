@@ -47,4 +47,4 @@ def write_generic_name(name: str) -> str:
     """Return a name with its blanks as they are compared: none inside of brackets, one behind a comma."""
     if not read_generic_name(name).arguments:
         return name
-    return re.sub(r"\s*,\s*", ", ", re.sub(r"\s*([<>])(?!=[0-9])\s*", r"\1", name))
+    return re.sub(r"(?:(?<!\s)\s++)?+,\s*+", ", ", re.sub(r"(?:(?<!\s)\s++)?+([<>])(?!=[0-9])\s*+", r"\1", name))

@@ -15,7 +15,7 @@ from archgen.model.quantity import Quantity
 
 _FULL_NAME = re.compile(r"([a-zA-Z][a-zA-Z0-9_]*)/(msg|srv|action)/([A-Z][A-Za-z0-9_]*)\Z", re.ASCII)
 _SHORT_NAME = re.compile(r"([a-z][a-z0-9_]*)/([A-Z][A-Za-z0-9_]*)\Z", re.ASCII)
-_BRACKETS = re.compile(r"(?:\[[^\[\]]*\])+\Z")
+_BRACKETS = re.compile(r"(?<!\])(?:\[[^\[\]]*+\])++\Z")
 
 PART_KEYS = ("request", "response", "feedback")
 """The keys of a service's or action's type that name a type or hold fields, in the order of a definition."""

@@ -1,9 +1,14 @@
-"""The implementation level: ROS nodes, and the endpoints through which they use topics, services and actions."""
+"""The implementation level: ROS nodes, and the endpoints through which they use topics, services and actions.
+
+The QoS profiles of ROS 2's middleware interface, and their values.
+
+Source: rmw/include/rmw/qos_profiles.h, https://docs.ros.org/en/jazzy/Concepts/Intermediate/About-Quality-of-Service-Settings.html
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import field, replace
 from typing import Literal
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
@@ -267,3 +272,25 @@ class Topic:
     def is_known(self) -> bool:
         """Whether its name is known: else it stands for connections of the model alone."""
         return any(each.name is not None for each in (*self.writers, *self.readers))
+
+
+# What a profile does not set has the default of `Qos`, which is that of `default`.
+QOS_PROFILES: Mapping[str, Qos] = {
+    "default": Qos("default"),
+    "sensor_data": Qos("sensor_data", reliability="best_effort", depth=5),
+    "services": Qos("services"),
+    "parameters": Qos("parameters", depth=1000),
+    "parameter_events": Qos("parameter_events", depth=1000),
+    "system_default": Qos("system_default", depth=None),
+}
+
+
+def qos_profile(name: str, use: UseKind) -> Qos:
+    """Return the values of a profile for one side. An unknown profile counts as `default`.
+
+    `system_default` is the middleware's choice: DDS defaults to reliable for writers and best effort for readers.
+    """
+    qos = QOS_PROFILES.get(name, QOS_PROFILES["default"])
+    if name == "system_default" and use == "subscribes":
+        return replace(qos, reliability="best_effort")
+    return qos

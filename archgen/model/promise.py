@@ -52,7 +52,6 @@ class Deprecation:
     use: str | None = None
     target: str | None = None
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
-    until_at: Span = field(default=NO_SPAN, compare=False, repr=False)
     use_at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
     def is_past(self, day: str | None) -> bool:

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import field, replace
 from functools import cached_property
 
@@ -30,14 +30,10 @@ _MAX_GUESS_POOL = 100_000
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """The selected components and nodes by complete id: with a component its nodes, with a node its components.
-
-    `named_elements` are the elements that paths name, groups and outputs included, in the order of the words.
-    """
+    """The selected components and nodes by complete id: with a component its nodes, with a node its components."""
 
     components: frozenset[str] = frozenset()
     nodes: frozenset[str] = frozenset()
-    named_elements: tuple[ElementRef, ...] = ()
 
 
 def evaluate_selector(
@@ -83,8 +79,7 @@ class SelectorEvaluator:
             for node in nodes
             if not refused_components.isdisjoint(implements[node]) and components.isdisjoint(implements[node])
         }
-        elements = dict.fromkeys(name for hit in wanted_hits for name in hit.elements)
-        return Selection(components, nodes - orphaned_nodes, tuple(elements))
+        return Selection(components, nodes - orphaned_nodes)
 
     @cached_property
     def resolver(self) -> PathResolver:
@@ -141,13 +136,12 @@ class SelectorEvaluator:
             reached = find_reachable(self.node_graph.predecessors, hit.nodes, steps_before) | find_reachable(
                 self.node_graph.successors, hit.nodes, steps_after
             )
-            return SelectorHit(frozenset(), frozenset(reached), hit.elements, only_nodes=True)
+            return SelectorHit(frozenset(), frozenset(reached), only_nodes=True)
         full_hit = self._add_other_level(hit)
         upstream = find_reachable(self.component_graph.predecessors, full_hit.components, steps_before)
         return SelectorHit(
             full_hit.components.union(upstream, self._reach_downstream(full_hit, steps_after)),
             full_hit.nodes,
-            hit.elements,
         )
 
     def _reach_downstream(self, hit: SelectorHit, max_steps: int | None) -> dict[str, int]:
@@ -159,11 +153,10 @@ class SelectorEvaluator:
 
     def _find_ways(self, first_hit: SelectorHit, last_hit: SelectorHit) -> SelectorHit:
         """Return all ways from one hit to another: what is both downstream of the first and upstream of the last."""
-        elements = (*first_hit.elements, *last_hit.elements)
         if first_hit.only_nodes and last_hit.only_nodes:
             downstream = find_reachable(self.node_graph.successors, first_hit.nodes)
             way_elements = downstream.keys() & find_reachable(self.node_graph.predecessors, last_hit.nodes).keys()
-            hit = SelectorHit(frozenset(), frozenset(way_elements), elements, only_nodes=True)
+            hit = SelectorHit(frozenset(), frozenset(way_elements), only_nodes=True)
         else:
             first_hit, last_hit = self._add_other_level(first_hit), self._add_other_level(last_hit)
             upstream = find_reachable(self.component_graph.predecessors, last_hit.components).keys()
@@ -171,7 +164,7 @@ class SelectorEvaluator:
             # The components of outputs are no part of what the outputs feed, but where the way begins.
             if first_hit.outputs and way_elements:
                 way_elements |= first_hit.components
-            hit = SelectorHit(frozenset(way_elements), frozenset(), elements)
+            hit = SelectorHit(frozenset(way_elements), frozenset())
         return self._add_other_level(hit)
 
     def _add_other_level(self, hit: SelectorHit) -> SelectorHit:
@@ -179,9 +172,7 @@ class SelectorEvaluator:
         nodes = {node for component in hit.components for node in self.nodes_by_component.get(component, ())}
         crossing_nodes = hit.nodes if hit.includes_components else ()
         implemented_components = (c for node in crossing_nodes for c in self.architecture.nodes[node].implements)
-        return SelectorHit(
-            hit.components.union(implemented_components), hit.nodes | nodes, hit.elements, hit.outputs, hit.only_nodes
-        )
+        return SelectorHit(hit.components.union(implemented_components), hit.nodes | nodes, hit.outputs, hit.only_nodes)
 
     def _evaluate_atom(self, atom: SelectorAtom, problems: list[SelectorProblem]) -> SelectorHit:
         if atom.key is not None:
@@ -199,10 +190,10 @@ class SelectorEvaluator:
             path = atom.value.removesuffix(_ALL_BELOW)
             return self._evaluate_path(replace(atom, value=path, end=atom.end - len(_ALL_BELOW)), problems)
         if "*" in atom.value:
-            hit = self._hit_of_elements(self._match_pattern(atom.value))
-            if not hit.elements:
+            matched = self._match_pattern(atom.value)
+            if not matched:
                 problems.append(SelectorProblem(f"nothing fits `{atom.value}`", atom.start, atom.end, "warning"))
-            return hit
+            return self._hit_of_elements(matched)
         return self._evaluate_path(atom, problems)
 
     def find_by_variant(self, pattern: str) -> SelectorHit:
@@ -273,9 +264,8 @@ class SelectorEvaluator:
             if _matches_ending(path.split("."), pattern_parts)
         ]
 
-    def _hit_of_elements(self, named_elements: Iterable[ElementRef]) -> SelectorHit:
+    def _hit_of_elements(self, elements: Sequence[ElementRef]) -> SelectorHit:
         """Return the components and nodes of some elements; a group stands for all of its components."""
-        elements = tuple(named_elements)
         components = set[str]()
         for element in elements:
             if element.kind == "group":
@@ -291,7 +281,7 @@ class SelectorEvaluator:
         # `outputs` is set only if the word names nothing else, see `SelectorHit.outputs`.
         only_outputs = len(output_elements) == len(elements)
         return SelectorHit(
-            frozenset(components), nodes, elements, outputs if only_outputs else (), bool(nodes) and not components
+            frozenset(components), nodes, outputs if only_outputs else (), bool(nodes) and not components
         )
 
 

@@ -104,7 +104,7 @@ def _name_specialised(work: PassWork, generic_path: TreePath, expression: TypeEx
 
 def _make_id_words(type_name: str) -> str:
     """Return the words of a type's name as they stand in an id: `envelope_of_laser_pose` for `Envelope<Laser pose>`."""
-    spelled = re.sub(r"\S*/(?=[^/\s]*$)", "", type_name).replace("<", " of ").replace(",", " and ")
+    spelled = re.sub(r"(?<!\S)\S*/(?=[^/\s]*+$)", "", type_name).replace("<", " of ").replace(",", " and ")
     words = _WORD.findall(_WORD_BREAK.sub(" ", spell_in_ascii(spelled)).lower())
     return "_".join(words) or "type"
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from archgen.compose.type_table import OPERATION_PARTS
 from archgen.diagnostics.element_origins import TreePath
 from archgen.link import mapping_values
-from archgen.link.data_types.generic_types import bind_name, is_bound_name
+from archgen.link.data_types.field_types import bind_name, is_bound_name
 from archgen.model.generic_names import read_generic_name
 from archgen.model.message_types import PART_KEYS
 from archgen.passes.pass_shape import PassWork

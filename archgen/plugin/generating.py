@@ -10,6 +10,9 @@ from archgen.bringup.program_names import (
     name_plugin,
 )
 from archgen.model.code_names import (
+    AADL_KEYWORDS,
+    CPP_KEYWORDS,
+    PYTHON_KEYWORDS,
     list_name_words,
     make_camel_name,
     make_identifier_in,
@@ -18,7 +21,6 @@ from archgen.model.code_names import (
     make_snake_name,
 )
 from archgen.model.element_ids import make_id, spell_in_ascii
-from archgen.model.language_keywords import AADL_KEYWORDS, CPP_KEYWORDS, PYTHON_KEYWORDS
 from archgen.model.path_resolver import title_from_id
 from archgen.views.generation.class_words import find_type_words
 from archgen.views.generation.component_records import SetParameter, list_set_parameters, read_own_hints

@@ -1,10 +1,15 @@
 """What archgen knows of ROS: distributions, messages and interface files, names, files of parameters."""
 
 from archgen.derivation.wire.name_expansion import expand_name, find_name_fault, find_node_name_fault
-from archgen.link.data_types.message_names import spell_message_name
+from archgen.link.data_types.message_definitions import spell_message_name
 from archgen.link.interface_sources import load_interfaces
-from archgen.link.parameter_flattening import flatten_parameters
-from archgen.link.parameter_texts import ParameterSection, ParameterText, matches_node_name, read_parameter_text
+from archgen.link.parameter_texts import (
+    ParameterSection,
+    ParameterText,
+    flatten_parameters,
+    matches_node_name,
+    read_parameter_text,
+)
 from archgen.link.shipped_interfaces import load_shipped_interfaces
 from archgen.model.common_callbacks import is_common_callback
 from archgen.model.known_interfaces import KNOWN_DISTROS, Interface, InterfaceConstant, InterfaceField

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from archgen.compare import ArchitectureVersion
 from archgen.diagnostics.rule_options import format_percentage
-from archgen.link.type_pattern_linking import link_type_patterns
+from archgen.link.project_linking import link_type_patterns
 from archgen.pipeline import CheckedProject
 from archgen.syntax.yaml_tree import MappingNode
 

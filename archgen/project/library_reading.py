@@ -15,8 +15,7 @@ from archgen.project.project_search import PROJECT_FILE
 from archgen.project.reading_state import ReadingState
 from archgen.project.shipped_library import SHIPPED_PATH, choose_distro, list_shipping_distros, read_shipped_document
 from archgen.project.source_reading import read_library_slices
-from archgen.syntax.library_files import LibraryFiles
-from archgen.syntax.project_files import FileRefusal, ProjectFiles
+from archgen.syntax.project_files import FileRefusal, LibraryFiles, ProjectFiles
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlDocument
 
 LIBRARY_SECTIONS = ("component_types", "types")

@@ -240,7 +240,8 @@ def _looks_like_slice(parsed_slice: Slice, known_sections: frozenset[str]) -> bo
     """Whether a file that cannot be parsed was meant as a slice: a line begins a section, or its text is unknown."""
     return (
         not parsed_slice.text
-        or re.search(rf"^\W*(?:{'|'.join(sorted(known_sections))})\W*:", parsed_slice.text, re.MULTILINE) is not None
+        or re.search(rf"^[^\w\n]*+(?:{'|'.join(sorted(known_sections))})[^\w\n]*+:", parsed_slice.text, re.MULTILINE)
+        is not None
     )
 
 

@@ -11,7 +11,7 @@ from archgen.schema.language_schema import resolve_part
 _ID = re.compile(r"[A-Za-z/~][A-Za-z0-9._/~-]*\Z", re.ASCII)
 """An id or the name of a topic."""
 _LOWER_PATH = re.compile(r"[a-z][a-z0-9_.]*\Z")
-_SEPARATOR = re.compile(r"\s*[,;]\s*|\s*->\s*|\s+and\s+|\s+&\s+")
+_SEPARATOR = re.compile(r"(?:(?<!\s)\s++)?+(?:[,;]|->)\s*+|(?<!\s)\s++(?:and|&)\s++")
 _UNQUOTED_TEXT = re.compile(r"[A-Za-z0-9_/][\w ./@+-]*\Z", re.ASCII)
 _RANGE = re.compile(r"(\d{1,4})\s*(?:-|\.\.\.?)\s*(\d{1,4})\Z", re.ASCII)
 _ENDS = re.compile(r"([+-]?\d+(?:\.\d+)?)\s*(?:-|\.\.\.?|,|;|to)\s*([+-]?\d+(?:\.\d+)?)\Z", re.ASCII)

@@ -8,7 +8,7 @@ from typing import Any
 from archgen.model import quantity
 
 # A sign, digits with a point or a comma, and whatever follows them as the unit.
-_QUANTITY_PATTERN = re.compile(r"\s*([-+]?)\s*([0-9]+(?:[.,][0-9]+)?)\s*(\S*)\s*\Z", re.ASCII)
+_QUANTITY_PATTERN = re.compile(r"\s*+([-+]?)\s*+([0-9]++(?:[.,][0-9]++)?)\s*+(\S*+)\s*+\Z", re.ASCII)
 
 
 _UNIT_SPELLINGS = {

@@ -10,7 +10,7 @@ from typing import Any
 from archgen.diagnostics.safe_text import make_visible
 from archgen.emit.data import timing_json
 from archgen.emit.site.html_text import shorten_figures
-from archgen.link.override_values import OverrideError
+from archgen.link.process_overrides import OverrideError
 from archgen.link.timing_overrides import apply_overrides
 from archgen.model.declared_timing import Timing
 from archgen.serve.project_state import ProjectState

@@ -15,8 +15,14 @@ from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.frozen import dataclass
 from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField
-from archgen.syntax.interface_literals import explain_bad_default, explain_bad_literal
-from archgen.syntax.interface_types import FieldType, TypeComplaint, list_literal_types, read_field_type
+from archgen.syntax.interface_literals import (
+    FieldType,
+    TypeComplaint,
+    explain_bad_default,
+    explain_bad_literal,
+    list_literal_types,
+    read_field_type,
+)
 
 INVALID_INTERFACE = "invalid-interface"
 RULES = (

@@ -2,13 +2,18 @@
 
 A project lies in a folder on disk (`FolderFiles`), in a commit of git (`CommittedFiles`), or in either with some files
 replaced (`OverlaidFiles`).
+
+The files of a library, by their paths from the folder of the project that names it. A project's files of which each is
+read once: its variants name the same interfaces, chapters and parameters.
+
+A project's files with some contents replaced, so that what is about to be written can be checked before it is.
 """
 
 from __future__ import annotations
 
 import posixpath
-from collections.abc import Iterator
-from pathlib import Path
+from collections.abc import Iterator, Mapping
+from pathlib import Path, PurePosixPath
 from typing import NamedTuple, Protocol
 
 from archgen.diagnostics.diagnostic import Diagnostic
@@ -154,3 +159,184 @@ def find_place_refusal(own_folder: str, path: str, *, has_repository: bool = Tru
         inner_path = target.removeprefix(f"{own_folder}/")
         return FileRefusal("this leads out of the project's folder and back into it", f"write `{inner_path}`")
     return None
+
+
+_MAX_KEPT_BYTES = 256 * 1024
+"""A larger file, such as a picture, is read again: there are few of them, and memory is for the model."""
+
+
+class RememberedFiles:
+    """The files of a project as they were when each was read first. Implements `ProjectFiles`."""
+
+    def __init__(self, files: ProjectFiles) -> None:
+        """Remember nothing yet."""
+        self._files = files
+        self._contents: dict[str, bytes | FileRefusal] = {}
+
+    @property
+    def root(self) -> Path:
+        """The project's folder."""
+        return self._files.root
+
+    @property
+    def commit(self) -> str:
+        """The hash of the commit that holds the files; empty for files on disk."""
+        return self._files.commit
+
+    def has_path(self, path: str) -> bool:
+        """Whether there is anything at a path."""
+        return self._files.has_path(path)
+
+    def is_behind_link(self, path: str) -> bool:
+        """Whether a path leads to a file through a symbolic link."""
+        return self._files.is_behind_link(path)
+
+    def walk_folders(self, top: str) -> Iterator[tuple[str, list[str], list[str]]]:
+        """Walk down from a folder; callers may remove folders from the list to skip them."""
+        return self._files.walk_folders(top)
+
+    def fetch_bytes(self, path: str) -> bytes | FileRefusal:
+        """Return a file's bytes, or why it cannot be used."""
+        content = self._contents.get(path)
+        if content is None:
+            content = self._files.fetch_bytes(path)
+            if isinstance(content, FileRefusal) or len(content) <= _MAX_KEPT_BYTES:
+                self._contents[path] = content
+        return content
+
+    def open_folder(self, path: str) -> ProjectFiles | FileRefusal:
+        """Return the files of another folder of the repository, or why they cannot be used."""
+        return self._files.open_folder(path)
+
+
+@dataclass(frozen=True, slots=True)
+class LibraryFiles:
+    """The files of another folder by paths such as `../common/laser.yaml`. Implements `ProjectFiles`.
+
+    So a finding in a library names its file as people at the project would. `folder` is in its shortest form.
+    """
+
+    folder: str
+    folder_files: ProjectFiles
+
+    @property
+    def root(self) -> Path:
+        """The library's folder."""
+        return self.folder_files.root
+
+    @property
+    def commit(self) -> str:
+        """The full hash of the commit that holds the files; empty for files on disk."""
+        return self.folder_files.commit
+
+    def has_path(self, path: str) -> bool:
+        """Whether there is anything at a path, even a broken link."""
+        return self.folder_files.has_path(self._to_inner(path))
+
+    def is_behind_link(self, path: str) -> bool:
+        """Whether a path leads to a file through a symbolic link."""
+        return self.folder_files.is_behind_link(self._to_inner(path))
+
+    def walk_folders(self, top: str) -> Iterator[tuple[str, list[str], list[str]]]:
+        """Walk down from a folder, as the library's files do."""
+        return self.folder_files.walk_folders(self._to_inner(top))
+
+    def fetch_bytes(self, path: str) -> bytes | FileRefusal:
+        """Return a file's bytes, or why it cannot be used."""
+        return self.folder_files.fetch_bytes(self._to_inner(path))
+
+    def open_folder(self, path: str) -> ProjectFiles | FileRefusal:
+        """Return no files: a library has no libraries of its own."""
+        return FileRefusal(f"a library has no libraries of its own: `{path}`", "name it in the project")
+
+    def _to_inner(self, path: str) -> str:
+        return path.removeprefix(self.folder).removeprefix("/")
+
+
+_FolderNames = dict[str, tuple[set[str], set[str]]]
+"""The names of subfolders and of files, by folder."""
+
+
+@dataclass(frozen=True, slots=True)
+class OverlaidFiles:
+    """New contents by path, laid over the files of a project (`base_files` None: an empty folder).
+
+    Implements `ProjectFiles`.
+    """
+
+    root: Path
+    contents: Mapping[str, bytes]
+    base_files: ProjectFiles | None = None
+    commit: str = ""
+
+    def has_path(self, path: str) -> bool:
+        """Whether there is anything at a path."""
+        return path in self.contents or (self.base_files is not None and self.base_files.has_path(path))
+
+    def is_behind_link(self, path: str) -> bool:
+        """Whether a path of the base files leads to a file through a symbolic link."""
+        return path not in self.contents and self.base_files is not None and self.base_files.is_behind_link(path)
+
+    def walk_folders(self, top: str) -> Iterator[tuple[str, list[str], list[str]]]:
+        """Walk down from a folder, as the base files do: callers may remove folders from the list to skip them."""
+        overlay_folders = self._list_overlay_folders(top)
+        is_walked = False
+        for relative_folder, folders, file_names in (
+            self.base_files.walk_folders(top) if self.base_files is not None else ()
+        ):
+            is_walked = True
+            own_folders, own_names = overlay_folders.get(relative_folder, (set(), set()))
+            base_folders = frozenset(folders)
+            all_folders = [*folders, *sorted(own_folders - base_folders)]
+            yield relative_folder, all_folders, sorted({*file_names, *own_names})
+            # In place: what the caller skipped, the walk of the base files must skip as well.
+            folders[:] = [name for name in all_folders if name in base_folders]
+            for name in all_folders:
+                if name not in base_folders:
+                    yield from _walk_overlay(overlay_folders, _join_path(relative_folder, name))
+        if not is_walked and overlay_folders:
+            yield from _walk_overlay(overlay_folders, "")
+
+    def fetch_bytes(self, path: str) -> bytes | FileRefusal:
+        """Return a file's bytes, from the overlay where it has the file; the size limit holds for both."""
+        if path in self.contents:
+            data = self.contents[path]
+            return data if len(data) <= MAX_BYTES else TOO_LARGE
+        return (
+            self.base_files.fetch_bytes(path) if self.base_files is not None else FileRefusal("the file does not exist")
+        )
+
+    def open_folder(self, path: str) -> OverlaidFiles | FileRefusal:
+        """Return the files of another folder, with the contents of the overlay that lie in it."""
+        base_files = self.base_files.open_folder(path) if self.base_files is not None else NO_SUCH_FOLDER
+        if isinstance(base_files, FileRefusal):
+            return base_files
+        prefix = f"{posixpath.normpath(path)}/"
+        contents = {name.removeprefix(prefix): data for name, data in self.contents.items() if name.startswith(prefix)}
+        return OverlaidFiles(base_files.root, contents, base_files, self.commit)
+
+    def _list_overlay_folders(self, top: str) -> _FolderNames:
+        """Return the folders of the overlay below a folder, the empty ones between them included."""
+        folder_names: _FolderNames = {}
+        for path in self.contents:
+            if not top or (path != top and PurePosixPath(path).is_relative_to(top)):
+                folder, _, name = (path[len(top) + 1 :] if top else path).rpartition("/")
+                folder_names.setdefault(folder, (set(), set()))[1].add(name)
+                while folder:
+                    parent, _, folder_name = folder.rpartition("/")
+                    folder_names.setdefault(parent, (set(), set()))[0].add(folder_name)
+                    folder = parent
+        return folder_names
+
+
+def _walk_overlay(folder_names: _FolderNames, relative_folder: str) -> Iterator[tuple[str, list[str], list[str]]]:
+    """Walk down from a folder that only the overlay has."""
+    subfolders, names = folder_names[relative_folder]
+    folders = sorted(subfolders)
+    yield relative_folder, folders, sorted(names)
+    for name in folders:
+        yield from _walk_overlay(folder_names, _join_path(relative_folder, name))
+
+
+def _join_path(folder: str, name: str) -> str:
+    return f"{folder}/{name}" if folder else name

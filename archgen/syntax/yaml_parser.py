@@ -15,8 +15,16 @@ import yaml
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.syntax import yaml_comments, yaml_errors
-from archgen.syntax.plain_scalars import NON_TEXT_STARTS, resolve_scalar
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlDocument, copy_node
+from archgen.syntax.yaml_tree import (
+    NON_TEXT_STARTS,
+    MappingEntry,
+    MappingNode,
+    ScalarNode,
+    SequenceNode,
+    YamlDocument,
+    copy_node,
+    resolve_scalar,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable

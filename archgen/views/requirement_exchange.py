@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 
 from archgen.frozen import dataclass
-from archgen.model.requirement import Requirement
-from archgen.model.requirement_tree import walk_tree
+from archgen.model.requirement import Requirement, walk_tree
 from archgen.views.lookup import Lookup
 from archgen.views.requirement_servers import list_server_words
 from archgen.views.tables.requirement_tables import shown_requirements

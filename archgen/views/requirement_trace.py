@@ -7,7 +7,7 @@ from dataclasses import field
 
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
-from archgen.model.requirement_tree import add_above, add_wholes, index_parts
+from archgen.model.requirement import add_above, add_wholes, index_parts
 from archgen.views.shapes import Status
 
 

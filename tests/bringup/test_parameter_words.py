@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline
-from archgen.bringup.parameter_words import list_loading_options, list_ros_2_options
 from archgen.bringup.plan_shapes import RosLaunch, StartStep
+from archgen.bringup.start_commands import list_loading_options, list_ros_2_options
 from archgen.bringup.start_plan import make_start_plan, name_files
 from archgen.model.architecture import Architecture
 

@@ -19,7 +19,7 @@ from archgen.diagnostics.source_span import Span
 from archgen.model.architecture import Partner
 from archgen.model.review_settings import AcceptedChange, ReviewSettings
 from archgen.project.project_loading import load_from_files
-from archgen.syntax.overlaid_files import OverlaidFiles
+from archgen.syntax.project_files import OverlaidFiles
 
 TYPE = Change("changed", "output", "g.a.x", key="type")
 EMPTY = pipeline.judge_project(

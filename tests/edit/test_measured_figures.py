@@ -10,8 +10,7 @@ import pytest
 
 from archgen import pipeline
 from archgen.diagnostics.source_span import NO_SPAN
-from archgen.edit.measured_figures import FigureSorter, collect_times
-from archgen.edit.measured_slice import make_measured_slice
+from archgen.edit.measured_slice import FigureSorter, collect_times, make_measured_slice
 from archgen.model.quantity import Quantity
 from archgen.timing.chains.measured_comparison import Observation
 from tests.measured_project import PROJECT

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.edit.said_elsewhere import leave_out_said, list_said_values
-from archgen.edit.slice_update import read_slice_content
+from archgen.edit.earlier_import import leave_out_said, list_said_values, read_slice_content
 from archgen.project.slice_parsing import parse_slice
 from archgen.syntax.yaml_writer import write_yaml
 

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from archgen.edit import edit_proof, text_insertion
-from archgen.edit.new_element import NewElement
+from archgen.edit import edit_proof, element_edit
+from archgen.edit.edit_proof import NewElement
 from archgen.syntax import yaml_parser
 from archgen.syntax.yaml_tree import node_to_data
 
@@ -19,7 +19,7 @@ def inserted(text: str, path: tuple[str, ...] = PATH, element: NewElement = X) -
     """Give the first text that is proved."""
     return next(
         found
-        for found in text_insertion.propose_texts("a.yaml", text, path, element)
+        for found in element_edit.propose_texts("a.yaml", text, path, element)
         if edit_proof.adds_only_element(text, found, path, element)
     )
 
@@ -121,7 +121,7 @@ def test_a_block_text_at_the_end_keeps_its_blank_lines() -> None:
     ],
 )
 def test_what_is_refused(text: str, said: str) -> None:
-    with pytest.raises(text_insertion.CannotInsertError) as refused:
+    with pytest.raises(element_edit.CannotInsertError) as refused:
         inserted(text)
     assert str(refused.value) == said
 
@@ -129,9 +129,7 @@ def test_what_is_refused(text: str, said: str) -> None:
 def test_what_an_anchor_shares_would_change_elsewhere_and_is_not_proved() -> None:
     text = "groups:\n  g: &g\n    components:\n      a: A\n  h: *g\n"
     assert [
-        t
-        for t in text_insertion.propose_texts("a.yaml", text, PATH, X)
-        if edit_proof.adds_only_element(text, t, PATH, X)
+        t for t in element_edit.propose_texts("a.yaml", text, PATH, X) if edit_proof.adds_only_element(text, t, PATH, X)
     ] == []
 
 

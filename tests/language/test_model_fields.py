@@ -13,8 +13,7 @@ import pytest
 
 from archgen import pipeline
 from archgen.language.language_tables import KEYS, PLACED_KEYS, WORDS
-from archgen.link.declare.element_declaration import find_declarer
-from archgen.link.declare.key_declaration import DECLARERS
+from archgen.link.declare.element_declaration import DECLARERS, find_declarer
 from archgen.link.value_readers import VALUE_READERS, find_type, find_value_reader, list_held_keys
 from archgen.model.architecture import Architecture
 from archgen.model.component import PerformanceIndicator

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline
-from archgen.link.declare.agreement_declaration import declare_agreements
+from archgen.link.declare.section_declaration import declare_agreements
 
 ROBOT = """\
 archgen: 1

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from archgen.link.chapter_pictures import MISSING_PICTURE
+from archgen.link.report_chapters import MISSING_PICTURE
 from archgen.pipeline import check_project
 
 _PACKED = """\

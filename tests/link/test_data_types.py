@@ -9,9 +9,9 @@ import pytest
 
 from archgen import pipeline
 from archgen.checking.checked_packing import pack_checked_project
-from archgen.link.data_types import field_reading, generic_types, message_definitions, message_names, used_types
-from archgen.link.data_types.circular_fields import drop_circular_fields
+from archgen.link.data_types import field_reading, field_types, message_definitions, used_types
 from archgen.link.data_types.field_types import FieldTypeReader, TypeSources
+from archgen.link.declare.type_declaration import drop_circular_fields
 from archgen.model.known_interfaces import Interface
 from archgen.model.message_types import ConceptualType, DataField
 from archgen.pipeline import CheckedProject
@@ -303,14 +303,14 @@ def test_only_generic_types_are_bound() -> None:
         "Box": ConceptualType("Box", fields=(DataField("x", "T"),), generic=("T",)),
         "Plain": ConceptualType("Plain", fields=()),
     }
-    bound_type = generic_types.make_bound_type("Box<Plain>", types)
+    bound_type = field_types.make_bound_type("Box<Plain>", types)
     assert bound_type is not None
     assert bound_type.fields == (DataField("x", "Plain"),)
-    assert generic_types.make_bound_type("Plain<Box>", types) is None
-    assert generic_types.make_bound_type("Box<Plain, Plain>", types) is None
+    assert field_types.make_bound_type("Plain<Box>", types) is None
+    assert field_types.make_bound_type("Box<Plain, Plain>", types) is None
     assert used_types.add_used_types(types, ["Box<Plain>"], {}) == []
     assert list(types) == ["Box", "Plain", "Box<Plain>"]
-    assert message_names.defines_message(types["Box<Plain>"], types)
+    assert message_definitions.defines_message(types["Box<Plain>"], types)
     reader = FieldTypeReader(types, TypeSources("r", {}))
     maker = message_definitions.DefinitionMaker(types, reader, [])
     assert maker.make_definition(types["Plain"], types["Plain"].at).definition.interface.parts == ((),)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from archgen.link.element_files import find_element_files
+from archgen.checking.code_ownership import find_element_files
 from archgen.link.slice_merging import merge_documents
 from archgen.schema import normalise_document
 from archgen.syntax import yaml_parser

@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.link.hint_checks import WRONG_HINT
-from archgen.link.hint_schemas import list_hint_faults
+from archgen.link.hint_checks import WRONG_HINT, list_hint_faults
 from archgen.pipeline import check_project
 from archgen.syntax.yaml_parser import parse_yaml
 

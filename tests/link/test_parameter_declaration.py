@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.link.declare.parameter_declaration import fill_in_text, hand_in_value
+from archgen.link.declare.handed_parameters import fill_in_text, hand_in_value
 from archgen.model.parameter import Operation, Parameter, ParameterValue
 from archgen.pipeline import CheckedProject, check_project
 

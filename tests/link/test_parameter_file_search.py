@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.link.parameter_file_search import MISSING_PARAMETER_FILE
+from archgen.link.node_parameter_files import MISSING_PARAMETER_FILE
 from archgen.pipeline import check_project
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.link.declare.policy_declaration import declare_policies
+from archgen.link.declare.section_declaration import declare_policies
 from archgen.link.mapping_values import EMPTY_MAPPING
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.architecture import Architecture, SourceDemand

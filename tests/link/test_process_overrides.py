@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.link.override_values import OverrideError
+from archgen.link.process_overrides import OverrideError
 from archgen.link.timing_overrides import apply_overrides
 from archgen.model.architecture import Architecture
 from archgen.model.declared_timing import Timing

@@ -8,7 +8,7 @@ from decimal import Decimal
 import pytest
 
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.link.declare.property_declaration import fold_term
+from archgen.link.declare.element_declaration import fold_term
 from archgen.model.architecture import Architecture
 
 Linked = Callable[[str], tuple[Architecture, tuple[Diagnostic, ...]]]

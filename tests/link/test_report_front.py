@@ -6,7 +6,7 @@ from pathlib import Path
 
 from archgen import pipeline
 from archgen.checking.checked_packing import pack_checked_project
-from archgen.link import report_front
+from archgen.link import report_chapters
 from archgen.model.report_settings import HistoryEntry, ReportSettings
 from archgen.products.output_options import OutputOptions
 from archgen.products.product_inputs import ProductInputs
@@ -59,7 +59,7 @@ def _check(folder: Path, source: str = SOURCE) -> pipeline.CheckedProject:
 def test_everything_is_read(tmp_path: Path) -> None:
     checked = _check(tmp_path)
     assert [str(finding) for finding in checked.findings if finding.severity == "error"] == []
-    assert report_front.read_report_settings(checked.merged_table) == SETTINGS == checked.chapters.settings
+    assert report_chapters.read_report_settings(checked.merged_table) == SETTINGS == checked.chapters.settings
 
 
 def test_a_packed_project_keeps_it(tmp_path: Path) -> None:

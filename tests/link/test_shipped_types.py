@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from archgen.link.shipped_types import load_shipped_types
+from archgen.link.project_types import load_shipped_types
 
 
 def test_a_type_is_left_out_where_no_package_of_the_distribution_has_it() -> None:

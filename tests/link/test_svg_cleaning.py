@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.link.svg_cleaning import clean_project_svg, is_svg
+from archgen.link.report_chapters import clean_project_svg, is_svg
 from archgen.pipeline import check_project
 
 SVG = (

@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 
 from archgen.diagnostics.source_span import NO_SPAN
-from archgen.link.declare.element_declaration import declare_element, declare_sections
-from archgen.link.declare.key_declaration import read_link_ends
+from archgen.link.declare.element_declaration import declare_element, declare_sections, read_link_ends
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.link.value_readers import read_values
 from archgen.model.deployment import Container, Host, Link

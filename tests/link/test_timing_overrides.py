@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.link.override_values import OverrideError
+from archgen.link.process_overrides import OverrideError
 from archgen.link.timing_overrides import TimingOverride, apply_overrides, read_override
 from archgen.model.architecture import Architecture
 from archgen.model.declared_timing import Trigger

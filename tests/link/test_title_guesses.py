@@ -6,7 +6,7 @@ from collections.abc import Collection
 
 import pytest
 
-from archgen.link import title_guesses
+from archgen.checking import project_judging
 from archgen.pipeline import check_text
 
 _ROBOT = """\
@@ -61,7 +61,7 @@ def test_thousands_of_unknown_names_are_compared_with_few_titles(monkeypatch: py
     def count_candidates(_: str, candidates: Collection[str]) -> None:
         compared_counts.append(len(candidates))
 
-    monkeypatch.setattr(title_guesses, "find_closest", count_candidates)
+    monkeypatch.setattr(project_judging, "find_closest", count_candidates)
     components = "".join(f"      c{number}: {{inputs: {{i: nix{number}.o}}}}\n" for number in range(800))
     assert len(check_text(f"groups:\n  g:\n    components:\n{components}")) == 800
     assert 0 < sum(compared_counts) <= 300_000

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from archgen import pipeline
-from archgen.link.type_pattern_linking import link_type_patterns
-from archgen.model.component_type_patterns import TypePatterns
+from archgen.link.project_linking import link_type_patterns
+from archgen.model.component import TypePatterns
 from tests.compose.test_project_expansion import SHORT
 
 

@@ -11,7 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from archgen.model.code_names import (
+    CPP_KEYWORDS,
+    JAVA_KEYWORDS,
     MAX_NAME_LENGTH,
+    PYTHON_KEYWORDS,
     list_name_words,
     make_camel_name,
     make_identifier_in,
@@ -19,7 +22,6 @@ from archgen.model.code_names import (
     make_ros_name,
     make_snake_name,
 )
-from archgen.model.language_keywords import CPP_KEYWORDS, JAVA_KEYWORDS, PYTHON_KEYWORDS
 
 NAMES = (
     st.text()

@@ -18,8 +18,12 @@ from archgen.model.element_annotations import (
     order_values,
     read_figure,
 )
-from archgen.model.property_conditions import find_component_properties, find_node_properties, parse_property_condition
-from archgen.model.selector_keys import matches_wildcard
+from archgen.model.selector_keys import (
+    find_component_properties,
+    find_node_properties,
+    matches_wildcard,
+    parse_property_condition,
+)
 from tests.compare.test_element_kinds import SECTIONS
 from tests.language_samples import SCHEMA
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.bringup.ros_launches import describe_container_launch
+from archgen.bringup.start_commands import describe_container_launch
 from archgen.model.process_threads import find_container_threads
 from tests.timing.random_systems import architecture
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from archgen.model.qos_profiles import QOS_PROFILES, qos_profile
+from archgen.model.node import QOS_PROFILES, qos_profile
 from archgen.schema.language_schema import load_schema
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from archgen.model.requirement import Requirement
-from archgen.model.requirement_tree import (
+from archgen.model.requirement import (
+    Requirement,
     add_above,
     add_below,
     add_wholes,

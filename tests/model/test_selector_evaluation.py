@@ -7,7 +7,6 @@ from collections.abc import Callable
 import pytest
 
 from archgen.model.architecture import Architecture
-from archgen.model.path_resolver import ElementRef
 from archgen.model.selector_evaluation import evaluate_selector
 from archgen.model.selector_keys import matches_wildcard
 from tests.selector_cases import (
@@ -72,14 +71,6 @@ def test_findings_about_composed_components_select_what_they_are_about(
     selection, problems = evaluate_selector(text, derived(COMPOSED_ROBOT), COMPOSED_FINDINGS)
     assert problems == ()
     assert sorted(selection.components) == selected
-
-
-def test_what_paths_name(derived: Derived) -> None:
-    assert evaluate_selector("lidar sensing camera.image -planning", derived(ROBOT))[0].named_elements == (
-        ElementRef("component", "sensing.lidar"),
-        ElementRef("group", "sensing"),
-        ElementRef("output", "sensing.camera.image"),
-    )
 
 
 @pytest.mark.parametrize(

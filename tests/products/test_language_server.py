@@ -10,7 +10,7 @@ import pytest
 from archgen.pipeline import check_project
 from archgen.products.editor_schema_file import render_schema
 from archgen.products.editor_schema_marks import SCHEMA_FILE
-from archgen.start import project_plan, starter_slices
+from archgen.start import project_plan
 from archgen.start.start_answers import collect_answers
 from tests.products.language_server import LanguageServer, run_language_server
 from tests.running import RAMCIP, ROOT
@@ -216,7 +216,7 @@ def test_there_are_no_false_errors_in_the_examples(root: Path, tmp_path: Path) -
 
 def test_a_new_project_works_at_once_by_its_first_lines(tmp_path: Path) -> None:
     answers = collect_answers("robot", partners=["lab=The Laboratory"])
-    files = starter_slices.example_files(answers, has_other_yaml=False)
+    files = project_plan.example_files(answers, has_other_yaml=False)
     start = project_plan.plan_files(tmp_path, answers, files, project_plan.judge_files(files, "robot"))
     for path, data in start.files.items():
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from archgen.checking.linked_project import find_newest_day
 from archgen.pipeline import check_at_revision, check_project
-from archgen.project.commit_days import find_newest_day
 from tests.repositories import commit, repository
 
 ROBOT = """\

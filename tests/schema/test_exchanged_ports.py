@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from archgen.pipeline import check_text
-from archgen.schema.exchanged_ports import mend_exchanged_ports
+from archgen.schema.schema_validation import mend_exchanged_ports
 from archgen.syntax import yaml_parser
 from tests.schema.findings import find_mistakes
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from archgen.pipeline import check_text
-from archgen.schema.swallowed_components import find_swallowed_components
+from archgen.schema.schema_validation import find_swallowed_components
 from archgen.syntax import yaml_parser
 
 _GROUP = """\

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.start import project_plan, start_answers, starter_slices
+from archgen.start import project_plan, start_answers
 from archgen.start.start_answers import ForgeName, GroupAnswer, PartnerAnswer, StartAnswers
 
 ANSWERS = replace(
@@ -18,7 +18,7 @@ ANSWERS = replace(
 
 
 def _plan(folder: Path, answers: StartAnswers = ANSWERS) -> project_plan.ProjectPlan:
-    files = starter_slices.example_files(answers, has_other_yaml=False)
+    files = project_plan.example_files(answers, has_other_yaml=False)
     return project_plan.plan_files(folder, answers, files, project_plan.judge_files(files, "robot"))
 
 

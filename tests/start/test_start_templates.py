@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 from archgen.schema import validate_document
-from archgen.start import project_plan, start_answers, start_templates, starter_slices
+from archgen.start import project_plan, start_answers, start_templates
 from archgen.start.start_answers import GroupAnswer
 from archgen.syntax import yaml_parser
 
@@ -29,7 +29,7 @@ def test_the_example_flows_from_the_first_group_to_the_last(names: tuple[str, ..
         yaml.safe_load(data)["groups"][name]["components"] for name, data in zip(names, files.values(), strict=True)
     ]
     assert [len(each) for each in components] == [len(each) for each in kinds]
-    checked = project_plan.judge_files(starter_slices.example_files(answers, has_other_yaml=False), "robot")
+    checked = project_plan.judge_files(project_plan.example_files(answers, has_other_yaml=False), "robot")
     assert [finding for finding in checked.findings if finding.severity == "error"] == []
     assert len(checked.architecture.connections) == sum(map(len, kinds)) - 1
 

@@ -4,8 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.syntax.interface_literals import explain_bad_default, explain_bad_literal, integer_limits
-from archgen.syntax.interface_types import FieldType, read_field_type
+from archgen.syntax.interface_literals import (
+    FieldType,
+    explain_bad_default,
+    explain_bad_literal,
+    integer_limits,
+    read_field_type,
+)
 
 
 @pytest.mark.parametrize(

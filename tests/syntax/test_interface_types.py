@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.syntax.interface_types import FieldType, TypeComplaint, list_literal_types, read_field_type
+from archgen.syntax.interface_literals import FieldType, TypeComplaint, list_literal_types, read_field_type
 
 
 @pytest.mark.parametrize(

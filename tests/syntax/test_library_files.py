@@ -5,9 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from archgen.syntax.folder_files import FolderFiles
-from archgen.syntax.library_files import LibraryFiles
-from archgen.syntax.overlaid_files import OverlaidFiles
-from archgen.syntax.project_files import FileRefusal
+from archgen.syntax.project_files import FileRefusal, LibraryFiles, OverlaidFiles
 
 
 def test_paths_begin_at_the_project(tmp_path: Path) -> None:

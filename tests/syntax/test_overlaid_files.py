@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 
 from archgen.syntax.folder_files import FolderFiles
-from archgen.syntax.overlaid_files import OverlaidFiles
-from archgen.syntax.project_files import MAX_BYTES, TOO_LARGE, FileRefusal
+from archgen.syntax.project_files import MAX_BYTES, TOO_LARGE, FileRefusal, OverlaidFiles
 
 
 @pytest.fixture

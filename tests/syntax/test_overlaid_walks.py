@@ -6,7 +6,7 @@ from pathlib import Path
 
 from archgen.syntax.file_patterns import expand_pattern
 from archgen.syntax.folder_files import FolderFiles
-from archgen.syntax.overlaid_files import OverlaidFiles
+from archgen.syntax.project_files import OverlaidFiles
 
 
 def expand(root: Path, contents: dict[str, bytes], pattern: str = "**/*.yaml") -> tuple[str, ...]:

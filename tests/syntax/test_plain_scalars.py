@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from archgen.syntax.plain_scalars import NON_TEXT_STARTS, resolve_scalar
+from archgen.syntax.yaml_tree import NON_TEXT_STARTS, resolve_scalar
 
 
 @pytest.mark.parametrize(

@@ -8,8 +8,7 @@ import pytest
 
 from archgen.pipeline import check_project
 from archgen.syntax.folder_files import FolderFiles
-from archgen.syntax.project_files import FileRefusal
-from archgen.syntax.remembered_files import RememberedFiles
+from archgen.syntax.project_files import FileRefusal, RememberedFiles
 
 PROJECT = """archgen: 1
 ros: {distro: jazzy, interfaces: [msgs/Level.msg, demo_msgs/msg/Level.msg]}

@@ -1,6 +1,6 @@
 """Component types: what stands at the type, and what it says to its instances.
 
-The latter is read off patterns (`archgen/link/type_pattern_linking.py`): components as an instance would be that says nothing
+The latter is read off patterns (`archgen/link/project_linking.py`): components as an instance would be that says nothing
 of its own. What is said of a part has a colon: `components.arm.motor:timing.wcet`, `inputs.target:freshness`.
 """
 

@@ -9,7 +9,7 @@ from archgen.bringup.start_plan import resolve_conditions
 from archgen.compare.kinds.key_spec import ReadContext
 from archgen.compare.normal_values import freeze_value, parameter_leaves, unordered_values
 from archgen.frozen import replace
-from archgen.model.component_type_patterns import PATTERN_GROUP
+from archgen.model.component import PATTERN_GROUP
 from archgen.model.declared_timing import Timing
 from archgen.model.node import Node
 from archgen.model.start_up import StartTarget, StartUp

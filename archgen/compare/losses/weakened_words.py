@@ -16,8 +16,8 @@ from archgen.compare.losses.lost_connections import find_output_causes
 from archgen.compare.matched_ids import MatchedIds
 from archgen.model.architecture import Architecture
 from archgen.model.component import Output
+from archgen.model.component_nesting import list_relied_outputs
 from archgen.model.promise import Deprecation, Promise, format_range
-from archgen.model.relied_outputs import list_relied_outputs
 from archgen.model.review_settings import BreakCategory
 
 

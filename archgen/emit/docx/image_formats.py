@@ -20,7 +20,7 @@ _MIN_DPI, _MAX_DPI = 30.0, 2400.0
 _JPEG_FRAMES = frozenset({0xC0, 0xC1, 0xC2, 0xC3, 0xC5, 0xC6, 0xC7, 0xC9, 0xCA, 0xCB, 0xCD, 0xCE, 0xCF})
 """Markers of segments that hold the size."""
 _UNIT_POINTS = {"": 0.75, "px": 0.75, "pt": 1.0, "mm": 72 / 25.4, "cm": 72 / 2.54, "in": 72.0, "pc": 12.0}
-_LENGTH = re.compile(r"\s*([0-9]*\.?[0-9]+(?:e[0-9]+)?)\s*(px|pt|mm|cm|in|pc|)\s*\Z", re.IGNORECASE)
+_LENGTH = re.compile(r"\s*+((?:[0-9]*+\.)?[0-9]++(?:e[0-9]++)?)\s*+(px|pt|mm|cm|in|pc|)\s*+\Z", re.IGNORECASE)
 _MAX_SIDE = 1_000_000.0
 _DEFAULT_SIDES = (300.0, 150.0)
 """What browsers take for an SVG without a size."""

@@ -15,7 +15,7 @@ from lxml import etree
 from archgen.emit.docx.report_template import ReportTemplate
 from archgen.emit.docx.word_xml import NAMESPACES, clean_word_text
 
-_PLACEHOLDER = re.compile(r"\{\{\s*([^{}]{1,80}?)\s*\}\}")
+_PLACEHOLDER = re.compile(r"\{\{(?:\s++(?!\}\}))?+([^{}]{1,80}?)(?:(?<!\s)\s++)?+\}\}")
 _CONTENTS_MARK = "{{contents}}"
 _XML_SPACE = "{http://www.w3.org/XML/1998/namespace}space"
 

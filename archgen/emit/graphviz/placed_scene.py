@@ -27,7 +27,9 @@ them, those between are no wider than Inter, so that text stays in its box; Deja
 DOT_DEFAULTS = (
     f'node [fontname="{FONT_NAME}" fontsize="9" fontcolor="#1b2127"]; edge [fontname="{FONT_NAME}" fontsize="8"];'
 )
-_SPLINE_POINT = re.compile(r"(?P<mark>[se],)?(?P<x>-?[0-9.]+(?:e[-+]?[0-9]+)?),(?P<y>-?[0-9.]+(?:e[-+]?[0-9]+)?)")
+_SPLINE_POINT = re.compile(
+    r"(?P<mark>[se],)?(?<![0-9.])(?P<x>-?[0-9.]++(?:e[-+]?[0-9]++)?),(?P<y>-?[0-9.]++(?:e[-+]?[0-9]++)?)"
+)
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,8 +13,7 @@ from archgen.model.message_types import PART_KEYS, DataConstant, DataField
 from archgen.schema.quantity_wording import clip_text
 from archgen.schema.short_forms import fold_type_name
 from archgen.syntax.interface_definitions import INVALID_INTERFACE, explain_bad_name
-from archgen.syntax.interface_literals import STRING_TYPES, explain_bad_literal
-from archgen.syntax.interface_types import list_literal_types
+from archgen.syntax.interface_literals import STRING_TYPES, explain_bad_literal, list_literal_types
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
 
 

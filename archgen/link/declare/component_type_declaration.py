@@ -9,7 +9,7 @@ from archgen.compose import ExpandedProject
 from archgen.compose.library_types import library_of_type
 from archgen.compose.type_table import is_abstract, list_generic_names
 from archgen.link import mapping_values
-from archgen.link.declare.parameter_declaration import declare_parameters
+from archgen.link.declare.handed_parameters import declare_parameters
 from archgen.link.promise_reading import read_deprecation
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.link.value_readers import read_element, read_operations, read_values

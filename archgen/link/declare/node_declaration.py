@@ -1,4 +1,7 @@
-"""Declare ROS nodes: what was written about them, with the components and ports that they name."""
+"""Declare ROS nodes: what was written about them, with the components and ports that they name.
+
+Declare the callback groups of a node: which of its components exclude one another.
+"""
 
 from __future__ import annotations
 
@@ -7,25 +10,26 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
+from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
-from archgen.link import mapping_values
-from archgen.link.declare.callback_groups import EXECUTOR_KEYS, declare_callback_groups
+from archgen.link import mapping_values, sanity_checks
 from archgen.link.declare.component_nodes import ImplementingNodes
 from archgen.link.declare.start_declaration import declare_start, read_command
 from archgen.link.declare.timing_declaration import declare_timing
 from archgen.link.element_outline import ElementOutline
 from archgen.link.link_memory import LinkedNode, LinkMemory
 from archgen.link.merged_timing import TimingMerger
-from archgen.link.parameter_flattening import flatten_parameters
+from archgen.link.parameter_texts import flatten_parameters
+from archgen.link.path_guesses import take_path_end
 from archgen.link.port_resolution import PortResolver
 from archgen.link.reference_resolution import ReferenceResolver
+from archgen.link.unknown_references import diagnose_unknown_reference
 from archgen.link.value_readers import read_element, read_values
 from archgen.model.component import Component
 from archgen.model.deployment import Container
-from archgen.model.node import Node, PortUse, Qos, UseKind
+from archgen.model.node import Node, PortUse, Qos, UseKind, qos_profile
 from archgen.model.parameter import ParameterValue
-from archgen.model.qos_profiles import qos_profile
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode
 
 USE_KINDS: tuple[UseKind, ...] = ("publishes", "subscribes", "serves", "calls")
 # What a node publishes or serves is an output of its component, what it subscribes to or calls is an input.
@@ -223,3 +227,80 @@ def _read_qos(use: UseKind, use_body: MappingNode) -> Qos | None:
     values = read_values("qos", Qos, qos_body)
     base = qos_profile(mapping_values.get_text(qos_body, "profile") or "default", use)
     return replace(base, **values, written=True, at=mapping_values.get_span(use_body, "qos"))
+
+
+EXECUTOR_KEYS = ("threads", "scheduling", "callback_groups", "reentrant")
+"""The keys of a node that say how its callbacks are run."""
+
+
+def declare_callback_groups(
+    body: MappingNode, resolver: ReferenceResolver, node_id: str, implements: tuple[str, ...]
+) -> dict[str, tuple[str, ...]]:
+    """Return the components of each callback group, by the group's id.
+
+    What the node does not implement is left out and reported, and so is a component that is named again.
+    """
+    groups: dict[str, tuple[str, ...]] = {}
+    first_spans: dict[str, Span] = {}
+    groups_body = mapping_values.get_mapping(body, "callback_groups")
+    written_names = {scalar.text for scalar in mapping_values.get_scalars(body, "implements")}
+    is_complete = 0 < len(written_names) <= len(implements)
+    for entry in groups_body:
+        sanity_checks.report_empty_list(groups_body, entry.key, "component", node_id, resolver.diagnostics)
+        members: list[str] = []
+        for scalar in mapping_values.get_scalars(groups_body, entry.key):
+            component = _resolve_component(scalar, resolver, node_id, implements, is_complete=is_complete)
+            if component in first_spans:
+                resolver.diagnostics.append(_diagnose_second_group(scalar, first_spans[component], node_id))
+            elif component is not None:
+                first_spans[component] = scalar.span
+                members.append(component)
+        if members:
+            groups[entry.key] = tuple(members)
+    return groups
+
+
+def _resolve_component(
+    reference: ScalarNode,
+    resolver: ReferenceResolver,
+    node_id: str,
+    implements: tuple[str, ...],
+    *,
+    is_complete: bool,
+) -> str | None:
+    """Return the component of the node that a reference means: its id, or the end of it.
+
+    Where not all that the node implements is known (`is_complete`), it may be what is not.
+    """
+    matching = [name for name in implements if name == reference.text or name.endswith(f".{reference.text}")]
+    if len(matching) == 1:
+        return matching[0]
+    if matching:
+        resolver.diagnostics.append(
+            Diagnostic(
+                "ambiguous-reference",
+                f"`{reference.text}` can mean {' or '.join(f'`{name}`' for name in matching)}",
+                reference.span,
+                help=f"write `{matching[0]}`, for instance",
+                element=node_id,
+            )
+        )
+    elif is_complete and not resolver.is_lost(reference.text):
+        length = reference.text.count(".") + 1
+        guess = resolver.guesser.guess_name(reference.text, [take_path_end(name, length) for name in implements])
+        diagnostic = diagnose_unknown_reference(
+            reference, f"component of `{node_id}`", guess, NO_SPAN, node_id, known_names=implements
+        )
+        resolver.diagnostics.append(diagnostic)
+    return None
+
+
+def _diagnose_second_group(reference: ScalarNode, first_span: Span, node_id: str) -> Diagnostic:
+    return Diagnostic(
+        "conflicting-values",
+        f"`{reference.text}` is in two places of `callback_groups`",
+        reference.span,
+        labels=(Label(first_span, "named here"),),
+        help="a component is in one group: keep one of them",
+        element=node_id,
+    )

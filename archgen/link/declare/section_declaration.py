@@ -1,19 +1,28 @@
-"""Declare the sections of small elements: project, chains, views, review and so on."""
+"""Declare the sections of small elements: project, chains, views, review and so on.
+
+Declare the variants as they are written; `link/variants` says how the project stands in them. Declare policies: flows
+that the project forbids, sources that it asks for, and what it accepts all the same. Declare the agreements of
+partners: terms in words, and what was signed.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 
-from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics.source_span import Span
+from archgen.diagnostics.suggestions import did_you_mean
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.declare.element_declaration import declare_element
 from archgen.link.reference_resolution import ReferenceResolver
-from archgen.link.value_readers import read_values
-from archgen.model.architecture import Chain, ProjectInfo, View, Waypoint
+from archgen.link.value_readers import read_element, read_values
+from archgen.model.agreed_terms import Agreement, Signature
+from archgen.model.architecture import Chain, Policy, ProjectInfo, SourceDemand, View, Waypoint
 from archgen.model.path_resolver import ElementRef
 from archgen.model.review_settings import BREAK_CATEGORIES, AcceptedChange, BreakPolicy, ReviewSettings
 from archgen.model.source_repository import DEFAULT_BRANCH, SourceRepository
-from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode
+from archgen.model.variant import BASE_NAME, Variant, WrittenChange
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
 
 _WAYPOINT_KINDS = ("node", "component", "output")
 
@@ -111,3 +120,153 @@ def _read_policy(review: MappingNode) -> BreakPolicy | None:
     severities = {category: mapping_values.get_text(categories, category) for category in BREAK_CATEGORIES}
     written = {category: Severity(severity) for category, severity in severities.items() if severity is not None}
     return BreakPolicy(**written) if written else None
+
+
+def declare_agreements(root: MappingNode, resolver: ReferenceResolver) -> dict[str, Agreement]:
+    """Declare the agreements by id. One with nobody, with oneself, or that stands there in both orders is reported."""
+    agreements: dict[str, Agreement] = {}
+    for name, entry, body in mapping_values.iterate_elements(root, "agreements"):
+        signed = body.entries.get("signed")
+        agreement = Agreement(
+            name,
+            mapping_values.get_text_mapping(body, "terms"),
+            _read_texts_by_name(mapping_values.get_mapping(body, "interfaces")),
+            _read_signature(signed) if signed and isinstance(signed.value, MappingNode) else None,
+            entry.key_span,
+        )
+        if fault := _find_fault(agreement, root, agreements, resolver):
+            message, help_line = fault
+            resolver.diagnostics.append(
+                Diagnostic("unknown-reference", message, entry.key_span, help=help_line, element=name)
+            )
+        agreements[name] = agreement
+        _report_unknown_outputs(mapping_values.get_mapping(body, "interfaces"), name, resolver)
+    return agreements
+
+
+def _find_fault(
+    agreement: Agreement, root: MappingNode, agreements: dict[str, Agreement], resolver: ReferenceResolver
+) -> tuple[str, str] | None:
+    """Return what is wrong with the id of an agreement, and what to do about it."""
+    partners = mapping_values.get_mapping(root, "partners").entries
+    first, second = agreement.pair
+    unknown = next((each for each in (first, second) if each not in partners and not resolver.is_lost(each)), None)
+    if unknown:
+        return f"there is no partner `{unknown}`", did_you_mean(unknown, partners) or "partners stand below `partners`"
+    if first == second:
+        return f"`{agreement.id}` names one partner twice", "an agreement is between two partners"
+    if f"{second}-{first}" in agreements:
+        return f"`{agreement.id}` is `{second}-{first}` the other way round", "write all of it below one of them"
+    return None
+
+
+def _read_signature(entry: MappingEntry) -> Signature:
+    body = mapping_values.get_body(entry)
+    versions = mapping_values.get_mapping(body, "versions")
+    parts: list[tuple[tuple[str, ...], MappingNode]] = [((), body)]
+    parts += [((giver.key,), mapping_values.get_body(giver)) for giver in versions]
+    return Signature(
+        **read_values("signature", Signature, body),
+        by=mapping_values.get_text_mapping(body, "by"),
+        versions=_read_texts_by_name(versions),
+        at=entry.key_span,
+        places={(*path, each.key): each.key_span for path, mapping in parts for each in mapping},
+    )
+
+
+def _read_texts_by_name(mapping: MappingNode) -> dict[str, dict[str, str]]:
+    return {entry.key: dict(mapping_values.get_text_mapping(mapping, entry.key)) for entry in mapping}
+
+
+def _report_unknown_outputs(interfaces: MappingNode, name: str, resolver: ReferenceResolver) -> None:
+    """Report terms of outputs that there are not. Names of topics follow from the outputs: they are judged elsewhere."""
+    for entry in interfaces:
+        if entry.key.startswith("/") or entry.key in resolver.spans["output"] or resolver.is_lost(entry.key):
+            continue
+        guess = resolver.guesser.guess_name(entry.key, resolver.spans["output"])
+        help_line = f"did you mean `{guess}`?" if guess else "name an output by its complete id, or a topic: `/tf`"
+        message = f"no output named `{entry.key}`"
+        resolver.diagnostics.append(
+            Diagnostic("unknown-reference", message, entry.key_span, help=help_line, element=name)
+        )
+
+
+def declare_policies(root: MappingNode, resolver: ReferenceResolver) -> dict[str, Policy]:
+    """Declare the policies, except one that says neither whole, which merging has reported."""
+    policies_by_id: dict[str, Policy] = {}
+    for name, entry, body in mapping_values.iterate_elements(root, "policies"):
+        forbid = mapping_values.get_mapping(body, "forbid")
+        has_flow = forbid.get("from") is not None and forbid.get("to") is not None
+        demand = _declare_demand(mapping_values.get_mapping(body, "require"))
+        if not has_flow and demand is None:
+            continue
+        accepted, places = _resolve_accepted(body, resolver, name)
+        policies_by_id[name] = Policy(
+            **read_element("policy", Policy, entry, body),
+            forbid_from=(mapping_values.get_text(forbid, "from") or "") if has_flow else "",
+            forbid_to=(mapping_values.get_text(forbid, "to") or "") if has_flow else "",
+            require=demand,
+            accepted=accepted,
+            from_at=mapping_values.get_span(forbid, "from"),
+            to_at=mapping_values.get_span(forbid, "to"),
+            accepted_places=places,
+        )
+    return policies_by_id
+
+
+def _declare_demand(body: MappingNode) -> SourceDemand | None:
+    of, inputs_from = mapping_values.get_text(body, "of"), mapping_values.get_text(body, "inputs_from")
+    if of is None or inputs_from is None:
+        return None
+    return SourceDemand(
+        of,
+        inputs_from,
+        mapping_values.get_text(body, "guarded_by"),
+        mapping_values.get_span(body, "of"),
+        mapping_values.get_span(body, "inputs_from"),
+    )
+
+
+def _resolve_accepted(
+    body: MappingNode, resolver: ReferenceResolver, policy_id: str
+) -> tuple[dict[str, str], dict[str, Span]]:
+    """Return the reasons by the complete ids of inputs, and where these are written."""
+    reasons: dict[str, str] = {}
+    places: dict[str, Span] = {}
+    accepted = mapping_values.get_mapping(body, "accepted")
+    for entry in accepted:
+        reason = mapping_values.get_text(accepted, entry.key)
+        target = resolver.resolve_reference(ScalarNode(entry.key, entry.key, entry.key_span), ("input",), policy_id)
+        if target and reason is not None:
+            reasons[target.id] = reason
+            places[target.id] = entry.key_span
+    return reasons, places
+
+
+def declare_variants(root: MappingNode) -> dict[str, Variant]:
+    """Declare the variants, except one that takes the name of the project itself, which is reported."""
+    return {
+        name: Variant(
+            **read_element("variant", Variant, entry, body),
+            changes=tuple(_list_changes(mapping_values.get_mapping(body, "changes"), "")),
+        )
+        for name, entry, body in mapping_values.iterate_elements(root, "variants")
+        if name != BASE_NAME
+    }
+
+
+def _list_changes(node: YamlNode, path: str) -> Iterator[WrittenChange]:
+    """Yield what stands below a node, leaf by leaf; lists are leaves, and so is what is known to be empty."""
+    if isinstance(node, MappingNode) and node.entries:
+        for entry in node:
+            yield from _list_changes(entry.value, f"{path}.{entry.key}" if path else entry.key)
+    elif path:
+        yield WrittenChange(path, _write_leaf(node))
+
+
+def _write_leaf(node: YamlNode) -> str:
+    if isinstance(node, ScalarNode):
+        return node.text
+    if isinstance(node, MappingNode):
+        return "{" + ", ".join(f"{entry.key}: {_write_leaf(entry.value)}" for entry in node) + "}"
+    return "[" + ", ".join(_write_leaf(item) for item in node.items) + "]"

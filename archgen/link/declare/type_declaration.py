@@ -1,26 +1,36 @@
-"""Declare conceptual types: the project's own, and those that its ports use besides."""
+"""Declare conceptual types: the project's own, and those that its ports use besides.
+
+Find types that hold themselves by their fields. ROS refuses such messages: their size would have no end. Find the types
+that replace deprecated ones.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import chain
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import first_written_span
+from archgen.diagnostics.suggestions import find_closest
 from archgen.frozen import dataclass
 from archgen.link import mapping_values
-from archgen.link.data_types.circular_fields import drop_circular_fields
 from archgen.link.data_types.field_reading import TypeReading, read_type_content
-from archgen.link.data_types.field_types import FieldTypeReader, TypeSources
-from archgen.link.data_types.generic_types import TypeMention, find_unbound_names, list_held_names
-from archgen.link.data_types.message_definitions import DefinitionMaker, TypeDefinition
-from archgen.link.data_types.message_names import name_messages
-from archgen.link.data_types.type_replacements import name_replacements
+from archgen.link.data_types.field_types import (
+    FieldTypeReader,
+    TypeMention,
+    TypeSources,
+    find_unbound_names,
+    is_bound_name,
+    list_held_names,
+)
+from archgen.link.data_types.message_definitions import DefinitionMaker, TypeDefinition, name_messages
 from archgen.link.data_types.used_types import OversizedType, add_used_types
 from archgen.link.element_outline import ElementOutline
 from archgen.link.promise_reading import read_deprecation
 from archgen.link.value_readers import read_values
-from archgen.model.message_types import PART_KEYS, ConceptualType, full_message_name
+from archgen.model.graph_search import find_rings
+from archgen.model.message_types import PART_KEYS, ConceptualType, DataField, full_message_name
 from archgen.model.ros_distro import is_ros_1
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
@@ -179,3 +189,120 @@ def _diagnose_duplicate_type(second_type: ConceptualType, first_type: Conceptual
         help="keep one of them",
         element=second_type.name,
     )
+
+
+_MAX_GUESSES = 200
+
+
+def name_replacements(
+    types: dict[str, ConceptualType], sources: TypeSources, diagnostics: list[Diagnostic]
+) -> list[str]:
+    """Give deprecated types the names of those that replace them, and return these; report names that nothing has."""
+    found_names: list[str] = []
+    guesses_left = _MAX_GUESSES
+    for each in list(types.values()):
+        deprecated = each.deprecated
+        if deprecated is None or deprecated.use is None:
+            continue
+        name = mapping_values.normalise_type_name(deprecated.use)
+        if _is_known(name, types, sources):
+            types[each.name] = replace(each, deprecated=replace(deprecated, target=name))
+            found_names.append(name)
+        elif not sources.is_partial and name not in sources.lost_keys:
+            guess = find_closest(name, (other for other in types if other != each.name)) if guesses_left > 0 else None
+            guesses_left -= 1
+            diagnostics.append(
+                Diagnostic(
+                    "unknown-reference",
+                    f"no type named `{name}`",
+                    deprecated.use_at,
+                    help=f"did you mean `{guess}`?"
+                    if guess
+                    else f"declare it below `types`, as in `{name}: package/msg/Name`",
+                    element=each.name,
+                )
+            )
+    return found_names
+
+
+def _is_known(name: str, types: dict[str, ConceptualType], sources: TypeSources) -> bool:
+    return (
+        name in types
+        or name in sources.shipped_types
+        or full_message_name(name) is not None
+        or is_bound_name(name, types)
+    )
+
+
+_MAX_LABELS = 6
+"""So many of a circle's fields are shown."""
+
+
+def drop_circular_fields(types: dict[str, ConceptualType], diagnostics: list[Diagnostic]) -> None:
+    """Report circles of fields, and take the fields of which they consist out of the types.
+
+    What generic types stand for counts as held. So a type that grows (`Envelope<T>` holds `Envelope<Envelope<T>>`) is a
+    circle, and what is left has an end.
+    """
+    held_types = {
+        name: [held for _, field in each.list_fields() for held in _list_held_types(field, each, types)]
+        for name, each in types.items()
+    }
+    for ring in find_rings(held_types):
+        diagnostics.append(_diagnose_ring(ring, types))
+        members = frozenset(ring)
+        for name in ring:
+            types[name] = _drop_fields(types[name], members, types)
+
+
+def _list_held_types(field: DataField, holder: ConceptualType, types: Mapping[str, ConceptualType]) -> Iterator[str]:
+    for name in list_held_names(field.element_type, types):
+        if name in types and name not in holder.generic:
+            yield name
+
+
+def _drop_fields(
+    holder: ConceptualType, members: frozenset[str], types: Mapping[str, ConceptualType]
+) -> ConceptualType:
+    def keep_sound(fields: Sequence[DataField]) -> tuple[DataField, ...]:
+        return tuple(field for field in fields if members.isdisjoint(_list_held_types(field, holder, types)))
+
+    return replace(
+        holder,
+        fields=None if holder.fields is None else keep_sound(holder.fields),
+        part_fields={part: keep_sound(fields) for part, fields in holder.part_fields.items()},
+    )
+
+
+def _diagnose_ring(ring: Sequence[str], types: Mapping[str, ConceptualType]) -> Diagnostic:
+    members = frozenset(ring)
+    way = list(_walk_ring(ring[0], members, types))
+    (first_field, next_name), *others = way
+    detour = "" if next_name == ring[0] else f", through `{next_name}`"
+    labels = tuple(Label(field.type_at, f"which holds `{name}`") for field, name in others[:_MAX_LABELS])
+    return Diagnostic(
+        "circular-fields",
+        f"the type `{ring[0]}` holds itself{detour}",
+        first_field.type_at,
+        labels=labels,
+        help="name it by an id or an index, or take what both hold into a third type",
+        element=ring[0],
+    )
+
+
+def _walk_ring(
+    start: str, members: frozenset[str], types: Mapping[str, ConceptualType]
+) -> Iterator[tuple[DataField, str]]:
+    """Yield a way through the fields of a ring, from a member on to where it closes: back at it, or at one before."""
+    name, seen_names = start, set[str]()
+    while name not in seen_names:
+        seen_names.add(name)
+        held_types = {
+            held: field
+            for _, field in reversed(list(types[name].list_fields()))
+            for held in _list_held_types(field, types[name], types)
+            if held in members
+        }
+        # Straight back where that is possible; else the first field that stays in the ring.
+        name = start if start in held_types else next(reversed(held_types))
+        yield held_types[name], name

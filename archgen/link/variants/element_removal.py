@@ -15,7 +15,7 @@ from archgen.link.link_memory import LinkMemory
 from archgen.link.project_linking import make_resolver
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.link.source_references import SOURCE_KINDS, SourceReferences
-from archgen.link.variants.removed_elements import RemovedElements, find_idle_places, find_removed
+from archgen.link.variants.variant_selectors import RemovedElements, find_idle_places, find_removed
 from archgen.model.architecture import Architecture
 from archgen.model.path_resolver import ElementRef
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode

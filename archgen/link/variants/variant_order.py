@@ -8,7 +8,7 @@ from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.link import mapping_values
-from archgen.link.declare.variant_declaration import declare_variants
+from archgen.link.declare.section_declaration import declare_variants
 from archgen.model.variant import BASE_NAME, Variant
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.passes.patterns.pattern_shapes import Pattern, list_variables, parse_text_pattern
 
-_WORD = re.compile(r"""\s*(==|!=|[()\[\],]|"[^"]*"|'[^']*'|=|[^\s()\[\],="'!]+|\S)""")
+_WORD = re.compile(r"""(?:(?<!\s)\s++)?+(==|!=|[()\[\],]|"[^"]*"|'[^']*'|=|[^\s()\[\],="'!]+|\S)""")
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 _EXPRESSION_START = re.compile(r"""\s*(?:[A-Za-z_]+\(|[\["'])""")
 _QUOTES = ('"', "'")

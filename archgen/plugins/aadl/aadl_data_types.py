@@ -8,10 +8,9 @@ from typing import Any
 from archgen.plugins.aadl.aadl_tree import AadlLink, AadlList, AadlName
 from archgen.plugins.aadl.archgen_words import find_own_text
 from archgen.plugins.aadl.classifier_names import KnownClassifier, find_only_implementations
-from archgen.plugins.aadl.classifier_shapes import ClassifierUse, ResolvedClassifier
 from archgen.plugins.aadl.import_notes import NoteList
 from archgen.plugins.aadl.property_values import PropertyScope, UsedProperties, read_first_text, read_size, read_texts
-from archgen.plugins.aadl.resolved_classifiers import UNBOUND, ClassifierResolver
+from archgen.plugins.aadl.resolved_classifiers import UNBOUND, ClassifierResolver, ClassifierUse, ResolvedClassifier
 
 _ROS_PACKAGE = re.compile(r"[a-z][a-z0-9_]*_(?:msgs|srvs|interfaces|actions)\Z")
 _ROS_NAME = re.compile(r"[A-Z][A-Za-z0-9]*\Z")

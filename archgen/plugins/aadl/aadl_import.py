@@ -9,7 +9,6 @@ from typing import Any
 
 from archgen.plugin.importing import ForeignFileError, ForeignImport, Span, read_bounded
 from archgen.plugins.aadl.aadl_data_types import AadlDataTypes
-from archgen.plugins.aadl.aadl_tokens import MAX_TOKENS, AadlText, TooManyTokensError
 from archgen.plugins.aadl.archgen_words import find_own_text
 from archgen.plugins.aadl.chain_mapping import ChainMapper
 from archgen.plugins.aadl.classifier_names import ClassifierNames
@@ -24,6 +23,7 @@ from archgen.plugins.aadl.resolved_classifiers import ClassifierResolver
 from archgen.plugins.aadl.robot_groups import GroupBuilder
 from archgen.plugins.aadl.structures import ClassifierStructure, StructureFinder
 from archgen.plugins.aadl.system_walk import MAX_INSTANCES, NodeWriter, TooManyInstancesError, find_instances
+from archgen.plugins.aadl.token_cursor import MAX_TOKENS, AadlText, TooManyTokensError
 from archgen.plugins.aadl.untaken_notes import tell_untaken
 
 

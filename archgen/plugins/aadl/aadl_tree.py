@@ -19,7 +19,6 @@ class AadlNumber:
 
     value: Fraction
     unit: str = ""
-    is_real: bool = False
 
 
 @dataclass(slots=True)

@@ -7,8 +7,8 @@ import re
 from archgen.plugin.importing import make_id
 from archgen.plugin.model import MEDIUM_NAMES
 from archgen.plugins.aadl.aadl_tree import Path
-from archgen.plugins.aadl.classifier_shapes import ResolvedPart
 from archgen.plugins.aadl.property_values import PropertyScope, read_references
+from archgen.plugins.aadl.resolved_classifiers import ResolvedPart
 
 
 def name_bus_medium(part: ResolvedPart) -> str:

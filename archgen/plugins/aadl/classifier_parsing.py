@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from archgen.plugin.importing import Span
-from archgen.plugins.aadl.aadl_tokens import END
 from archgen.plugins.aadl.aadl_tree import AadlConnection, AadlFlow, Classifier, Path, Subcomponent
 from archgen.plugins.aadl.feature_parsing import (
     ACCESSES,
@@ -23,7 +22,7 @@ from archgen.plugins.aadl.property_parsing import (
     parse_property,
     parse_property_list,
 )
-from archgen.plugins.aadl.token_cursor import SECTION_WORDS, AadlSyntaxError, TokenCursor
+from archgen.plugins.aadl.token_cursor import END, SECTION_WORDS, AadlSyntaxError, TokenCursor
 
 # Those of AADL's first version, `data port` and such, are read too.
 _CONNECTION_KINDS = (*ACCESSES, "port", *PORTS, "parameter", "feature group", "port group", "feature")

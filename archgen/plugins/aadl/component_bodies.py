@@ -8,12 +8,11 @@ from typing import Any
 from archgen.plugins.aadl.aadl_tree import Path
 from archgen.plugins.aadl.archgen_words import find_own_text, read_component_words, read_port_words
 from archgen.plugins.aadl.bus_names import name_bus_medium, read_bound_path
-from archgen.plugins.aadl.classifier_shapes import ResolvedClassifier
 from archgen.plugins.aadl.element_hints import keep_sources, keep_structure, keep_thread
 from archgen.plugins.aadl.import_notes import NoteList
 from archgen.plugins.aadl.port_mapping import MappedPort
 from archgen.plugins.aadl.property_values import PropertyScope, read_count, read_first_text
-from archgen.plugins.aadl.resolved_classifiers import ClassifierResolver
+from archgen.plugins.aadl.resolved_classifiers import ClassifierResolver, ResolvedClassifier
 from archgen.plugins.aadl.structures import ClassifierStructure, StructuredPart, Wire
 from archgen.plugins.aadl.thread_timing import add_port_hints, add_trigger, find_role, fits_role, map_timing
 

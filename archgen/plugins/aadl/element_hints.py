@@ -6,9 +6,9 @@ from pathlib import Path as FilePath
 from typing import Any
 
 from archgen.plugins.aadl.aadl_tree import AadlConnection, AadlProperty, Path
-from archgen.plugins.aadl.classifier_shapes import ResolvedClassifier, ResolvedPart
 from archgen.plugins.aadl.import_notes import NoteList
 from archgen.plugins.aadl.property_values import PropertyScope, read_first_text, read_texts, read_time_range
+from archgen.plugins.aadl.resolved_classifiers import ResolvedClassifier, ResolvedPart
 from archgen.plugins.aadl.structures import ClassifierStructure
 
 

@@ -9,10 +9,9 @@ from archgen.plugins.aadl.aadl_tree import AadlProperty, Path
 from archgen.plugins.aadl.archgen_words import find_own_text
 from archgen.plugins.aadl.bus_names import read_bound_path
 from archgen.plugins.aadl.classifier_names import fold_property_name
-from archgen.plugins.aadl.classifier_shapes import ResolvedClassifier, ResolvedPart
 from archgen.plugins.aadl.import_notes import NoteList
 from archgen.plugins.aadl.property_values import PropertyScope, read_references
-from archgen.plugins.aadl.resolved_classifiers import ClassifierResolver
+from archgen.plugins.aadl.resolved_classifiers import ClassifierResolver, ResolvedClassifier, ResolvedPart
 from archgen.plugins.aadl.structures import HARDWARE_CATEGORIES, fold_part_path
 from archgen.plugins.aadl.system_walk import MAX_INSTANCES, TooManyInstancesError
 

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from archgen.plugin.importing import make_id, make_unique_id
 from archgen.plugins.aadl.classifier_names import KnownClassifier, find_only_implementations
-from archgen.plugins.aadl.classifier_shapes import ClassifierUse, ResolvedClassifier
 from archgen.plugins.aadl.import_notes import NoteList
 from archgen.plugins.aadl.property_values import PropertyScope, UsedProperties, read_first_text
-from archgen.plugins.aadl.resolved_classifiers import ClassifierResolver
+from archgen.plugins.aadl.resolved_classifiers import ClassifierResolver, ClassifierUse, ResolvedClassifier
 from archgen.plugins.aadl.structures import ClassifierStructure, StructureFinder
 
 _TYPE_CATEGORIES = frozenset({"system", "process", "device", "abstract"})

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from archgen.plugins.aadl.aadl_tokens import END, MAX_TOKENS, AadlText
 from archgen.plugins.aadl.aadl_tree import AadlPackage, PropertySet
 from archgen.plugins.aadl.classifier_parsing import at_classifier, parse_annex, parse_classifier
 from archgen.plugins.aadl.feature_parsing import CATEGORIES, accept_one_of
 from archgen.plugins.aadl.property_parsing import parse_property, parse_property_definition
-from archgen.plugins.aadl.token_cursor import AadlSyntaxError, SyntaxFault, TokenCursor
+from archgen.plugins.aadl.token_cursor import END, MAX_TOKENS, AadlSyntaxError, AadlText, SyntaxFault, TokenCursor
 
 _MAX_NAME_TOKENS = 50
 """No name of a package is longer."""

@@ -9,10 +9,9 @@ from archgen.plugin.importing import make_id, make_unique_id
 from archgen.plugins.aadl.aadl_data_types import AadlDataTypes
 from archgen.plugins.aadl.aadl_tree import Path
 from archgen.plugins.aadl.archgen_words import find_own_text, is_marked, read_port_words
-from archgen.plugins.aadl.classifier_shapes import ResolvedClassifier, ResolvedPort
 from archgen.plugins.aadl.import_notes import NoteList
 from archgen.plugins.aadl.property_values import PropertyScope, UsedProperties
-from archgen.plugins.aadl.resolved_classifiers import ClassifierResolver
+from archgen.plugins.aadl.resolved_classifiers import ClassifierResolver, ResolvedClassifier, ResolvedPort
 
 PORT_KINDS = frozenset({"data port", "event data port", "event port", "feature", "subprogram access"})
 KEPT_ACCESSES = frozenset({"data access", "bus access", "virtual bus access", "subprogram group access"})

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from archgen.plugins.aadl.aadl_tokens import END, unquote_text
 from archgen.plugins.aadl.aadl_tree import (
     AadlLink,
     AadlList,
@@ -19,7 +18,7 @@ from archgen.plugins.aadl.aadl_tree import (
     Path,
     PropertySet,
 )
-from archgen.plugins.aadl.token_cursor import SECTION_WORDS, TokenCursor
+from archgen.plugins.aadl.token_cursor import END, SECTION_WORDS, TokenCursor, unquote_text
 
 _LINK_WORDS = ("reference", "classifier", "compute")
 _VALUE_ENDS = frozenset({",", ";", ")", "]", "}", "applies", "in", "::", ".."})
@@ -178,7 +177,7 @@ def _parse_number(cursor: TokenCursor) -> AadlValue:
     unit = ""
     if cursor.token.kind == "name" and cursor.token.word not in _BEHIND_NUMBERS:
         unit = cursor.advance().text
-    return AadlNumber(sign * value, unit, "." in token.text)
+    return AadlNumber(sign * value, unit)
 
 
 def _read_number(cursor: TokenCursor) -> Fraction:

@@ -17,8 +17,7 @@ from archgen.plugins.aadl.aadl_tree import (
     Path,
 )
 from archgen.plugins.aadl.classifier_names import ClassifierNames, fold_property_name
-from archgen.plugins.aadl.classifier_shapes import ResolvedClassifier, ResolvedPart
-from archgen.plugins.aadl.resolved_classifiers import ClassifierResolver
+from archgen.plugins.aadl.resolved_classifiers import ClassifierResolver, ResolvedClassifier, ResolvedPart
 
 _UNITS = {"ns": "ns", "us": "us", "ms": "ms", "sec": "s", "s": "s", "min": "min", "hr": "h", "h": "h"}
 _BYTES_A_SECOND = {

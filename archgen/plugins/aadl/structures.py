@@ -8,11 +8,10 @@ from dataclasses import dataclass, field
 from archgen.plugin.importing import make_id, make_unique_id
 from archgen.plugins.aadl.aadl_tree import AadlConnection, Path
 from archgen.plugins.aadl.archgen_words import find_own_text
-from archgen.plugins.aadl.classifier_shapes import ResolvedClassifier, ResolvedPart
 from archgen.plugins.aadl.import_notes import NoteList
 from archgen.plugins.aadl.port_mapping import MappedPort, MappedPorts, PortMapper
 from archgen.plugins.aadl.property_values import PropertyScope, UsedProperties
-from archgen.plugins.aadl.resolved_classifiers import ClassifierResolver
+from archgen.plugins.aadl.resolved_classifiers import ClassifierResolver, ResolvedClassifier, ResolvedPart
 
 COMPONENT_CATEGORIES = frozenset({"system", "process", "device", "abstract", "thread", "thread group"})
 HARDWARE_CATEGORIES = frozenset({"processor", "virtual processor", "memory", "bus", "virtual bus"})

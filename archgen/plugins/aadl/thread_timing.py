@@ -6,10 +6,10 @@ from typing import Any
 
 from archgen.plugins.aadl.aadl_tree import Path
 from archgen.plugins.aadl.archgen_words import find_own_text
-from archgen.plugins.aadl.classifier_shapes import ResolvedClassifier
 from archgen.plugins.aadl.import_notes import NoteList
 from archgen.plugins.aadl.port_mapping import MappedPorts
 from archgen.plugins.aadl.property_values import PropertyScope, read_count, read_duration, read_time_range, read_word
+from archgen.plugins.aadl.resolved_classifiers import ResolvedClassifier
 
 _ROLES = {"message_source": "source", "filter": "filter", "message_sink": "sink", "reactive": "reactive"}
 _BEHAVIOURS = {"periodic": "periodic", "sporadic": "event", "aperiodic": "event"}

@@ -28,7 +28,7 @@ _EXTREMES = re.compile(rf"\s*min: {_NUMBER}(\w+) max: {_NUMBER}(\w+) std dev: {_
 _TABLE_HEAD = re.compile(r"\s*topic\s+rate\s+min_delta\s+max_delta\s+std_dev\s+window\s*$")
 _TABLE_ROW = re.compile(rf"\s*(/\S+)\s+{_NUMBER}\s+{_NUMBER}\s+{_NUMBER}\s+{_NUMBER}\s+(\d{{1,12}})\s*$")
 _RESET = "time has reset, resetting counters"
-_IDLE_LINE = re.compile(r"\s*(?:no new messages|=+|\[(?:INFO|WARN)\].*|WARNING: .*|Subscribed to .*)?\s*$")
+_IDLE_LINE = re.compile(r"\s*+(?:no new messages|=++|\[(?:INFO|WARN)\].*+|WARNING: .*+|Subscribed to .*+)?\s*+$")
 _ROUNDING = dict.fromkeys(("min_period", "max_period", "delay"), Fraction(10**6, 2))
 """Half a millisecond: the tools round to the next one."""
 _MAX_TOPICS = 10_000

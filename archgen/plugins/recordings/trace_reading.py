@@ -2,10 +2,13 @@
 
 The tracepoints are those of ros2_tracing's design (https://github.com/ros2/ros2_tracing, doc/design_ros_2.md). The duration
 of a callback is the time on the clock from its start to its end: what preempts it meanwhile is in it.
+
+The times in which a tracer lost events: what went on meanwhile cannot be counted.
 """
 
 from __future__ import annotations
 
+import heapq
 from collections import defaultdict
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -16,9 +19,15 @@ from archgen.plugin.timing import SampleCounter, format_duration
 from archgen.plugins.recordings.recorded_figures import RecordedFigures, SampleKind
 from archgen.plugins.recordings.recorded_names import CallbackPlace, RecordedNames, UnmappedError
 from archgen.plugins.recordings.recording_lines import Oddities, OddityText, RecordingSource
-from archgen.plugins.recordings.trace_events import TraceEvent, TraceLoss, read_trace_events
-from archgen.plugins.recordings.trace_losses import LossTimes
-from archgen.plugins.recordings.trace_registry import Address, CallbackOwner, Process, TraceRegistry
+from archgen.plugins.recordings.trace_events import (
+    Address,
+    CallbackOwner,
+    Process,
+    TraceEvent,
+    TraceLoss,
+    TraceRegistry,
+    read_trace_events,
+)
 
 _PUBLISH_EVENTS = frozenset({"rclcpp_intra_publish", "rclcpp_publish", "rcl_publish"})
 _NO_ADDRESS: Address = (("", ""), "")
@@ -304,3 +313,34 @@ class _TraceReader:
 
     def _add_unmapped(self, figures: RecordedFigures, name: str, samples: _Samples, why: str) -> None:
         figures.add_unmapped(name, samples.count, why, self._source.span_of(samples.line))
+
+
+_MAX_LOSSES = 10_000
+"""More of them are taken for one, so that a file of warnings takes no more room."""
+
+
+class LossTimes:
+    """The times between which the tracer lost events."""
+
+    def __init__(self) -> None:
+        self._times: list[tuple[int, int]] = []
+        self._end = -1
+        """The end of those that have begun."""
+
+    def add_times(self, start: int, end: int) -> None:
+        """Add a time in which events were lost."""
+        heapq.heappush(self._times, (start, end))
+        if len(self._times) > _MAX_LOSSES:
+            self._times = [(self._times[0][0], max(end for _, end in self._times))]
+
+    def has_begun(self, time: int) -> bool:
+        """Whether such a time has begun since the last call, or still lasts."""
+        has_begun = self.covers(time)
+        while self._times and self._times[0][0] <= time:
+            self._end = max(self._end, heapq.heappop(self._times)[1])
+            has_begun = True
+        return has_begun
+
+    def covers(self, time: int) -> bool:
+        """Whether events of this time may be lost."""
+        return time <= self._end

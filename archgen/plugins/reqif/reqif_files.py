@@ -1,15 +1,28 @@
-"""Open ReqIF files: a single one, or those of a zip file (.reqifz), within limits."""
+"""Open ReqIF files: a single one, or those of a zip file (.reqifz), within limits.
+
+Parse one ReqIF file as a stream: in time and memory in proportion to what it holds, whatever it is.
+
+Entities and document types are refused: nothing is expanded, and nothing outside the file is asked for.
+"""
 
 from __future__ import annotations
 
+import re
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import IO
+from xml.parsers import expat
 
-from archgen.plugin.importing import ARCHIVE_DAMAGE, ZIP_BEGINNING, ForeignFileError, Span
-from archgen.plugins.reqif.reqif_document import ReqifDocument
-from archgen.plugins.reqif.reqif_parsing import parse_reqif
+from archgen.plugin.importing import (
+    ARCHIVE_DAMAGE,
+    ZIP_BEGINNING,
+    ForeignFileError,
+    Span,
+    explain_encoding,
+    explain_syntax,
+)
+from archgen.plugins.reqif.reqif_document import HierarchyEntry, ReqifDocument, ReqifObject, ReqifRelation
 
 MAX_BYTES = 500_000_000
 """So much is read of one file, or of all in a zip file together."""
@@ -59,3 +72,257 @@ class _ByteLimit:
                 words = f"it is larger than {MAX_BYTES // 1_000_000} MB"
                 raise ForeignFileError(words, Span.of_file(self._name), "export the specifications one by one")
             yield chunk
+
+
+_NAMED_ELEMENTS = frozenset(
+    {"SPEC-OBJECT-TYPE", "SPEC-RELATION-TYPE", "SPECIFICATION-TYPE", "ENUM-VALUE"}
+    | {
+        f"ATTRIBUTE-DEFINITION-{sort}"
+        for sort in ("XHTML", "STRING", "ENUMERATION", "INTEGER", "REAL", "BOOLEAN", "DATE")
+    }
+)
+_MALFORMED_HELP = "a ReqIF file is XML in UTF-8; export it again"
+
+
+def parse_reqif(file: str, chunks: Iterable[bytes], document: ReqifDocument) -> None:
+    """Read a file into a document. Raise ForeignFileError."""
+    _ReqifParser(file, document).parse(chunks)
+
+
+class _ReqifParser:
+    """The state between two elements: which object, value or relation is open."""
+
+    def __init__(self, file: str, document: ReqifDocument) -> None:
+        self._file, self._document = file, document
+        self._parser = expat.ParserCreate()
+        # Else expat calls back for each line of a text by itself.
+        self._parser.buffer_text = True
+        self._parser.buffer_size = 65_536
+        self._parser.StartElementHandler = self._start
+        self._parser.EndElementHandler = self._end
+        self._parser.CharacterDataHandler = self._add_text
+        self._parser.StartDoctypeDeclHandler = self._refuse_doctype
+        self._parser.EntityDeclHandler = self._refuse_doctype
+        self._local_names: dict[str, str] = {}
+        self._is_root_seen = False
+        self._object: ReqifObject | None = None
+        self._relation: ReqifRelation | None = None
+        self._side = ""
+        self._value: str | None = None
+        self._definition = ""
+        self._choices: list[str] = []
+        self._xhtml: XhtmlText | None = None
+        self._text: list[str] | None = None
+        self._specification = ""
+        self._open_entries: list[int] = []
+
+    def parse(self, chunks: Iterable[bytes]) -> None:
+        try:
+            for chunk in chunks:
+                self._parser.Parse(chunk, False)  # noqa: FBT003 - expat's signature
+            self._parser.Parse(b"", True)  # noqa: FBT003
+        except expat.ExpatError as error:
+            problem = explain_syntax(error, is_root_seen=self._is_root_seen, malformed_help=_MALFORMED_HELP)
+            span = self._span(None if problem.is_at_end else error)
+            raise ForeignFileError(problem.message, span, problem.help_line) from None
+        except (LookupError, ValueError) as error:
+            problem = explain_encoding(error)
+            raise ForeignFileError(problem.message, self._span(), problem.help_line) from None
+
+    def _span(self, error: expat.ExpatError | None = None) -> Span:
+        line = error.lineno if error else self._parser.CurrentLineNumber
+        column = (error.offset if error else self._parser.CurrentColumnNumber) + 1
+        return Span(self._file, line, column, line, column + 1)
+
+    def _refuse_doctype(self, *_: object) -> None:
+        words = "it declares a document type or entities, which archgen does not follow"
+        raise ForeignFileError(words, self._span(), "ReqIF needs neither: take out the `<!DOCTYPE ...>`")
+
+    def _local(self, name: str) -> str:
+        local = self._local_names.get(name)
+        if local is None:
+            local = self._local_names[name] = name.rpartition(":")[2]
+        return local
+
+    def _start(self, name: str, attributes: Mapping[str, str]) -> None:
+        # The same few names come again and again: the look-up is written out here, where every element passes.
+        local = self._local_names.get(name) or self._local(name)
+        if self._xhtml is not None:
+            self._xhtml.start(local, attributes)
+        elif self._object is not None:
+            self._start_in_object(local, attributes)
+        elif local in {"SOURCE", "TARGET"}:
+            self._side = local
+        elif local in {"SPEC-OBJECT-REF", "SPEC-RELATION-TYPE-REF", "SOURCE-TOOL-ID"}:
+            self._text = []
+        else:
+            self._start_element(local, attributes)
+
+    def _start_element(self, local: str, attributes: Mapping[str, str]) -> None:
+        """Take the beginning of what has an identity of its own."""
+        if not self._is_root_seen:
+            self._is_root_seen = True
+            if local != "REQ-IF":
+                words = f"its outermost element is `{local[:60]}`, not `REQ-IF`: this is no ReqIF"
+                raise ForeignFileError(words, self._span(), "export the requirements as ReqIF (.reqif or .reqifz)")
+        elif local == "SPEC-OBJECT":
+            line = self._parser.CurrentLineNumber
+            name = attributes.get("LONG-NAME", "")
+            self._object = ReqifObject(attributes.get("IDENTIFIER", ""), name, self._file, line)
+        elif local in _NAMED_ELEMENTS:
+            self._document.names[attributes.get("IDENTIFIER", "")] = attributes.get("LONG-NAME", "")
+        elif local == "SPEC-RELATION":
+            self._relation = ReqifRelation()
+        elif local == "SPECIFICATION":
+            self._specification = attributes.get("LONG-NAME", "")
+        elif local == "SPEC-HIERARCHY":
+            parent = self._open_entries[-1] if self._open_entries else -1
+            self._open_entries.append(len(self._document.entries))
+            self._document.entries.append(HierarchyEntry("", self._specification, parent))
+
+    def _start_in_object(self, local: str, attributes: Mapping[str, str]) -> None:
+        if local.startswith("ATTRIBUTE-VALUE-"):
+            self._value, self._definition, self._choices = attributes.get("THE-VALUE"), "", []
+        elif local.endswith("-REF"):
+            self._text = []
+        elif local == "THE-VALUE":
+            self._xhtml = XhtmlText()
+
+    def _add_text(self, text: str) -> None:
+        if self._xhtml is not None:
+            self._xhtml.add(text)
+        elif self._text is not None:
+            self._text.append(text)
+
+    def _end(self, name: str) -> None:
+        local = self._local_names[name]
+        if self._xhtml is not None:
+            if local == "THE-VALUE":
+                self._value, self._xhtml = self._xhtml.finish(), None
+            else:
+                self._xhtml.end(local)
+            return
+        if self._text is not None:
+            self._take_reference(local, "".join(self._text).strip())
+            self._text = None
+        if self._object is not None:
+            self._end_in_object(local, self._object)
+        elif local == "SPEC-RELATION" and self._relation is not None:
+            self._document.relations.append(self._relation)
+            self._relation = None
+        elif local == "SPEC-HIERARCHY":
+            self._open_entries.pop()
+
+    def _end_in_object(self, local: str, current: ReqifObject) -> None:
+        if local == "SPEC-OBJECT":
+            # References mean the first one; the others are told.
+            if current.id in self._document.objects:
+                self._document.repeated.append(current)
+            else:
+                self._document.objects[current.id] = current
+            self._object = None
+        elif local.startswith("ATTRIBUTE-VALUE-"):
+            if self._choices:
+                current.choices[self._definition] = self._choices
+            elif self._value and self._value.strip():
+                current.values[self._definition] = self._value
+            self._value = None
+
+    def _take_reference(self, local: str, text: str) -> None:
+        if self._object is not None:
+            if local == "SPEC-OBJECT-TYPE-REF":
+                self._object.type_id = text
+            elif local == "ENUM-VALUE-REF":
+                self._choices.append(text)
+            elif local.startswith("ATTRIBUTE-DEFINITION-"):
+                self._definition = text
+        elif local == "SOURCE-TOOL-ID":
+            self._document.source_tool = text
+        elif self._relation is not None:
+            if local == "SPEC-RELATION-TYPE-REF":
+                self._relation.type_id = text
+            elif self._side == "SOURCE":
+                self._relation.source = text
+            else:
+                self._relation.target = text
+        elif self._open_entries and local == "SPEC-OBJECT-REF":
+            self._document.entries[self._open_entries[-1]].object_id = text
+
+
+_BLOCKS = frozenset({"p", "div", "h1", "h2", "h3", "h4", "h5", "h6", "table", "blockquote", "pre", "dl", "dt", "dd"})
+_MARKS = {"b": "**", "strong": "**", "i": "*", "em": "*", "code": "`", "tt": "`"}
+_UNSHOWN = frozenset({"script", "style"})
+"""What they hold is no text: nobody reads it in the other tool either."""
+_BLANKS = re.compile(r"[ \t\r\n]+")
+_EMPTY_LINES = re.compile(r"\n(?:[ \t]*\n)+")
+NO_BREAK_SPACE = "\u00a0"
+"""A blank that counts: XHTML folds the others."""
+
+
+class XhtmlText:
+    """Takes the parts of one text in their order, and gives the whole as CommonMark."""
+
+    def __init__(self) -> None:
+        self._parts: list[str] = []
+        self._lists: list[int | None] = []
+        """The lists around: the number of the last item, None where they have none."""
+        self._unshown_depth = 0
+
+    def start(self, name: str, attributes: Mapping[str, str]) -> None:
+        """Take the beginning of an element."""
+        if name in _UNSHOWN:
+            self._unshown_depth += 1
+        elif name in _BLOCKS:
+            self._parts.append("\n\n")
+        elif name == "br":
+            self._parts.append("\n")
+        elif name in _MARKS:
+            self._parts.append(_MARKS[name])
+        elif name in {"ul", "ol"}:
+            self._parts.append("" if self._lists else "\n\n")
+            self._lists.append(0 if name == "ol" else None)
+        elif name == "li":
+            self._start_item()
+        elif name == "tr":
+            self._parts.append("\n")
+        elif name in {"object", "img"}:
+            picture = attributes.get("data") or attributes.get("src") or "without a name"
+            self._parts.append(f" (picture {picture.rpartition('/')[2]}) ")
+
+    def end(self, name: str) -> None:
+        """Take the end of an element."""
+        if name in _UNSHOWN:
+            self._unshown_depth -= 1
+        elif name in _BLOCKS:
+            self._parts.append("\n\n")
+        elif name in _MARKS:
+            self._parts.append(_MARKS[name])
+        elif name in {"ul", "ol"} and self._lists:
+            self._lists.pop()
+            self._parts.append("" if self._lists else "\n\n")
+        elif name in {"td", "th"}:
+            self._parts.append(" | ")
+
+    def add(self, text: str) -> None:
+        """Take a piece of text."""
+        if not self._unshown_depth:
+            self._parts.append(_fold_blanks(text))
+
+    def _start_item(self) -> None:
+        number = self._lists[-1] if self._lists else None
+        if number is not None:
+            self._lists[-1] = number + 1
+        mark = "-" if number is None else f"{number + 1}."
+        self._parts.append(f"\n{NO_BREAK_SPACE * 2 * (min(len(self._lists), 20) - 1)}{mark} ")
+
+    def finish(self) -> str:
+        """Return the text, without blanks at its ends."""
+        text = "".join(self._parts).strip("\n")
+        lines = (_fold_blanks(line).strip(" ").removesuffix(" |") for line in text.split("\n"))
+        return _EMPTY_LINES.sub("\n\n", "\n".join(lines)).strip("\n").replace(NO_BREAK_SPACE, " ").strip()
+
+
+def _fold_blanks(text: str) -> str:
+    """Fold runs of blanks to one; most texts have none, and need no search by a pattern."""
+    has_runs = "\n" in text or "  " in text or "\t" in text or "\r" in text
+    return _BLANKS.sub(" ", text) if has_runs else text

@@ -1,14 +1,18 @@
-"""One step of a start-up as a launch file says it: a node, a container, what a container loads, or another program."""
+"""One step of a start-up as a launch file says it: a node, a container, what a container loads, or another program.
+
+The parameters that launch files give to a node: files that are written beside them, and files of other packages.
+"""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from archgen.plugin.findings import Diagnostic, join_words
-from archgen.plugin.generating import ProgramNames, make_ros_name, write_place
-from archgen.plugin.model import Architecture, Node
+from archgen.plugin.findings import Diagnostic, Span, join_words
+from archgen.plugin.generating import ProgramNames, make_ros_name, tell_left_out, write_place
+from archgen.plugin.model import Architecture, Node, canonical_name, find_declarations
 from archgen.plugin.starting import (
     RosLaunch,
     StartStep,
@@ -16,11 +20,6 @@ from archgen.plugin.starting import (
     describe_ready,
     describe_unknown,
     format_seconds,
-)
-from archgen.plugins.ros_code.launch_parameters import (
-    read_simulated_time,
-    record_container_parameters,
-    record_node_parameters,
 )
 
 _MANAGER_PACKAGE = "nav2_lifecycle_manager"
@@ -154,3 +153,193 @@ def _list_remarks(step: StartStep, form: str) -> list[str]:
         remarks.append(f"brought into the state {state}")
     remarks += [f"needs rights {each}" for each in step.needs_rights]
     return remarks
+
+
+_PACKAGE_PATH = re.compile(
+    r"(?:\$\((?:find|find-pkg-share)\s+(?P<found>[A-Za-z0-9_]+)\)|package://(?P<named>[A-Za-z0-9_]+))/+(?P<path>.+)",
+    re.DOTALL,
+)
+"""A file of a package, as launch files and URLs of ROS write it."""
+_SUBSTITUTION = re.compile(
+    r"\$\((?:(?:find|find-pkg-share) (?P<package>[A-Za-z0-9_]+)|env (?P<variable>[A-Za-z_][A-Za-z0-9_]*))\)"
+)
+"""What a launch file fills in. Others would run something, or need what no launch file here declares: they stay text."""
+_PACKAGE_NAME = re.compile(r"[A-Za-z0-9_-]+")
+_HOME = "~/"
+_GLOBAL_IN_ROS_1 = "use_sim_time"
+"""In ROS 1 it is one parameter of all nodes."""
+
+
+def record_node_parameters(
+    architecture: Architecture, node: Node, launch: RosLaunch, file_name: str, ros: int
+) -> tuple[dict[str, Any], list[Diagnostic]]:
+    """Return the parameters of a node, and what is left out.
+
+    `files` are those to load, of which the last one wins, `written` those to write, `filled` the values that only the
+    launch file can fill in: by the output of a command, or by a substitution.
+    """
+    elsewhere = [_find_file(path, node) for path in launch.parameter_files if path in node.unread_files]
+    read_values = {**launch.file_values, **launch.own_values}
+    parts: list[tuple[str, Mapping[str, object]]] = [("", {**launch.earlier_values, **read_values})]
+    if elsewhere:
+        # What nobody could read counts more than defaults, and less than what the node says.
+        parts = [("_defaults", launch.earlier_values), ("", read_values)]
+    all_values = {**launch.earlier_values, **read_values}
+    filled_names = {name for name, value in all_values.items() if _is_filled_in(value)} | set(launch.value_commands)
+    parts = [
+        (suffix, {name: value for name, value in values.items() if name not in filled_names})
+        for suffix, values in parts
+    ]
+    written, unfit_names = _write_parts(parts, launch, file_name, ros)
+    own_files = [_place_file("own", str(each["path"])) for each in written]
+    count = 1 if elsewhere and written and written[0]["name"] != file_name else 0
+    return {
+        "files": [*own_files[:count], *elsewhere, *own_files[count:]],
+        "written": written,
+        "filled": _record_filled(architecture, node, launch, all_values, ros),
+    }, [_tell_unfit(name, node.at, node.id) for name in unfit_names]
+
+
+def record_container_parameters(
+    launch: RosLaunch, file_name: str, ros: int, span: Span
+) -> tuple[dict[str, Any], list[Diagnostic]]:
+    """Return the same for a container."""
+    written, unfit_names = _write_parts([("", launch.own_values)], launch, file_name, ros)
+    parameters = {
+        "files": [_place_file("own", str(each["path"])) for each in written],
+        "written": written,
+        "filled": [],
+    }
+    return parameters, [_tell_unfit(name, span, file_name) for name in unfit_names]
+
+
+def read_simulated_time(launch: RosLaunch) -> object:
+    """Return what a node of ROS 1 says of `use_sim_time`; None where it says nothing."""
+    values = {**launch.earlier_values, **launch.file_values, **launch.own_values}
+    return values.get(_GLOBAL_IN_ROS_1)
+
+
+def _write_parts(
+    parts: list[tuple[str, Mapping[str, object]]], launch: RosLaunch, file_name: str, ros: int
+) -> tuple[list[dict[str, Any]], list[str]]:
+    """Return the files to write, each with its lines, and the names of what they cannot hold."""
+    written: list[dict[str, Any]] = []
+    unfit_names: list[str] = []
+    for suffix, values in parts:
+        given = {name: value for name, value in values.items() if ros != 1 or name != _GLOBAL_IN_ROS_1}
+        if ros != 1:
+            unfit_names += [name for name, value in given.items() if not _fits_ros_2(value)]
+        fitting = {name: value for name, value in given.items() if name not in unfit_names}
+        lines = _list_tree(_make_tree(fitting) if ros == 1 else fitting, 0)
+        if lines:
+            name = f"{file_name}{suffix}"
+            written.append({"name": name, "path": f"config/{name}.yaml", "node": launch.full_name, "lines": lines})
+    return written, unfit_names
+
+
+def _tell_unfit(name: str, span: Span, element: str) -> Diagnostic:
+    return tell_left_out(
+        f"the parameter `{name}` of `{element}` is left out: no parameter of ROS can be what it is",
+        span,
+        element=element,
+        help_line="ROS has booleans, whole numbers, numbers, texts, and lists of one of these",
+    )
+
+
+def _fits_ros_2(value: object) -> bool:
+    """Whether a parameter of ROS 2 can have a value: one of its plain types, or a list of one of them."""
+    if isinstance(value, list | tuple):
+        kinds = {type(item) for item in value}
+        return len(kinds) <= 1 and kinds <= {bool, int, float, str}
+    return isinstance(value, bool | int | float | str)
+
+
+def _make_tree(values: Mapping[str, object]) -> dict[str, Any]:
+    """Return values by the parts of their names, as the parameter server holds them. Of `a` and `a.b` the later one stays."""
+    tree: dict[str, Any] = {}
+    for name, value in values.items():
+        *folders, leaf = [part for part in name.replace(".", "/").split("/") if part] or [name]
+        place = tree
+        for folder in folders:
+            inner = place.get(folder)
+            if not isinstance(inner, dict):
+                inner = place[folder] = {}
+            place = inner
+        place[leaf] = value
+    return tree
+
+
+def _list_tree(tree: Mapping[str, Any], depth: int) -> list[dict[str, Any]]:
+    """Return a tree line by line, each with how deep it stands."""
+    lines: list[dict[str, Any]] = []
+    for name, value in tree.items():
+        if isinstance(value, Mapping) and value:
+            lines.append({"depth": depth, "name": str(name), "value": None, "has_value": False})
+            lines += _list_tree(value, depth + 1)
+        else:
+            lines.append({"depth": depth, "name": str(name), "value": value, "has_value": True})
+    return lines
+
+
+def _place_file(place: str, path: str, package: str = "") -> dict[str, str]:
+    """Return a file to load. `place` is `own`, `package`, `home` or `robot`."""
+    return {"place": place, "package": package, "path": path}
+
+
+def _find_file(path: str, node: Node) -> dict[str, str]:
+    """Return where a file that no project holds lies: in a package, in the user's home, or somewhere on the robot."""
+    found = _PACKAGE_PATH.match(path)
+    if found:
+        return _place_file("package", found["path"], found["found"] or found["named"])
+    if path.startswith(_HOME):
+        return _place_file("home", path.removeprefix(_HOME))
+    if path.startswith("/"):
+        return _place_file("robot", path)
+    if node.package and _PACKAGE_NAME.fullmatch(node.package):
+        return _place_file("package", path, node.package)
+    return _place_file("own", path)
+
+
+def _is_filled_in(value: object) -> bool:
+    return isinstance(value, str) and _SUBSTITUTION.search(value) is not None
+
+
+def _record_filled(
+    architecture: Architecture, node: Node, launch: RosLaunch, values: Mapping[str, object], ros: int
+) -> list[dict[str, Any]]:
+    """Return the parameters that the launch file fills in: texts, unless they are declared as something else."""
+    ros_1 = ros == 1
+    declarations = {
+        canonical_name(name, ros_1=ros_1): each for name, each in find_declarations(architecture, node).items()
+    }
+    filled: list[dict[str, Any]] = [
+        {"name": name, "words": list(words), "parts": []} for name, words in launch.value_commands.items()
+    ]
+    filled += [
+        {"name": name, "words": [], "parts": _split_substitutions(str(value))}
+        for name, value in values.items()
+        if name not in launch.value_commands and _is_filled_in(value)
+    ]
+    for each in filled:
+        declared_type = declarations[each["name"]].type if each["name"] in declarations else None
+        each["is_text"] = declared_type in {None, "string"} and not (
+            declared_type is None and len(each["parts"]) == 1 and each["parts"][0]["variable"]
+        )
+        each["name"] = each["name"].replace(".", "/") if ros_1 else each["name"]
+    return filled
+
+
+def _split_substitutions(text: str) -> list[dict[str, str]]:
+    """Return the pieces of a text: `text`, the folder of a `package`, the value of a `variable` of the environment."""
+    pieces: list[dict[str, str]] = []
+    end = 0
+    for found in _SUBSTITUTION.finditer(text):
+        if found.start() > end:
+            pieces.append(_make_piece(text=text[end : found.start()]))
+        pieces.append(_make_piece(package=found["package"] or "", variable=found["variable"] or ""))
+        end = found.end()
+    return [*pieces, _make_piece(text=text[end:])] if end < len(text) else pieces
+
+
+def _make_piece(text: str = "", package: str = "", variable: str = "") -> dict[str, str]:
+    return {"text": text, "package": package, "variable": variable}

@@ -1,11 +1,17 @@
-"""The views `programs` and `ros1_programs`: the packages of ROS nodes to generate, and each program in them with all that it has."""
+"""The views `programs` and `ros1_programs`: the packages of ROS nodes to generate, and each program in them with all that it has.
+
+Which callbacks of a generated program exclude one another: its callback groups. Which programs can be generated at all:
+their packages and executables are names of folders, files and modules.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from archgen.plugin.findings import NO_SPAN, Diagnostic, Span, first_written_span
+from archgen.plugin.findings import NO_SPAN, Diagnostic, Label, Span, first_written_span
 from archgen.plugin.generating import (
+    NOT_GENERATED,
     GeneratedView,
     GenerationContext,
     ProgramNames,
@@ -28,11 +34,8 @@ from archgen.plugin.model import Architecture, Endpoint, Node
 from archgen.plugin.ros import is_ros_1
 from archgen.plugins.ros_code.cpp_programs import complete_cpp_program, find_bad_classes, list_cpp_libraries
 from archgen.plugins.ros_code.package_facts import record_package_facts
-from archgen.plugins.ros_code.program_callbacks import add_callback_groups
-from archgen.plugins.ros_code.program_differences import find_program_differences
+from archgen.plugins.ros_code.program_differences import find_program_differences, list_timers
 from archgen.plugins.ros_code.program_imports import import_in_ros_1, import_in_ros_2
-from archgen.plugins.ros_code.program_timers import list_timers
-from archgen.plugins.ros_code.usable_programs import drop_unusable
 
 
 def make_ros1_view(context: GenerationContext) -> GeneratedView:
@@ -223,3 +226,90 @@ def _find_place(architecture: Architecture, node: Node) -> Span:
     """Return where a node is written; of one that archgen adds, its component."""
     components = (architecture.components[each] for each in node.implements)
     return first_written_span(node.at, *(each.at for each in components))
+
+
+_PACKAGE = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z", re.ASCII)
+_EXECUTABLE = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]*\Z", re.ASCII)
+_MAX_NAME = 100
+_LANGUAGES = {"python": "Python", "cpp": "C++"}
+
+
+def drop_unusable(
+    programs: Mapping[tuple[str, str], Sequence[Node]], language: str
+) -> tuple[dict[tuple[str, str], Sequence[Node]], list[Diagnostic]]:
+    """Return the programs, by package and executable, whose names can be written, and a finding for each name that cannot."""
+    usable: dict[tuple[str, str], Sequence[Node]] = {}
+    findings: dict[tuple[str, ...], Diagnostic] = {}
+    first_packages: dict[str, tuple[str, Node]] = {}
+    for (package, executable), nodes in programs.items():
+        node = nodes[0]
+        twin, twin_node = first_packages.setdefault(package.casefold(), (package, node))
+        fault = _explain_bad_package(package, language)
+        if fault:
+            findings.setdefault((package,), _diagnose_program(f"the package `{package}` is left out: {fault}", node))
+        elif twin != package:
+            message = f"the package `{package}` is left out: on many systems it is the folder of `{twin}`"
+            findings.setdefault((package,), _diagnose_program(message, node, twin_node))
+        elif len(executable) > _MAX_NAME or not _EXECUTABLE.match(executable):
+            message = f"the program `{executable}` of `{node.id}` is left out: no file is called so that ROS runs"
+            findings[package, executable] = _diagnose_program(message, node)
+        else:
+            usable[package, executable] = nodes
+    return usable, list(findings.values())
+
+
+def _explain_bad_package(package: str, language: str) -> str:
+    """Return why a package cannot have a name, as the end of a sentence; empty where it can."""
+    if not _PACKAGE.match(package):
+        return "packages have names of letters (a to z), digits and `_`"
+    if len(package) > _MAX_NAME:
+        return f"its name has more than {_MAX_NAME} letters"
+    if make_identifier_in(language, package) == f"{package}_":
+        return f"its name is a word of {_LANGUAGES[language]}"
+    return ""
+
+
+def _diagnose_program(message: str, node: Node, first: Node | None = None) -> Diagnostic:
+    labels = (Label(first.at, "the first one"),) if first else ()
+    help_line = "give the node another `package` or `executable`"
+    severity = NOT_GENERATED.severity
+    return Diagnostic(NOT_GENERATED.name, message, node.at, severity, labels=labels, help=help_line, element=node.id)
+
+
+CALLED_SECTIONS = ("subscriptions", "services", "clients", "action_servers", "action_clients")
+"""What has callbacks beside timers."""
+
+
+def add_callback_groups(
+    node: Node, sections: Mapping[str, Sequence[dict[str, object]]], timers: Iterable[dict[str, object]]
+) -> list[dict[str, object]]:
+    """Tell each port and timer its `callback_group`, and return the groups: `key`, and the components in it.
+
+    A key is a name that something is written behind, in any language: `fast` of `fast_lock`. What is in none is in the node's default group. Where all is reentrant, there are none.
+    """
+    groups = {} if node.reentrant else _name_groups(node)
+    key_by_component = {component: key for key, members in groups.items() for component in members}
+    used_keys = set[str]()
+    for section in CALLED_SECTIONS:
+        for port in sections[section]:
+            key = key_by_component.get(str(port["port"]).rpartition(".")[0], "")
+            port["callback_group"] = key
+            used_keys.add(key)
+    for timer in timers:
+        key = key_by_component.get(str(timer["component"]), "")
+        timer["callback_group"] = key
+        used_keys.add(key)
+    return [{"key": key, "components": list(members)} for key, members in groups.items() if key in used_keys]
+
+
+def _name_groups(node: Node) -> dict[str, tuple[str, ...]]:
+    """Return the components of each group, by a name of its own."""
+    named: dict[str, tuple[str, ...]] = {}
+    for group, members in node.callback_groups.items():
+        stem = make_snake_name(group)
+        key, number = stem, 1
+        while key in named:
+            number += 1
+            key = f"{stem}_{number}"
+        named[key] = members
+    return named

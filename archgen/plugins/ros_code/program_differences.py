@@ -1,13 +1,16 @@
-"""Where nodes of one program ask for more than one program can be: each is told, and the first node's way is generated."""
+"""Where nodes of one program ask for more than one program can be: each is told, and the first node's way is generated.
+
+The timers of a generated program: what runs by the clock.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from fractions import Fraction
 
 from archgen.plugin.findings import Diagnostic
-from archgen.plugin.generating import PORT_SECTIONS, name_endpoints, record_qos, tell_left_out
+from archgen.plugin.generating import PORT_SECTIONS, make_snake_name, name_endpoints, record_qos, tell_left_out
 from archgen.plugin.model import Endpoint, Node
-from archgen.plugins.ros_code.program_timers import list_timers
 
 _NODE_FACTS: Mapping[str, Callable[[Node], object]] = {
     "kinds": lambda node: node.kinds,
@@ -59,4 +62,25 @@ def _tell_difference(program_name: str, first: Node, node: Node, words: str) -> 
         node.at,
         element=node.id,
         help_line="give one of the nodes an `executable` of its own, or let them say the same",
+    )
+
+
+_NANOSECONDS = 10**9
+
+
+def list_timers(node: Node) -> Iterator[dict[str, object]]:
+    """Yield what runs by the clock: a timer for each component of the node that is periodic."""
+    for component, timing in node.timing.items():
+        period = timing.period.value if timing.period else None
+        if period is None and timing.rate and timing.rate.value:
+            period = Fraction(_NANOSECONDS) / timing.rate.value
+        if period and timing.behaviour in {None, "periodic"}:
+            name = "" if len(node.timing) == 1 else make_snake_name(component.rpartition(".")[2])
+            yield {"key": name, "component": component, "period_ns": round(period), "period_s": _format_seconds(period)}
+
+
+def _format_seconds(duration_ns: Fraction) -> str:
+    """Return a duration in seconds as code has it: `0.1`."""
+    return f"{float(duration_ns) / _NANOSECONDS:.9f}".rstrip("0").removesuffix(".") + (
+        "" if duration_ns % _NANOSECONDS else ".0"
     )

@@ -1,16 +1,30 @@
-"""The view `plan`: the start-up as generators write it, computer by computer; all of it is from the one plan."""
+"""The view `plan`: the start-up as generators write it, computer by computer; all of it is from the one plan.
+
+One step of a start-up as plain data for templates: what runs, what it waits for, and how one sees that it is up. What
+hints tell the start-up: under which address a computer is found, and which image holds a program.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
-from archgen.plugin.generating import GeneratedView, GenerationContext, write_place
-from archgen.plugin.model import PHASES, Architecture
-from archgen.plugin.starting import StartPlan, describe_dropped, find_wanted_steps, make_start_plan
-from archgen.plugins.start_scripts.start_hints import find_unread_hints, read_hint
+from archgen.plugin.findings import NO_SPAN, Diagnostic, Span, did_you_mean, first_written_span
+from archgen.plugin.generating import GeneratedView, GenerationContext, tell_left_out, write_place
+from archgen.plugin.model import PHASES, Architecture, ElementAnnotations
+from archgen.plugin.starting import (
+    DEFAULT_SECONDS,
+    KIND_WORDS,
+    StartPlan,
+    StartStep,
+    describe_dropped,
+    describe_ready,
+    find_wanted_steps,
+    format_seconds,
+    make_start_plan,
+    name_waits,
+)
 from archgen.plugins.start_scripts.start_jobs import list_jobs, list_phase_needs, list_seen_signs
-from archgen.plugins.start_scripts.start_step_record import UNPLACED, record_step
 
 
 def make_view(context: GenerationContext) -> GeneratedView:
@@ -101,3 +115,146 @@ def _record_host(
         step["seen_signs"] = list_seen_signs(step)
     record["ends"] = list_phase_needs(record)
     return {**record, "jobs": list_jobs(record)}
+
+
+UNPLACED = "no-host"
+"""What the computer of steps without a host is called: no id has a hyphen."""
+_SEEN_FROM_AFAR = frozenset({"port", "topic", "service"})
+
+
+def record_step(
+    step: StartStep, number: int, names: Mapping[str, str], architecture: Architecture, ros: int
+) -> dict[str, Any]:
+    """Return a step as plain data. `names` are those of all steps, by id; times are in seconds, as texts."""
+    host = architecture.hosts.get(step.host or "")
+    way = _find_way(step, ros)
+    lifecycle = _record_lifecycle(step)
+    signs = [
+        {"kind": each.kind, "target": each.target, "is_seen_from_afar": each.kind in _SEEN_FROM_AFAR}
+        for each in step.signals
+        if each.kind != "end"
+    ]
+    is_brought = way == "loaded" or lifecycle is not None
+    return {
+        "number": number,
+        "id": step.id,
+        "name": step.file_name,
+        "title": step.title or step.id,
+        "kind": KIND_WORDS[step.kind],
+        "phase": step.phase,
+        "host": step.host or UNPLACED,
+        "address": (read_hint(host.annotations, "address") if host else "") or step.host or "localhost",
+        "runs": way,
+        "is_watched": bool(signs) or lifecycle is not None,
+        "command": list(step.command),
+        "preparations": [list(words) for words in step.preparations],
+        "values": _record_values(step, ros),
+        "awaited": [
+            {"name": names[each.awaited], "until": each.until, "reasons": list(each.reasons)}
+            for each in name_waits(step)
+        ],
+        "signs": signs,
+        "within": step.seconds_at_most or (str(DEFAULT_SECONDS) if is_brought else None),
+        "lifecycle": lifecycle,
+        "container": step.ros.container if step.ros and way == "loaded" else None,
+        "respawn": (format_seconds(step.respawn_delay) if step.respawn_delay else "0") if step.respawn else None,
+        "environment": [{"name": name, "value": value} for name, value in step.environment.items()],
+        "directory": step.directory,
+        "user": step.user,
+        "needs_rights": list(step.needs_rights),
+        "image": _find_image(step, architecture),
+        "up_when": describe_ready(step),
+        "place": write_place(_find_place(step, architecture)),
+    }
+
+
+def _find_way(step: StartStep, ros: int) -> str:
+    """Return how a step runs: until it is stopped, to its end, as a command that loads it, or nobody knows how."""
+    if not step.command:
+        return "nobody"
+    if step.once:
+        return "once"
+    # In ROS 1 the command that loads a nodelet stays, and takes it away again at its end.
+    return "loaded" if step.kind == "composable" and step.container is not None and ros != 1 else "program"
+
+
+def _record_lifecycle(step: StartStep) -> dict[str, Any] | None:
+    if not step.transitions or step.ros is None:
+        return None
+    return {
+        "node": step.ros.full_name,
+        "state": step.state,
+        "transitions": [words[-1] for words in step.transitions],
+    }
+
+
+def _record_values(step: StartStep, ros: int) -> list[dict[str, Any]]:
+    """Return the parameters whose values are the output of commands: ROS 1 has them on a server, by their complete names."""
+    if step.ros is None:
+        return []
+    return [
+        {"name": f"{step.ros.full_name}/{name.replace('.', '/')}" if ros == 1 else name, "words": list(words)}
+        for name, words in step.ros.value_commands.items()
+    ]
+
+
+def _find_place(step: StartStep, architecture: Architecture) -> Span:
+    if step.kind == "container":
+        return architecture.containers[step.container or ""].at
+    return architecture.nodes[step.id].at
+
+
+def _find_image(step: StartStep, architecture: Architecture) -> str:
+    """Return the image that holds a step's program: its own, else that of its host; empty where none is written."""
+    if step.kind == "container":
+        element = architecture.containers[step.container or ""].annotations
+    else:
+        element = architecture.nodes[step.id].annotations
+    host = architecture.hosts.get(step.host or "")
+    return read_hint(element, "image") or (read_hint(host.annotations, "image") if host else "")
+
+
+_BACKEND = "start"
+
+
+def read_hint(annotations: ElementAnnotations, key: str) -> str:
+    """Return what `hints: {start: {KEY: ...}}` of an element says; empty where it says nothing of that."""
+    hints = annotations.hints.get(_BACKEND)
+    value = hints.get(key) if isinstance(hints, Mapping) else None
+    return value.strip() if isinstance(value, str) else ""
+
+
+def find_unread_hints(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Yield the hints for the start-up that nobody reads: unknown ones, and those that are no text."""
+    for host in architecture.hosts.values():
+        yield from _judge_hints(host.id, host.annotations, host.at, ("address", "image"))
+    for container in architecture.containers.values():
+        yield from _judge_hints(container.id, container.annotations, container.at, ("image",))
+    for node in architecture.nodes.values():
+        yield from _judge_hints(node.id, node.annotations, node.at, ("image",))
+
+
+def _judge_hints(
+    element: str, annotations: ElementAnnotations, at: Span, known_keys: tuple[str, ...]
+) -> Iterator[Diagnostic]:
+    hints = annotations.hints.get(_BACKEND)
+    if hints is None:
+        return
+    places = annotations.hint_places
+    place = first_written_span(places.get((_BACKEND,), NO_SPAN), at)
+    known = f"what is known here is {' and '.join(f'`{key}`' for key in known_keys)}, each a text"
+    if not isinstance(hints, Mapping):
+        yield tell_left_out(
+            f"the hints of `{element}` for `start` are no mapping", place, element=element, help_line=known
+        )
+        return
+    for key, value in hints.items():
+        key_place = first_written_span(places.get((_BACKEND, key), NO_SPAN), place)
+        if key not in known_keys:
+            message = f"nobody reads the hint `{key}` of `{element}` for `start`"
+            yield tell_left_out(
+                message, key_place, element=element, help_line=did_you_mean(str(key), known_keys) or known
+            )
+        elif not isinstance(value, str) or not value.strip():
+            message = f"the hint `{key}` of `{element}` for `start` is no text"
+            yield tell_left_out(message, key_place, element=element, help_line=known)

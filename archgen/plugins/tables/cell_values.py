@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import pairwise
 
 from archgen.plugin.model import parse_quantity
 from archgen.plugin.ros import full_message_name
@@ -131,13 +132,26 @@ def read_package(project: ImportedProject, cell: TableCell) -> str | None:
     return None
 
 
+def _split_outside_brackets(text: str) -> list[str]:
+    """Split at commas; those before a closing bracket that no opening one precedes are within brackets."""
+    commas: list[int] = []
+    undecided_commas: list[int] = []
+    for sign in re.finditer(r"[,()\[\]]", text):
+        if sign[0] == ",":
+            undecided_commas.append(sign.start())
+            continue
+        if sign[0] in "([":
+            commas += undecided_commas
+        undecided_commas = []
+    commas += undecided_commas
+    return [text[start + 1 : end] for start, end in pairwise([-1, *commas, len(text)])]
+
+
 def split_cell_list(cell: TableCell) -> list[str]:
     """Split a list in one cell at line ends and semicolons, else at commas outside of brackets."""
-    if re.search(r"[\n\r;]", cell.text):
-        # Where a list is split at line ends or semicolons, a comma is a part of an item.
-        items = re.split(r"[\n\r;]+", cell.text)
-    else:
-        items = re.split(r",(?![^(\[]*[)\]])", cell.text)
+    # Where a list is split at line ends or semicolons, a comma is a part of an item.
+    items = re.split(r"[\n\r;]+", cell.text)
+    items = items if len(items) > 1 else _split_outside_brackets(cell.text)
     return [" ".join(item.strip(" \t-*\u2022").split()) for item in items if item.strip(" \t-*\u2022")]
 
 

@@ -17,11 +17,11 @@ HeadingMap = Mapping[str, str]
 _ANCHOR_KEYS = frozenset({"component", "title", "id", "from", "to", "node", "group", "input", "output"})
 """A row of headings has one of these, unless it heads a table of requirements or types."""
 _UNIT_PATTERN = re.compile(
-    r"(?:[(\[]\s*|\s+(?:in|en)\s+|\s*[/,]\s*|\s+)(?P<unit>k?hz|[m\u00b5\u03bcu]?s|fps|min|1/(?:s|min))\s*[)\]]?\s*\Z",
+    r"(?:[(\[/,]\s*+|(?<!\s)\s++(?:(?:in|en)\s++|[/,]\s*+)?)(?P<unit>k?hz|[m\u00b5\u03bcu]?s|fps|min|1/(?:s|min))\s*+[)\]]?\s*+\Z",
     re.IGNORECASE,
 )
 _KEYS_WITH_UNIT = frozenset({"rate", "period"})
-_BRACKET_PATTERN = re.compile(r"[(\[]\s*([A-Za-z\u00b5\u03bc/0-9]+)\s*[)\]]\s*\Z")
+_BRACKET_PATTERN = re.compile(r"[(\[]\s*+([A-Za-z\u00b5\u03bc/0-9]++)\s*+[)\]]\s*+\Z")
 _DETAIL_PATTERN = re.compile(r"[(\[].*\Z", re.DOTALL)
 
 LIST_TABLES: Mapping[tuple[str, ...], tuple[str, Mapping[str, str]]] = {

@@ -9,13 +9,12 @@ from dataclasses import dataclass, field
 
 from archgen.plugin.findings import Diagnostic, Label, Severity
 from archgen.plugin.importing import Span, find_closest, make_id, make_unique_id
-from archgen.plugins.tables.cell_ledger import CellLedger, ElementPath
-from archgen.plugins.tables.table_cells import TableCell
+from archgen.plugins.tables.table_cells import CellLedger, ElementPath, TableCell
 
 UNSORTED = "unsorted"
 """The group of components for which no row names one."""
 _MAX_GUESSES = 20
-_PATH_SEPARATOR = re.compile(r"\s*(?:::|->|[./:>\\|])\s*")
+_PATH_SEPARATOR = re.compile(r"(?:(?<!\s)\s++)?+(?:::|->|[./:>\\|])\s*+")
 
 
 @dataclass(slots=True)

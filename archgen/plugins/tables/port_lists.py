@@ -16,10 +16,11 @@ _NONE_WORDS = frozenset(
     | {"aucun", "aucune", "néant", "rien", "non", "ninguno", "ninguna", "nada"}
 )
 _FROM_PATTERN = re.compile(
-    r"(.+?)(?:\s+from\s+|\s*<-\s*|\s*\u2190\s*|\s*@\s*)(.+)\Z|(.+?)\s*\((?:from|von|aus|de|du|depuis|desde|del)\s+(.+)\)\Z"
+    r"(?!.*+\n)(?:(.+?)(?:(?<!\s)\s++from\s++|(?:(?<!\s)\s++)?+(?:<-|\u2190|@)\s*+)(.++)\Z"
+    r"|(?=.*\)\Z)(.+?)(?:(?<!\s)\s++)?+\((?:from|von|aus|de|du|depuis|desde|del)\s++(.+)\)\Z)"
 )
 # These words are also parts of names (`nuage de points`): they count only before the name of a component.
-_WEAK_FROM_PATTERN = re.compile(r"\s+(?:von|vom|aus|de la|de l'|du|depuis|desde|del|de)\s*(?=\S)")
+_WEAK_FROM_PATTERN = re.compile(r"(?<!\s)\s++(?:von|vom|aus|de la|de l'|du|depuis|desde|del|de)\s*+(?=\S)")
 
 
 def import_outputs(project: ImportedProject, row: TableRecord) -> None:

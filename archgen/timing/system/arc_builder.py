@@ -12,8 +12,7 @@ from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Link
-from archgen.model.node import Endpoint, Topic
-from archgen.model.qos_profiles import QOS_PROFILES
+from archgen.model.node import QOS_PROFILES, Endpoint, Topic
 from archgen.timing.figures.tick_unit import TickUnit
 from archgen.timing.system import message_sizes
 from archgen.timing.system.activity_builder import ActivityNames, activity_of_endpoint, endpoint_key

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from archgen.model.architecture import Architecture
-from archgen.model.frame_sharing import SharedFrame, find_shared_frames
+from archgen.model.setting_sharing import SharedFrame, find_shared_frames
 from archgen.views import inline_text
 from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.term_changes import write_signed_kind

@@ -11,9 +11,8 @@ from dataclasses import dataclass
 from archgen.frozen import replace
 from archgen.model.agreed_terms import INTERFACE_TERMS, find_agreement
 from archgen.model.component import Component
-from archgen.model.interface_ends import foreign_owners
 from archgen.model.node import Endpoint, Qos
-from archgen.model.partner_interfaces import PartnerInterface, components_at_ends
+from archgen.model.partner_interfaces import PartnerInterface, components_at_ends, foreign_owners
 from archgen.model.ros_distro import is_ros_1
 from archgen.timing.analysis import ChainResult
 from archgen.timing.system import activity_builder

@@ -9,10 +9,10 @@ from typing import TypeVar
 from archgen.analyses.kept_promises import judge_promises, rank_bound
 from archgen.frozen import dataclass, replace
 from archgen.model.component import Output
+from archgen.model.component_nesting import find_relied_output
 from archgen.model.partner_interfaces import PartnerInterface, list_givers
 from archgen.model.promise import Promise, describe_deprecation, format_range
 from archgen.model.quantity import Quantity
-from archgen.model.relied_outputs import find_relied_output
 from archgen.timing.chains.read_ages import find_read_ages, find_sent_ages
 from archgen.timing.figures.figure_wording import format_duration
 from archgen.timing.figures.timing_values import TimingValue

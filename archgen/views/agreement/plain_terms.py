@@ -24,7 +24,7 @@ from archgen.views.timing import value_format
 _NODE_TERMS = {RATE.key, MAX_GAP.key, "response"}
 """Keys of terms that stay the same where their node is renamed."""
 CONTRADICTION_KIND = "contradictions"
-_FIGURE = re.compile(r"[0-9]+(?:\.[0-9]+)? [A-Za-z]+")
+_FIGURE = re.compile(r"(?<![0-9])[0-9]++(?:\.[0-9]++)? [A-Za-z]+")
 
 
 @dataclass(frozen=True, slots=True)

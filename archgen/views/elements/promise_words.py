@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterator
 
 from archgen.model.architecture import Architecture
 from archgen.model.component import ComponentType, Connection, Output
+from archgen.model.component_nesting import find_relied_output
 from archgen.model.deprecation_lookup import find_replacement
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Topic
 from archgen.model.promise import Promise, describe_deprecation, format_range
-from archgen.model.relied_outputs import find_relied_output
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Inlines, Text

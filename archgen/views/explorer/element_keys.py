@@ -16,10 +16,15 @@ from archgen.model.deprecation_lookup import list_deprecated_kinds
 from archgen.model.node import Node
 from archgen.model.parameter_values import find_effective_parameters
 from archgen.model.port_media import list_medium_words
-from archgen.model.property_conditions import find_component_properties, find_node_properties
-from archgen.model.requirement_tree import add_above
+from archgen.model.requirement import add_above
 from archgen.model.selector_evaluation import SelectorEvaluator
-from archgen.model.selector_keys import SelectorHit, find_component_status, list_participants
+from archgen.model.selector_keys import (
+    SelectorHit,
+    find_component_properties,
+    find_component_status,
+    find_node_properties,
+    list_participants,
+)
 from archgen.views.lookup import Lookup
 
 Key = tuple[str, str]

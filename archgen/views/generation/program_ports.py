@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from archgen.bringup.program_names import choose_own_name, find_common_message, group_endpoints
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.model.architecture import Architecture
-from archgen.model.language_keywords import PYTHON_KEYWORDS
+from archgen.model.code_names import PYTHON_KEYWORDS
 from archgen.model.message_types import ConceptualType, full_message_name
 from archgen.model.node import Endpoint, Node, Qos
 from archgen.model.quantity import Quantity

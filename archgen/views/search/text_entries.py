@@ -10,7 +10,9 @@ from archgen.views.lookup import Lookup
 from archgen.views.search.search_entry import SearchEntry, join_entry_parts, to_plain_text
 from archgen.views.shapes import Markdown, Page
 
-_HEADING = re.compile(r"^ {0,3}#{1,6}[ \t]+(.*?)[ \t]*#*[ \t]*$", re.MULTILINE)
+_HEADING = re.compile(
+    r"^ {0,3}#{1,6}[ \t]++(.*?)(?:(?<![ \t])[ \t]++)?+(?:(?<!#)#++)?+(?:(?<![ \t])[ \t]++)?+$", re.MULTILINE
+)
 
 
 def make_finding_entries(lookup: Lookup) -> Iterator[SearchEntry]:

@@ -7,10 +7,10 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from archgen.language.language_tables import DATA_PARTS, ENTRIES, KEYS, SECTION_KINDS
 from archgen.model.annotated_elements import Annotated
 from archgen.model.component import Connection, Input, Output
+from archgen.model.component_nesting import find_relied_output
 from archgen.model.node import Topic
 from archgen.model.parameter_values import find_effective_parameters
 from archgen.model.port_media import name_on_medium, nature_of, uses_ros, word_of_medium
-from archgen.model.relied_outputs import find_relied_output
 from archgen.views.elements import parameter_blocks, promise_words
 from archgen.views.elements.card_parts import format_fact
 from archgen.views.elements.frame_users import index_frame_ports, list_shown_frames

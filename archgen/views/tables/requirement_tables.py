@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
 
-from archgen.model.requirement import Requirement
-from archgen.model.requirement_tree import TreeRow, add_above, walk_tree
+from archgen.model.requirement import Requirement, TreeRow, add_above, walk_tree
 from archgen.views import inline_text, requirement_servers
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Column, Inlines, Table, Text, drop_empty_columns

@@ -17,7 +17,7 @@ from archgen.views.shapes import Block, Column, Fact, Figure, Inlines, Table, Te
 from archgen.views.timing import chain_charts, load_charts, rate_phrases, timing_tables, use_tables, value_format
 from archgen.views.timing.timing_lookup import TimingLookup
 
-_ACTIVITY_NAME = re.compile(r"([a-z0-9.]+(?:_[a-z0-9.]+)+)")
+_ACTIVITY_NAME = re.compile(r"(?<![a-z0-9.])([a-z0-9.]++(?:_[a-z0-9.]++)++)")
 
 
 def make_whole_fact(lookup: Lookup, component_id: str) -> Inlines:

@@ -17,9 +17,9 @@ _MAY_READ = (
     "archgen.plugins.ros.running_graph.",
 )
 _WRITERS = {
-    "archgen.bringup.parameter_words",
+    "archgen.bringup.start_commands",
     "archgen.model.parameter_values",
-    "archgen.plugins.ros_code.launch_parameters",
+    "archgen.plugins.ros_code.launch_entries",
 }
 """What only writes a parameter, or knows that ROS declares it."""
 

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from archgen.model.language_keywords import AADL_KEYWORDS
+from archgen.model.code_names import AADL_KEYWORDS
 
 _TOKEN = re.compile(
     r'\s+|--[^\n]*\n|(?P<text>"[\x20\x21\x23-\x5b\x5d-\x7e]*")|(?P<word>[A-Za-z](?:_?[A-Za-z0-9])*)|(?P<number>\d+)'

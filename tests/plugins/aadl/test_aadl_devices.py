@@ -10,7 +10,7 @@ import yaml
 
 from archgen.pipeline import check_project
 from archgen.plugins.aadl.aadl_import import read_aadl
-from archgen.plugins.aadl.views.aadl_devices import is_device
+from archgen.plugins.aadl.views.aadl_component_types import is_device
 from archgen.plugins.aadl.views.aadl_view import make_view
 from archgen.views.generation.generation_context import GenerationContext
 from tests.plugins.aadl.aadl_judge import judge_packages

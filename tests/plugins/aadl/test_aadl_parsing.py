@@ -6,7 +6,6 @@ from fractions import Fraction
 
 import pytest
 
-from archgen.plugins.aadl.aadl_tokens import END, scan_tokens
 from archgen.plugins.aadl.aadl_tree import (
     AadlLink,
     AadlList,
@@ -19,7 +18,7 @@ from archgen.plugins.aadl.aadl_tree import (
     AadlValue,
 )
 from archgen.plugins.aadl.package_parsing import parse_text
-from archgen.plugins.aadl.token_cursor import MAX_DEPTH
+from archgen.plugins.aadl.token_cursor import END, MAX_DEPTH, scan_tokens
 from tests.plugins.aadl.aadl_texts import list_faults, parse_package
 
 
@@ -46,7 +45,7 @@ def test_tokens_of_a_line() -> None:
     ("written", "value"),
     [
         ("3", AadlNumber(Fraction(3))),
-        ("-2.5 ms", AadlNumber(Fraction(-5, 2), "ms", is_real=True)),
+        ("-2.5 ms", AadlNumber(Fraction(-5, 2), "ms")),
         ("16#FF#", AadlNumber(Fraction(255))),
         ("1_000", AadlNumber(Fraction(1000))),
         ("1 ms .. 2 ms", AadlRange(AadlNumber(Fraction(1), "ms"), AadlNumber(Fraction(2), "ms"))),

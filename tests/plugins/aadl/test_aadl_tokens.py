@@ -5,7 +5,7 @@ from __future__ import annotations
 import tracemalloc
 from itertools import islice
 
-from archgen.plugins.aadl.aadl_tokens import scan_tokens
+from archgen.plugins.aadl.token_cursor import scan_tokens
 
 
 def test_a_long_text_is_read_without_a_note_for_each_of_its_characters() -> None:

@@ -12,8 +12,8 @@ from archgen.importers.bounded_files import read_bounded
 from archgen.importers.foreign_import import ForeignFileError
 from archgen.plugins.aadl import aadl_import, hardware_tree, system_walk
 from archgen.plugins.aadl.aadl_import import read_aadl
-from archgen.plugins.aadl.aadl_tokens import TooManyTokensError, scan_tokens
 from archgen.plugins.aadl.hardware_tree import HardwareTree
+from archgen.plugins.aadl.token_cursor import TooManyTokensError, scan_tokens
 from tests.plugins.aadl.aadl_texts import MODELS, import_package, import_text, list_faults, merge_slices, tell_notes
 
 PATIENCE = 60.0

@@ -9,6 +9,7 @@ import pytest
 
 from archgen.model.parameter import CallMode, Operation
 from archgen.pipeline import check_project
+from archgen.plugins.middlewares.middleware_classes import is_command
 from archgen.plugins.middlewares.middleware_names import (
     make_class_name,
     name_inside,
@@ -17,7 +18,6 @@ from archgen.plugins.middlewares.middleware_names import (
     name_space,
     shorten_wire_name,
 )
-from archgen.plugins.middlewares.middleware_operations import is_command
 from archgen.plugins.middlewares.middleware_view import make_view
 from archgen.plugins.middlewares.player_interfaces import record_interface
 from archgen.views.generation.generation_context import GenerationContext

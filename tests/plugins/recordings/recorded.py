@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from archgen import pipeline
-from archgen.importers.recorded_files import ReadRecordings
+from archgen.importers.foreign_import import ReadRecordings
 from archgen.plugins.recordings.recorded_names import RecordedNames
 from archgen.plugins.recordings.recording_import import read_recordings
 from archgen.timing.chains.chain_bounds import bound_all_chains

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.importers.recorded_files import RecordingRefusedError
+from archgen.importers.foreign_import import RecordingRefusedError
 from archgen.plugins.recordings.recording_import import find_format, find_recording_file
 from archgen.plugins.recordings.recording_lines import RecordingSource
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.importers.recorded_files import RecordingRefusedError
+from archgen.importers.foreign_import import RecordingRefusedError
 from archgen.plugins.recordings import recording_import
 from archgen.plugins.recordings.recording_import import read_recordings
 from tests.plugins.recordings.recorded import list_figures, list_problems, make_names, node, read, run, timer

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.plugins.recordings import trace_losses, trace_reading, trace_registry
+from archgen.plugins.recordings import trace_events, trace_reading
 from tests.measured_project import PROJECT
 from tests.plugins.recordings import recorded
 from tests.plugins.recordings.recorded import (
@@ -222,7 +222,7 @@ def test_a_session_that_began_after_the_nodes_says_so(tmp_path: Path) -> None:
 
 
 def test_a_trace_of_too_many_things_is_refused_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(trace_registry, "MAX_ADDRESSES", 6)
+    monkeypatch.setattr(trace_events, "MAX_ADDRESSES", 6)
     recordings = read(tmp_path, SCANNER + THREE_RUNS + subscription("1", "0x8", "/a"))
     assert list_figures(recordings) == []
     assert list_problems(recordings) == ["12 error: the trace tells of more things than any robot has"]
@@ -242,7 +242,7 @@ def test_a_trace_of_too_many_callbacks_is_refused_whole(
 
 
 def test_many_losses_take_no_more_room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(trace_losses, "_MAX_LOSSES", 3)
+    monkeypatch.setattr(trace_reading, "_MAX_LOSSES", 3)
     assert list_figures(read(tmp_path, SCANNER + LOSS * 10 + run("1", "0x1", 100, 104))) == [
         "scan: bcet 4 ms, wcet 4 ms"
     ]

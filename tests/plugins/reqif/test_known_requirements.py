@@ -13,7 +13,7 @@ from archgen.plugins.reqif.known_requirements import (
     make_identity_hints,
 )
 from archgen.plugins.reqif.reqif_document import ReqifDocument, ReqifObject
-from archgen.plugins.reqif.requirement_mapping import cut_circles, take_requirements
+from archgen.plugins.reqif.reqif_import import cut_circles, take_requirements
 
 
 def known(*hints: object) -> KnownRequirements:

@@ -9,14 +9,16 @@ from pathlib import Path
 
 import pytest
 
-from archgen.importers.foreign_import import ForeignFileError
-from archgen.importers.imported_requirements import ImportedRequirements
+from archgen.importers.foreign_import import ForeignFileError, ImportedRequirements
 from archgen.plugins.reqif import reqif_files as files_module
 from archgen.plugins.reqif.attribute_meanings import fold_attribute_name
-from archgen.plugins.reqif.reqif_files import read_reqif_file
-from archgen.plugins.reqif.reqif_import import read_requirements
-from archgen.plugins.reqif.reqif_parsing import XhtmlText
-from archgen.plugins.reqif.requirement_ids import is_requirement_id, make_distinct_id, make_requirement_id
+from archgen.plugins.reqif.reqif_files import XhtmlText, read_reqif_file
+from archgen.plugins.reqif.reqif_import import (
+    is_requirement_id,
+    make_distinct_id,
+    make_requirement_id,
+    read_requirements,
+)
 from tests.quiet_seconds import measure_quiet_seconds
 
 DOORS = Path(__file__).parent / "doors.reqif"

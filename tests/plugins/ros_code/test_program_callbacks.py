@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from archgen.model.node import Node
-from archgen.plugins.ros_code.program_callbacks import CALLED_SECTIONS, add_callback_groups
+from archgen.plugins.ros_code.node_programs import CALLED_SECTIONS, add_callback_groups
 
 GROUPS = {"fast": ("g.stop",), "class": ("g.map",), "idle": ("g.log",)}
 

@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 
 from archgen.pipeline import check_project
-from archgen.plugins.ros_code.node_programs import make_view
-from archgen.plugins.ros_code.usable_programs import drop_unusable
+from archgen.plugins.ros_code.node_programs import drop_unusable, make_view
 from archgen.views.generation.generation_context import GeneratedView, GenerationContext
 
 

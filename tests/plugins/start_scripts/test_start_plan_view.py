@@ -9,10 +9,8 @@ import pytest
 
 from archgen.bringup.start_plan import make_start_plan
 from archgen.pipeline import check_project
-from archgen.plugins.start_scripts.start_hints import find_unread_hints, read_hint
 from archgen.plugins.start_scripts.start_jobs import list_jobs, list_phase_needs, list_seen_signs
-from archgen.plugins.start_scripts.start_plan_view import make_view
-from archgen.plugins.start_scripts.start_step_record import UNPLACED, record_step
+from archgen.plugins.start_scripts.start_plan_view import UNPLACED, find_unread_hints, make_view, read_hint, record_step
 from archgen.views.generation.generation_context import GenerationContext
 
 PROJECT = """\

@@ -12,10 +12,9 @@ from hypothesis import strategies as st
 
 from archgen.diagnostics.source_span import Span
 from archgen.plugins.tables import table_import
-from archgen.plugins.tables.cell_ledger import CellLedger, CellUse
-from archgen.plugins.tables.import_summary import render_import_summary
-from archgen.plugins.tables.table_cells import TableCell
-from archgen.start import start_answers, starter_slices
+from archgen.plugins.tables.table_cells import CellLedger, CellUse, TableCell
+from archgen.plugins.tables.table_import import render_import_summary
+from archgen.start import project_plan, start_answers
 from tests.property_sizes import count_examples
 from tests.workbooks import make_workbook
 
@@ -109,7 +108,7 @@ def _read_yaml(imported: table_import.TableImport) -> dict[str, Any]:
     """Return what the files of the project say, read by another program than the one that wrote them."""
     answers = start_answers.add_partners(start_answers.collect_answers("r"), imported.data.get("partners", {}))
     merged: dict[str, Any] = {}
-    for content in starter_slices.imported_files(answers, imported.data, has_other_yaml=False).values():
+    for content in project_plan.imported_files(answers, imported.data, has_other_yaml=False).values():
         for section, value in yaml.safe_load(content).items():
             merged.setdefault(section, {}).update(value) if isinstance(value, dict) else merged.update({section: value})
     return merged

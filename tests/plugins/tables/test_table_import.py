@@ -8,7 +8,7 @@ import pytest
 
 from archgen.pipeline import CheckedProject
 from archgen.plugins.tables import table_cells, table_import
-from archgen.start import project_plan, start_answers, starter_slices
+from archgen.start import project_plan, start_answers
 
 
 def read(text: str | bytes) -> table_import.TableImport:
@@ -28,7 +28,7 @@ def said(text: str | bytes) -> list[str]:
 def made(imported: table_import.TableImport) -> CheckedProject:
     """Check the files that the data become."""
     given = start_answers.add_partners(start_answers.collect_answers("r"), imported.data.get("partners", {}))
-    return project_plan.judge_files(starter_slices.imported_files(given, imported.data, has_other_yaml=False), "r")
+    return project_plan.judge_files(project_plan.imported_files(given, imported.data, has_other_yaml=False), "r")
 
 
 CONNECTIONS = """\

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from archgen.cli import main as verbs
 from archgen.pipeline import CheckedProject, check_project
 from archgen.plugins.tables import table_import
-from archgen.start import project_plan, start_answers, starter_slices
+from archgen.start import project_plan, start_answers
 from tests.judged_projects import judge_ramcip
 from tests.property_sizes import count_examples
 from tests.running import RAMCIP, ROOT, archgen_here
@@ -26,7 +26,7 @@ def read(data: bytes) -> table_import.TableImport:
 def made(imported: table_import.TableImport) -> CheckedProject:
     """Check the files that the data become."""
     given = start_answers.add_partners(start_answers.collect_answers("r"), imported.data.get("partners", {}))
-    return project_plan.judge_files(starter_slices.imported_files(given, imported.data, has_other_yaml=False), "r")
+    return project_plan.judge_files(project_plan.imported_files(given, imported.data, has_other_yaml=False), "r")
 
 
 NAMES = st.text(st.characters(codec="utf-8", exclude_characters="\0"), max_size=12) | st.sampled_from(

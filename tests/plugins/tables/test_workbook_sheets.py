@@ -5,9 +5,8 @@ from __future__ import annotations
 import pytest
 
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.plugins.tables.cell_formats import CellFormats
 from archgen.plugins.tables.office_files import OfficeFile, UnreadableOfficeFileError
-from archgen.plugins.tables.workbook_sheets import read_workbook
+from archgen.plugins.tables.workbook_sheets import CellFormats, read_workbook
 from tests.workbooks import make_workbook, zip_parts
 
 STRINGS = "<si><t>Group</t></si><si><r><t>Com</t></r><r><t>ponent</t></r><rPh><t>x</t></rPh></si>"

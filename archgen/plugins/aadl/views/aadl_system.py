@@ -9,9 +9,8 @@ from typing import Any
 from archgen.plugin.generating import GenerationContext, title_from_id
 from archgen.plugin.model import Architecture, Chain, Endpoint
 from archgen.plugin.timing import Analysis
-from archgen.plugins.aadl.views.aadl_calls import RouteEnds, RouteFinder
-from archgen.plugins.aadl.views.aadl_devices import NodeDevice
-from archgen.plugins.aadl.views.aadl_flows import FlowWriter
+from archgen.plugins.aadl.views.aadl_component_types import NodeDevice
+from archgen.plugins.aadl.views.aadl_flows import FlowWriter, RouteEnds, RouteFinder
 from archgen.plugins.aadl.views.aadl_hints import list_own_sources, read_aadl_hints
 from archgen.plugins.aadl.views.aadl_platform import Platform
 from archgen.plugins.aadl.views.aadl_ports import PortPart

@@ -8,8 +8,13 @@ from typing import Any
 
 from archgen.plugin.generating import GeneratedView, GenerationContext
 from archgen.plugin.model import Architecture, Endpoint, Output, flow_of_port
-from archgen.plugins.aadl.views.aadl_component_types import TypeWriter, find_type_of_node, list_shared_types
-from archgen.plugins.aadl.views.aadl_devices import NodeDevice, is_device
+from archgen.plugins.aadl.views.aadl_component_types import (
+    NodeDevice,
+    TypeWriter,
+    find_type_of_node,
+    is_device,
+    list_shared_types,
+)
 from archgen.plugins.aadl.views.aadl_processes import NodeProcess
 from archgen.plugins.aadl.views.aadl_system import LAUNCH, SystemWriter
 from archgen.plugins.aadl.views.aadl_types import TypeBook

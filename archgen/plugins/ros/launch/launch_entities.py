@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 from archgen.plugin.importing import (
     ForeignFileError,
@@ -17,6 +18,9 @@ from archgen.plugin.importing import (
     parse_xml,
     parse_yaml,
 )
+from archgen.plugins.ros.launch.launch_actions import ActionKind, LaunchAction, LaunchCondition
+from archgen.plugins.ros.launch.launch_values import LaunchValue
+from archgen.plugins.ros.launch.substitution_texts import read_substituted_text
 
 _LIST_ATTRIBUTES = frozenset({"value"})
 
@@ -95,3 +99,74 @@ def _read_node(tag: str, node: YamlNode, span: Span) -> LaunchEntity:
         else:
             entity.children.append(_read_node(entry.key, value, entry.key_span))
     return entity
+
+
+class EntityReader:
+    """Turns elements into actions. `folder` is what `$(dirname)` stands for."""
+
+    is_ros_1: ClassVar[bool]
+    plain_actions: ClassVar[Mapping[str, tuple[ActionKind, Mapping[str, str]]]]
+    """By their tags, elements whose attributes are what an action takes: its kind, and attributes by archgen's names."""
+    unread_reasons: ClassVar[Mapping[str, str]]
+    node_keys: ClassVar[Mapping[str, tuple[str, ...]]]
+    """The attributes of a node by archgen's names for them; of several the first that is written counts."""
+
+    def __init__(self, folder: str) -> None:
+        self._folder = folder
+        self._readers: dict[str, Callable[[LaunchEntity], LaunchAction]] = {}
+
+    def read_launch(self, root: LaunchEntity) -> list[LaunchAction]:
+        """Return the actions of a launch file."""
+        return [self._read_entity(child) for child in root.children]
+
+    def _value(self, value: Any) -> LaunchValue:  # noqa: ANN401 - XML gives text, YAML more
+        if isinstance(value, str):
+            return read_substituted_text(value, self._folder, is_ros_1=self.is_ros_1)
+        return [self._value(item) for item in value] if isinstance(value, list) else value
+
+    def _attribute(self, entity: LaunchEntity, *names: str) -> LaunchValue:
+        return next((self._value(entity.attributes[name]) for name in names if name in entity.attributes), None)
+
+    def _read_entity(self, entity: LaunchEntity) -> LaunchAction:
+        tag = entity.tag.replace("-", "_")
+        if tag in self._readers:
+            action = self._readers[tag](entity)
+        elif tag in self.plain_actions:
+            kind, names = self.plain_actions[tag]
+            values = {key: self._attribute(entity, name) for key, name in names.items()}
+            action = LaunchAction(kind, entity.tag, entity.span, values)
+        else:
+            reason = self.unread_reasons.get(tag, "archgen does not know it")
+            action = LaunchAction("unread", entity.tag, entity.span, {"reason": reason})
+        action.conditions += self._read_conditions(entity)
+        return action
+
+    def _read_conditions(self, entity: LaunchEntity) -> list[LaunchCondition]:
+        return [
+            LaunchCondition(self._attribute(entity, word), is_negated)
+            for word, is_negated in (("if", False), ("unless", True))
+            if word in entity.attributes
+        ]
+
+    def _condition(self, _entity: LaunchEntity, value: LaunchValue) -> LaunchValue:
+        """Return what an element inside of another one gives, with its own conditions if such elements have any."""
+        return value
+
+    def _read_pairs(self, entity: LaunchEntity, tag: str, first: str, second: str) -> list[LaunchValue]:
+        """Return two attributes of each child with a tag."""
+        return [
+            self._condition(each, (self._attribute(each, first), self._attribute(each, second)))
+            for each in entity.find_all(tag)
+        ]
+
+    def _read_node_values(self, entity: LaunchEntity) -> dict[str, LaunchValue]:
+        values = {
+            key: value
+            for key, names in self.node_keys.items()
+            if (value := self._attribute(entity, *names)) is not None
+        }
+        values["arguments"] = [value] if (value := self._attribute(entity, "args")) is not None else []
+        values["splits_words"] = True
+        values["remaps"] = self._read_pairs(entity, "remap", "from", "to")
+        values["environment"] = self._read_pairs(entity, "env", "name", "value")
+        return values

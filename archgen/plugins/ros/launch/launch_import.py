@@ -17,15 +17,13 @@ from archgen.plugin.importing import (
     read_bounded,
     title_from_id,
 )
-from archgen.plugins.ros.launch.launch_actions import LaunchAction
+from archgen.plugins.ros.launch.entity_actions import Ros1EntityReader, Ros2EntityReader, is_ros_1_launch
+from archgen.plugins.ros.launch.launch_actions import LaunchAction, LaunchedNode
 from archgen.plugins.ros.launch.launch_entities import read_xml_entities, read_yaml_entities
 from archgen.plugins.ros.launch.launch_files import MAX_LAUNCH_BYTES, LaunchFiles
 from archgen.plugins.ros.launch.launch_run import LaunchRun
 from archgen.plugins.ros.launch.launch_slices import SliceMaker
-from archgen.plugins.ros.launch.launched_nodes import LaunchedNode
 from archgen.plugins.ros.launch.python_launch import read_python_launch, read_python_text
-from archgen.plugins.ros.launch.ros_1_entities import Ros1EntityReader, is_ros_1_launch
-from archgen.plugins.ros.launch.ros_2_entities import Ros2EntityReader
 from archgen.plugins.ros.launch.server_parameters import give_server_parameters
 
 _ENDINGS = (".launch.py", ".launch.xml", ".launch.yaml", ".launch.yml", ".launch", ".py", ".xml", ".yaml", ".yml")

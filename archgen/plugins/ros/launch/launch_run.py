@@ -6,12 +6,11 @@ from collections import Counter
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from archgen.plugins.ros.launch.launch_actions import LaunchAction
+from archgen.plugins.ros.launch.launch_actions import LaunchAction, LaunchedNode, join_names
 from archgen.plugins.ros.launch.launch_arguments import LaunchArguments
 from archgen.plugins.ros.launch.launch_context import LaunchContext, LaunchScope
 from archgen.plugins.ros.launch.launch_files import LaunchFiles
 from archgen.plugins.ros.launch.launch_values import OPEN, UnknownValue
-from archgen.plugins.ros.launch.launched_nodes import LaunchedNode, join_names
 from archgen.plugins.ros.launch.node_making import NodeMaker
 from archgen.plugins.ros.launch.scope_run import ScopeRun
 from archgen.plugins.ros.launch.server_parameters import ServerParameter, read_server_parameters
@@ -86,7 +85,6 @@ class LaunchRun(ScopeRun):
                 self.add_note(action.word, f"more than {MAX_ACTIONS:,} actions are not followed", action.span)
 
     def _run_conditional(self, action: LaunchAction) -> None:
-        action.is_taken = True
         verdicts = tuple(map(self.context.judge_condition, action.conditions))
         if any(verdict is False for _, verdict in verdicts):
             # What does not run sets nothing for what stands behind it.
@@ -231,7 +229,6 @@ class LaunchRun(ScopeRun):
         return next((node for node in reversed(self.nodes) if node.action is action), None)
 
     def _load_child(self, child: LaunchAction, container: LaunchedNode | None, container_name: str) -> None:
-        child.is_taken = True
         before = self.context.scope.conditions
         for condition in child.conditions:
             self.context.scope.conditions = (*self.context.scope.conditions, self.context.judge_condition(condition))

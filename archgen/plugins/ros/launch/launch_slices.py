@@ -7,9 +7,9 @@ from typing import Any
 
 from archgen.plugin.importing import make_id, make_unique_id
 from archgen.plugin.ros import expand_name, find_name_fault, find_node_name_fault
+from archgen.plugins.ros.launch.launch_actions import LaunchedNode
 from archgen.plugins.ros.launch.launch_run import LaunchRun
 from archgen.plugins.ros.launch.launch_values import OPEN
-from archgen.plugins.ros.launch.launched_nodes import LaunchedNode
 
 HINT = "launch"
 _MAX_COMMENT = 120

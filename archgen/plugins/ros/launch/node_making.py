@@ -8,9 +8,17 @@ from typing import Any
 
 from archgen.plugin.importing import find_program_name
 from archgen.plugins.ros.launch.command_words import split_words
-from archgen.plugins.ros.launch.launch_actions import LaunchAction
-from archgen.plugins.ros.launch.launch_parameter_files import FILE_KIND, overlay_parameters
-from archgen.plugins.ros.launch.launch_parameter_values import evaluate_parameter, split_parameter
+from archgen.plugins.ros.launch.launch_actions import LaunchAction, LaunchedNode, clean_name, join_names
+from archgen.plugins.ros.launch.launch_parameter_values import (
+    FILE_KIND,
+    FileRewrites,
+    evaluate_parameter,
+    overlay_parameters,
+    read_nodelet,
+    read_prefix,
+    read_ros_arguments,
+    split_parameter,
+)
 from archgen.plugins.ros.launch.launch_values import (
     OPEN,
     LaunchValue,
@@ -18,9 +26,6 @@ from archgen.plugins.ros.launch.launch_values import (
     UnknownValue,
     describe_launch_value,
 )
-from archgen.plugins.ros.launch.launched_nodes import LaunchedNode, clean_name, join_names
-from archgen.plugins.ros.launch.rewritten_files import FileRewrites
-from archgen.plugins.ros.launch.ros_arguments import read_nodelet, read_prefix, read_ros_arguments
 from archgen.plugins.ros.launch.scope_run import ScopeRun
 
 CONTAINER_PACKAGE = "rclcpp_components"

@@ -8,12 +8,11 @@ from abc import abstractmethod
 from collections.abc import Mapping
 
 from archgen.plugins.ros.launch.launch_actions import LaunchAction, LaunchCondition
-from archgen.plugins.ros.launch.launch_parameter_files import FILE_KIND
+from archgen.plugins.ros.launch.launch_parameter_values import FILE_KIND, FileRewrites
 from archgen.plugins.ros.launch.launch_values import LaunchValue, Substitution, UnknownValue, copy_value
 from archgen.plugins.ros.launch.opened_files import OpenedFileReader
 from archgen.plugins.ros.launch.python_actions import CONDITIONS, LAUNCH_MODULES, make_action, make_condition
 from archgen.plugins.ros.launch.python_values import BoundMethod, CallArguments, FunctionValue, ImportedName
-from archgen.plugins.ros.launch.rewritten_files import FileRewrites
 
 _SUBSTITUTIONS: dict[str, tuple[str, tuple[str, ...]]] = {
     "LaunchConfiguration": ("var", ("variable_name", "default")),

@@ -6,11 +6,11 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from archgen.plugin.importing import ImportNote, Span
-from archgen.plugins.ros.launch.launch_actions import ActionKind, ConditionalValue, LaunchAction
+from archgen.plugins.ros.launch.launch_actions import ActionKind, ConditionalValue, LaunchAction, clean_name, join_names
 from archgen.plugins.ros.launch.launch_arguments import DeclaredArgument, LaunchArguments
 from archgen.plugins.ros.launch.launch_context import LaunchContext
 from archgen.plugins.ros.launch.launch_files import LaunchFiles
-from archgen.plugins.ros.launch.launch_parameter_files import FILE_KIND, ParameterFileReader
+from archgen.plugins.ros.launch.launch_parameter_values import FILE_KIND, ParameterFileReader
 from archgen.plugins.ros.launch.launch_values import (
     OPEN,
     LaunchValue,
@@ -18,7 +18,6 @@ from archgen.plugins.ros.launch.launch_values import (
     UnknownValue,
     describe_launch_value,
 )
-from archgen.plugins.ros.launch.launched_nodes import clean_name, join_names
 
 
 class ScopeRun:

@@ -6,11 +6,15 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from archgen.plugin.importing import Span
-from archgen.plugins.ros.launch.launch_actions import LaunchAction
-from archgen.plugins.ros.launch.launch_parameter_files import FILE_KIND, overlay_parameters
-from archgen.plugins.ros.launch.launch_parameter_values import CommandWords, evaluate_parameter, split_parameter
+from archgen.plugins.ros.launch.launch_actions import LaunchAction, LaunchedNode
+from archgen.plugins.ros.launch.launch_parameter_values import (
+    FILE_KIND,
+    CommandWords,
+    evaluate_parameter,
+    overlay_parameters,
+    split_parameter,
+)
 from archgen.plugins.ros.launch.launch_values import Substitution, UnknownValue
-from archgen.plugins.ros.launch.launched_nodes import LaunchedNode
 from archgen.plugins.ros.launch.scope_run import ScopeRun
 
 SIMULATED_TIME = "use_sim_time"

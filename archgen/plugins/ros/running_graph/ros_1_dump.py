@@ -7,9 +7,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from archgen.plugin.ros import KNOWN_DISTROS, PAST_DISTROS
-from archgen.plugins.ros.running_graph.dump_lines import DumpLine
-from archgen.plugins.ros.running_graph.dumped_parameters import read_server_values
-from archgen.plugins.ros.running_graph.graph_model import RunningGraph, RunningNode
+from archgen.plugins.ros.running_graph.dump_lines import DumpLine, RunningGraph, RunningNode, read_server_values
 
 _NODE = re.compile(r"Node \[(/\S+)\]")
 _SECTIONS = {"Publications:": "publishes", "Subscriptions:": "subscribes", "Services:": "serves"}

@@ -1,12 +1,14 @@
-"""Conceptual types as data types and enumerations, and the types that ports, fields and parameters name."""
+"""Conceptual types as data types and enumerations, and the types that ports, fields and parameters name.
+
+Signatures of templates: names that stand for types in a generic type or component type.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from archgen.plugins.xmi.views.uml_signatures import make_signature
 from archgen.plugins.xmi.views.uml_tree import (
     IdRegistry,
     UmlTree,
@@ -120,3 +122,19 @@ class UmlTypes:
         text = ("true" if value else "false") if isinstance(value, bool) else str(value)
         literal_id = self._registry.claim(f"default.{element_id}")
         return make_tree("defaultValue", _LITERALS[kind], literal_id, name, value=text)
+
+
+def make_signature(
+    signature_id: str, names: Sequence[str], formal_ids: Sequence[str]
+) -> tuple[UmlTree, dict[str, str]]:
+    """Return the signature, and the ids of what its names are inside of the template."""
+    signature = make_tree(
+        "ownedTemplateSignature", "RedefinableTemplateSignature", signature_id, parameter=" ".join(formal_ids)
+    )
+    element_ids = {name: f"{formal_id}.element" for name, formal_id in zip(names, formal_ids, strict=True)}
+    for formal_id, (name, element_id) in zip(formal_ids, element_ids.items(), strict=True):
+        formal = make_tree("ownedParameter", "ClassifierTemplateParameter", formal_id, parameteredElement=element_id)
+        words = {"templateParameter": formal_id}
+        formal["children"].append(make_tree("ownedParameteredElement", "Class", element_id, name, **words))
+        signature["children"].append(formal)
+    return signature, element_ids

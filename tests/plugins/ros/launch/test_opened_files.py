@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.plugins.ros.launch import launch_parameter_files
+from archgen.plugins.ros.launch import launch_parameter_values
 from archgen.plugins.ros.launch.launch_import import read_launch
 from tests.plugins.ros.launch.test_launch_import import PYTHON_HEAD, messages_of, nodes_of, read_python, write_files
 
@@ -253,7 +253,7 @@ return LaunchDescription([
 
 
 def test_files_that_are_opened_in_a_loop_take_bounded_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(launch_parameter_files, "MAX_OPENED_BYTES", 10 * len(VALUES))
+    monkeypatch.setattr(launch_parameter_values, "MAX_OPENED_BYTES", 10 * len(VALUES))
     body = f"""
     import yaml
     path = os.path.join(get_package_share_directory("bot"), "config", "main.yaml")
