@@ -106,7 +106,9 @@ class WorkingLines:
             f"A and a lead{' for each job' if leads else ''}{self._describe_cuts(working.shares, 'that')}",
         )
         parts = [f"{self._write(share.counted)} {'/'.join(share.unit)}" for share in working.shares]
-        yield ReasonLine(depth, " = ".join(["F", *filter(None, (" + ".join(parts),)), self._write(working.blocked_time)]))
+        yield ReasonLine(
+            depth, " = ".join(["F", *filter(None, (" + ".join(parts),)), self._write(working.blocked_time)])
+        )
 
     def _explain_blocking(self, working: FigureWorking, depth: int) -> Iterator[ReasonLine]:
         """Yield what all cores may be busy with: what comes, thread by thread, and what is pending from before."""

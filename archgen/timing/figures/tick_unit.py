@@ -100,6 +100,11 @@ def _collect_quantities(architecture: Architecture) -> Iterator[Quantity | None]
         yield port.freshness
     for link in architecture.links.values():
         yield from (link.best, link.worst)
+    yield from _collect_turns(architecture)
+
+
+def _collect_turns(architecture: Architecture) -> Iterator[Quantity]:
+    """Yield the slices and ticks of fair hosts."""
     for host in architecture.hosts.values():
         if host.scheduling in {None, "fair"}:
             fair = host.fair or FairScheduling()

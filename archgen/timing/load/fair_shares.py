@@ -25,7 +25,14 @@ from typing import NamedTuple, TypeVar
 
 from archgen.timing.figures.timing_values import UnknownCause, sum_fractions
 from archgen.timing.load.busy_cores import divide_among_cores, find_blocked_time
-from archgen.timing.load.busy_windows import ActivityWork, DivergedError, GrowingLoad, SearchBudget, WorstActivation
+from archgen.timing.load.busy_windows import (
+    ActivityWork,
+    DemandFunction,
+    DivergedError,
+    GrowingLoad,
+    SearchBudget,
+    WorstActivation,
+)
 from archgen.timing.load.core_responses import CoreResponses
 from archgen.timing.load.event_streams import (
     EventStream,
@@ -38,6 +45,7 @@ from archgen.timing.load.event_streams import (
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.storing_waits import longest_busy_window
 from archgen.timing.load.thread_work import WorstResponse, work_utilisation
+from archgen.timing.load.waiting_threads import Interference
 from archgen.timing.load.work_terms import ANY_AMOUNT
 from archgen.timing.system.core_placement import ProcessingResource
 from archgen.timing.system.core_sets import ThreadUnit
@@ -162,6 +170,11 @@ class _LaneWork(NamedTuple):
     least: int
     width: int
     works: Sequence[tuple[str, ActivityWork]] = ()
+
+    @property
+    def known_share(self) -> Fraction:
+        """Return what it takes of a core in the long run."""
+        return Fraction(ANY_AMOUNT) if self.share is None else self.share
 
     def count_work(self, window: int) -> int:
         """Return its work in a window."""
@@ -316,6 +329,37 @@ class FairSolver:
         """Return how much of a process comes at once."""
         return sum([self._look_up_lane(unit).least for unit in group.units])
 
+    def serve_others(self) -> Interference | None:
+        """Return how long others may be served before the only thread, which waits for each of its uses in between."""
+        thread = next(iter(self.cores.threads), None)
+        own_works = self._list_own(thread) if thread else None
+        if thread is None or own_works is None:
+            return None
+        others, lead = self._collect_others(thread), self.cores.lead
+        uses = [len(self.cores.system.activities[name].uses) + thread.changes_threads for name in thread.own_ids]
+        work_and_lead = [
+            ActivityWork(work.cost + lead * count, work.streams) for work, count in zip(own_works, uses, strict=True)
+        ]
+        own = GrowingLoad(work_and_lead).demand_function()
+        share = sum_fractions([Fraction(0), *(work_utilisation(each.cost, each.streams) for each in work_and_lead)])
+
+        def serve_within(window: int) -> int:
+            cut = own.within(window) + lead
+            return sum(
+                [
+                    group.cut_work(sum([each.count_work(window) for each in lanes]), cut)
+                    for group, lanes in others.groups
+                ]
+            )
+
+        served_shares = [
+            group.cut_work(sum_fractions([Fraction(0), *(each.known_share for each in lanes)]), share)
+            for group, lanes in others.groups
+        ]
+        return Interference(
+            DemandFunction(serve_within, others.term_count), sum_fractions([Fraction(0), *served_shares])
+        )
+
     def _find_window(self, thread: FairThread, own_works: Sequence[ActivityWork], others: _OtherWork) -> int:
         """Return the least window in which all that comes for a thread is done."""
         # What takes no time waits until nothing else does: as if it took the smallest part of a tick.
@@ -395,7 +439,7 @@ class FairSolver:
         cut = own + rate * self.cores.lead if thread.changes_threads else own
         beside, lane_shares = Fraction(0), [Fraction(0)]
         for group, lanes in others.groups:
-            shares = [Fraction(ANY_AMOUNT) if lane.share is None else lane.share for lane in lanes]
+            shares = [lane.known_share for lane in lanes]
             beside += group.cut_work(sum_fractions([Fraction(0), *shares]), cut)
             for share, lane in zip(shares, lanes, strict=True):
                 lane_shares += [share / lane.width] * lane.width

@@ -121,9 +121,7 @@ class PropagationSteps:
             self.state.run_arcs.update(find_run_arcs(self.inner_triggers[step], ways_to))
 
     def _find_fair_cores(self, step: str, resource: ProcessingResource) -> FairCores | None:
-        """Return the cores of a resource as threads share them fairly, if they do; one that waits has its own rule."""
-        if resource.waits:
-            return None
+        """Return the cores of a resource as threads share them fairly, if they do."""
         prepared = self.inner_cores.get(step) or self.shared_cores.get(step)
         if isinstance(prepared, CorePaths):
             prepared = prepared.cores

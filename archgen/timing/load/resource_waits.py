@@ -58,16 +58,20 @@ def find_use_time(state: PropagationState, name: str, resource_id: str, budget: 
     order = _find_order(state.system, resource_id)
     if find_load(state, resource_id) > 1:
         return OVERLOAD_CAUSE
-    if order == "fifo" and resource_id not in state.turn_times:
-        users = [user for user in find_users(state.system, resource_id) if user not in state.triggers.never_firing]
-        state.turn_times[resource_id] = bound_in_turn(state.system, resource_id, users)
-    in_turn = state.turn_times[resource_id].get(name) if order == "fifo" else None
-    if in_turn is not None:
-        return in_turn  # in any order each of these uses may come first as well
+    users = tuple([user for user in find_users(state.system, resource_id) if state.event_models[user] != ()])
+    if order == "fifo" and (resource_id, users) not in state.turn_times:
+        state.turn_times[resource_id, users] = bound_in_turn(state.system, resource_id, users)
+    in_turn = state.turn_times[resource_id, users].get(name) if order == "fifo" else None
+    # In any order each of these uses may come first as well, but for those of several activations at once.
+    if in_turn is not None and not any(_may_overlap(state.system.activities[user]) for user in users):
+        return in_turn
     try:
-        return _bound_by_arrivals(state, name, resource_id, budget)
+        by_arrivals = _bound_by_arrivals(state, name, resource_id, budget)
     except DivergedError:
-        return DIVERGED_CAUSE
+        by_arrivals = DIVERGED_CAUSE
+    if in_turn is None:
+        return by_arrivals
+    return in_turn if isinstance(by_arrivals, UnknownCause) else min(in_turn, by_arrivals)
 
 
 def find_load(state: PropagationState, resource_id: str) -> Fraction:

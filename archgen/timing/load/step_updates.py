@@ -106,7 +106,9 @@ class StepUpdates(PropagationSteps):
         """Find the responses of a resource on which nothing fires anything else."""
         state, resource, budget = self.state, self.resources[step], self.budget_of[step]
         if resource.waits:
-            return find_waiting_responses(state, resource, self.waiting_ids, budget)
+            fair, nothing = self.fair_cores.get(step), CoreResponses({}, {}, {})
+            serve_others = self.open_fair_solver(fair, step, nothing, {}).serve_others if fair else None
+            return find_waiting_responses(state, resource, self.waiting_ids, budget, serve_others)
         models = self.models_of(step)
         queue, stale_ids = self.queues.get(step), self._stale_activities(step)
         # In a queue each response rests on all that waits there.
@@ -203,7 +205,7 @@ class StepUpdates(PropagationSteps):
     ) -> CoreResponses:
         """Limit what was found in any order to what it is on cores that are shared fairly."""
         cores = self.fair_cores.get(step)
-        if cores is None:
+        if cores is None or self.resources[step].waits:
             return found
         solver = self.open_fair_solver(cores, step, found, entering_models)
         solver.solve()

@@ -13,7 +13,7 @@ is a cascade: what it fires comes from outside.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -49,13 +49,25 @@ from archgen.timing.system.fair_hosts import PREEMPTIVE_ORDERS
 from archgen.timing.system.thread_pools import find_pool, is_reentrant, works_in_order
 from archgen.timing.system.timing_system import TimingSystem
 
+ServedWork = Callable[[], "Interference | None"]
+"""Returns how long others may be served before a thread that waits for resources; None where that is not known."""
+
 
 def find_waiting_responses(
-    state: PropagationState, resource: ProcessingResource, waiting_ids: Collection[str], budget: SearchBudget
+    state: PropagationState,
+    resource: ProcessingResource,
+    waiting_ids: Collection[str],
+    budget: SearchBudget,
+    serve_others: ServedWork | None = None,
 ) -> dict[str, WorstResponse]:
-    """Return the responses of a thread that waits for resources; everything else there is foreign to it."""
+    """Return the responses of a thread that waits for resources; everything else there is foreign to it.
+
+    On cores that are shared fairly, `serve_others` says what others are served before it.
+    """
     system, unit = state.system, resource.units[0]
     response = _bound_unit(state, resource, waiting_ids, budget)
+    if serve_others is not None:
+        response = _limit_to_served(state, resource, response, serve_others, budget)
     responses: dict[str, WorstResponse] = {}
     for name in unit:
         activity = system.activities[name]
@@ -67,6 +79,25 @@ def find_waiting_responses(
         elif activity.wcet is None:
             responses[name] = WorstResponse(None, "unknown", unite_causes((UnknownCause((name,)), response.cause)))
     return responses
+
+
+def _limit_to_served(
+    state: PropagationState,
+    resource: ProcessingResource,
+    response: WorstResponse,
+    serve_others: ServedWork,
+    budget: SearchBudget,
+) -> WorstResponse:
+    """Return a response, or what it is with what others are served before the thread and a lead more for each wait."""
+    own_ids = _list_own(state.system, resource)
+    interference = None if _fills_resource(state, own_ids) else serve_others()
+    if interference is None:
+        return response
+    is_in_order = len(own_ids) == 1 and works_in_order(state.system, state.system.activities[own_ids[0]])
+    bound = _bound_with(_waits_by_use(state, own_ids, budget), interference, budget, in_order=is_in_order)
+    if isinstance(bound, UnknownCause) or (response.value is not None and response.value <= bound):
+        return response
+    return WorstResponse(bound, "fair")
 
 
 def find_waiting_stores(
@@ -142,7 +173,7 @@ class _Waits(NamedTuple):
     rivals: tuple[Rivals, ...] = ()
 
 
-class _Interference(NamedTuple):
+class Interference(NamedTuple):
     """How long others can keep all cores busy in a window, and their share of them in the long run."""
 
     demand: DemandFunction
@@ -190,7 +221,7 @@ def _add_waits(state: PropagationState, use_times: Mapping[str, int | UnknownCau
 
 
 def _bound_with(
-    waits: _Waits | UnknownCause, interference: _Interference, budget: SearchBudget, *, in_order: bool
+    waits: _Waits | UnknownCause, interference: Interference, budget: SearchBudget, *, in_order: bool
 ) -> int | UnknownCause:
     """Return the longest response of a thread with some waits, or why none is found."""
     if isinstance(waits, UnknownCause):
@@ -224,10 +255,10 @@ def _find_longest_response(
     return longest_wait_for_turn(total, budget) if takes_no_time else longest_busy_period(total, budget)
 
 
-def _divide_demand(others: Sequence[ThreadWork], core_count: int) -> _Interference:
+def _divide_demand(others: Sequence[ThreadWork], core_count: int) -> Interference:
     """Return how long others can be busy on all cores at once in a window."""
     demand = GrowingLoad([work for thread in others for work in thread.works]).demand_function()
-    return _Interference(
+    return Interference(
         DemandFunction(lambda window: -(-demand.within(window) // core_count), demand.term_count),
         sum_fractions([Fraction(0), *(thread.share for thread in others)]) / core_count,
     )

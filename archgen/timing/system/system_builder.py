@@ -55,7 +55,9 @@ def build_system(
         executors={executor.id: executor for executor in _build_executors(architecture)},
         resources={
             # What drivers do, where nobody wrote anything else.
-            resource.id: SharedResource(resource.id, resource.host, resource.scheduling or "fifo", not resource.scheduling)
+            resource.id: SharedResource(
+                resource.id, resource.host, resource.scheduling or "fifo", not resource.scheduling
+            )
             for resource in architecture.resources.values()
         },
         host_orders={host.id: host.scheduling for host in architecture.hosts.values() if host.scheduling},
