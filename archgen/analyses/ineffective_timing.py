@@ -56,6 +56,7 @@ def idle_timing(architecture: Architecture, analysis: Analysis) -> Iterator[Diag
     yield from _find_idle_inputs(architecture, analysis)
     yield from _find_idle_freshness(architecture)
     yield from _find_idle_wholes(architecture)
+    yield from _find_idle_shares(architecture)
 
 
 def _port_uses(architecture: Architecture) -> Mapping[tuple[str, str], set[str]]:
@@ -158,6 +159,24 @@ def _find_idle_freshness(architecture: Architecture) -> Iterator[Diagnostic]:
                 help="write it at an input that reads a message",
                 element=port.component,
             )
+
+
+def _find_idle_shares(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Yield figures of a fair order where everything has a real-time priority, so that nothing shares a core."""
+    for host in architecture.hosts.values():
+        timings = [
+            each for node in architecture.nodes.values() if node.host == host.id for each in node.timing.values()
+        ]
+        if host.fair is None or not timings or any(timing.priority is None for timing in timings):
+            continue
+        yield Diagnostic(
+            "idle-timing",
+            f"`fair` of `{host.id}` has no effect: everything on it has a real-time priority",
+            host.fair.at,
+            labels=(Label(timings[0].places["priority"], "one of them"),),
+            help="leave it out, or take the priority from what is to share the cores",
+            element=host.id,
+        )
 
 
 def _find_idle_wholes(architecture: Architecture) -> Iterator[Diagnostic]:

@@ -103,7 +103,7 @@ def _parse_fair_figure(name: str, text: str) -> tuple[object | None, str]:
     if name in {"slice", "tick"}:
         return parse_quantity(text, "duration"), "a duration, such as 3 ms"
     if name == "lead":
-        return override_values.parse_count(text) or None, "a whole number from 1"
+        return parse_count(text) or None, "a whole number from 1"
     share = parse_percentage(text) if name == "other_load" else None
     expected = (
         "a share below 100 %" if name == "other_load" else "one of fair.slice, fair.tick, fair.lead, fair.other_load"

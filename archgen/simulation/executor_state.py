@@ -14,9 +14,18 @@ from archgen.model.declared_timing import SchedulingOrder
 from archgen.simulation.run_state import Job
 from archgen.simulation.simulation_plan import Processor, SimulationPlan
 
-WAIT_SET, FIRST_FIRST, LAST_FIRST, RANDOM_ORDER, FIXED_RANKS, FAVOURED_OTHERS, BY_PRIORITY, BY_DEADLINE, TAKE_TURNS, LEAST_SERVED = (
-    range(10)
-)
+(
+    WAIT_SET,
+    FIRST_FIRST,
+    LAST_FIRST,
+    RANDOM_ORDER,
+    FIXED_RANKS,
+    FAVOURED_OTHERS,
+    BY_PRIORITY,
+    BY_DEADLINE,
+    TAKE_TURNS,
+    LEAST_SERVED,
+) = range(10)
 """Orders: the wait set of rclcpp; first come first served; last come first served; at random; ranks drawn once; first come
 first served, but one activity after all others; by written priority; by deadline; in turns; who was served least.
 """

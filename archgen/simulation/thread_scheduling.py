@@ -60,7 +60,11 @@ def queue_thread(run: SimulationRun, thread: int) -> None:
         scheduler = processors.scheduler[processor]
         if scheduler == LEAST_SERVED:
             threads.served[thread] = max(threads.served[thread], processors.least_served[processor])
-        urgency = threads.served[thread] if scheduler == LEAST_SERVED else draw_urgency(run, scheduler, activity, threads.job_activation[thread], victim)
+        urgency = (
+            threads.served[thread]
+            if scheduler == LEAST_SERVED
+            else draw_urgency(run, scheduler, activity, threads.job_activation[thread], victim)
+        )
     order = run.sequence
     if victim == activity and processors.scheduler[processor] == FAVOURED_OTHERS:
         # Of equal priorities too it comes last.

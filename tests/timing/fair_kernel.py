@@ -80,9 +80,7 @@ class FairRun:
             if task.period:
                 heappush(arrivals, (0 if at_once else dice.randrange(task.period), task.name))
         while True:
-            ends = [
-                self.started[core] + thread.left if thread else 1 << 60 for core, thread in enumerate(self.current)
-            ]
+            ends = [self.started[core] + thread.left if thread else 1 << 60 for core, thread in enumerate(self.current)]
             self.now = min(arrivals[0][0], *ends, *self.check_at, self.gpu_end)
             if self.now > end:
                 return
@@ -115,7 +113,9 @@ class FairRun:
     def _on(self, core: int) -> list[_Thread]:
         current = self.current[core]
         return [
-            each for each in (*self.queues[core], *([current] if current else [])) if each.process not in self.kernel.urgent
+            each
+            for each in (*self.queues[core], *([current] if current else []))
+            if each.process not in self.kernel.urgent
         ]
 
     def _average(self, core: int) -> float:
@@ -160,7 +160,9 @@ class FairRun:
         if is_urgent:
             # Real-time threads are pushed to wherever something less urgent runs.
             victims = [
-                each for each, other in enumerate(self.current) if other is None or other.process not in self.kernel.urgent
+                each
+                for each, other in enumerate(self.current)
+                if other is None or other.process not in self.kernel.urgent
             ]
             if victims:
                 target = core if core in victims else self.dice.choice(victims)
@@ -171,7 +173,11 @@ class FairRun:
         elif current is None or (
             current.process not in self.kernel.urgent
             and self.dice.random() < 0.5
-            and (thread.deadline < current.deadline if self.is_eevdf else current.v - thread.v > self.kernel.slice_time / 3)
+            and (
+                thread.deadline < current.deadline
+                if self.is_eevdf
+                else current.v - thread.v > self.kernel.slice_time / 3
+            )
         ):
             self._pick(core)
 

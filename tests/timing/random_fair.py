@@ -33,7 +33,9 @@ def draw_fair_system(seed: int) -> tuple[str, Kernel, dict[str, Task], bool]:
         period = dice.choice([10_000, 20_000, 30_000, 50_000, 100_000, 200_000])
         cost = max(int(share * period), 50)
         task = Task(f"n{number}", cost, process, period)
-        sources = [each for each in tasks.values() if not each.fires and each.process not in urgent and each.process != process]
+        sources = [
+            each for each in tasks.values() if not each.fires and each.process not in urgent and each.process != process
+        ]
         if sources and dice.random() < 0.25 and process not in urgent:
             source = dice.choice(sources)
             rate = _find_rate(tasks, source)

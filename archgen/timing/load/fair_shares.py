@@ -60,6 +60,8 @@ from archgen.timing.system.thread_pools import (
 from archgen.timing.system.timing_system import TimingSystem
 
 _Amount = TypeVar("_Amount", int, Fraction)
+FAIR_TERMS = 300_000
+"""Terms for which bounds of fair shares are looked for on some cores, below those in any order: a quarter of a second's worth."""
 _MAX_TURNS = 30
 """Turns over all threads; after each, all that was found is a bound, and the next one may only make it smaller."""
 WayModel = Callable[[EntryWay], EventStreams | None]
@@ -248,7 +250,8 @@ class FairSolver:
 
     def _improve_thread(self, thread: FairThread) -> bool:
         """Make the figures of a thread smaller, and return whether any is."""
-        bound = self.find_bound(thread) if self._may_help(thread) else None
+        is_spent = self.budget.spent_terms >= FAIR_TERMS
+        bound = self.find_bound(thread) if not is_spent and self._may_help(thread) else None
         if bound is None:
             return False
         return sum([self._note(thread, name, bound.worst.response, bound.window) for name in thread.unit]) > 0
@@ -286,9 +289,13 @@ class FairSolver:
             found.response_of[name], is_smaller = WorstResponse(response, "fair"), True
         return is_smaller
 
-    def find_hold(self, name: str) -> int | None:
+    def find_hold(self, name: str, known: int | None) -> int | None:
         """Return how long a message may wait to be stored until an activation of its reader that does not read it."""
         thread = next((each for each in self.cores.threads if name in each.unit), None)
+        if self.budget.spent_terms >= FAIR_TERMS:
+            return None
+        if thread is not None and known is not None and self._find_least_time(thread, 0) >= known:
+            return None
         own_works = self._list_own(thread) if thread is not None else None
         if thread is None or own_works is None:
             return None
@@ -314,16 +321,17 @@ class FairSolver:
             return None
 
     def _may_help(self, thread: FairThread) -> bool:
-        """Whether what is found may be smaller than what is known: not where one job of each other takes as long."""
+        """Whether what is found may be smaller than what is known."""
         known = [self.found.response_of[name].value for name in thread.unit]
-        if None in known:
-            return True
         own_cost = max(self.cores.system.activities[name].wcet or 0 for name in thread.unit)
+        return None in known or self._find_least_time(thread, own_cost) < max(each or 0 for each in known)
+
+    def _find_least_time(self, thread: FairThread, own_cost: int) -> int:
+        """Return how long it takes where one job of each other activity comes first, as far as it may."""
         cut = own_cost + self.cores.lead
         short_count = bisect_right(self._leasts, cut)
         beside = self._least_sums[short_count] + cut * (len(self._leasts) - short_count)
-        beside -= min(self._find_least(self.cores.groups[thread.process]), cut)
-        return own_cost + beside < max(each or 0 for each in known)
+        return own_cost + beside - min(self._find_least(self.cores.groups[thread.process]), cut)
 
     def _find_least(self, group: ThreadGroup) -> int:
         """Return how much of a process comes at once."""
@@ -511,8 +519,8 @@ class FairSolver:
     def _find_arrivals(self, name: str, idle_ids: tuple[str, ...]) -> EventStreams | None:
         ways = self.found.ways_to.get(name) or self.cores.ways_to.get(name)
         if ways is None:
-            model = self.foreign_models[name]
-            return None if isinstance(model, UnknownCause) else model
+            foreign_model = self.foreign_models[name]
+            return None if isinstance(foreign_model, UnknownCause) else foreign_model
         streams: list[EventStream] = []
         for way in ways:
             model = self.model_of(way)

@@ -56,7 +56,7 @@ def _build_response_time(
         sentence = _OWN_CORE_SENTENCE
     if resource is not None and worst_response.tier == "unknown" and activity.wcet is not None:
         sentence = _OPEN_CORES_SENTENCE
-    sentence_arguments = (_cores_text(resource), resource.cores) if resource else ("", 1)
+    sentence_arguments: tuple[str | int, ...] = (_cores_text(resource), resource.cores) if resource else ("", 1)
     if worst_response.tier == "whole host":
         sentence_arguments = (activity.host or "", 1)
     if share := state.system.fair_shares.get(activity.host or ""):

@@ -12,7 +12,7 @@ from archgen.timing.load.inner_triggers import InnerTriggers, find_inner_trigger
 from archgen.timing.load.joined_resources import JoinedResources, find_joined_resources
 from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.queue_responses import find_core_queue
-from archgen.timing.load.run_ways import begin_way, find_run_arcs
+from archgen.timing.load.run_ways import EntryWay, begin_way, find_run_arcs
 from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.load.shared_cores import prepare_shared_cores
 from archgen.timing.load.single_cores import SingleCores, find_single_cores
@@ -122,10 +122,11 @@ class PropagationSteps:
 
     def _find_fair_cores(self, step: str, resource: ProcessingResource) -> FairCores | None:
         """Return the cores of a resource as threads share them fairly, if they do."""
-        prepared = self.inner_cores.get(step) or self.shared_cores.get(step)
-        if isinstance(prepared, CorePaths):
-            prepared = prepared.cores
-        ways_to = prepared.ways_to if prepared else {name: (begin_way(name),) for name in resource.members}
+        ways_to: Mapping[str, tuple[EntryWay, ...]] = {name: (begin_way(name),) for name in resource.members}
+        if step in self.inner_cores:
+            ways_to = self.inner_cores[step].ways_to
+        elif step in self.shared_cores:
+            ways_to = self.shared_cores[step].cores.ways_to
         return prepare_fair_cores(self.state.system, resource, ways_to)
 
     def _prepare_whole_hosts(self) -> None:

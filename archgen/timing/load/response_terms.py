@@ -90,7 +90,9 @@ class ResponseTerms:
         if step not in self._solved:
             if step not in self._steps.whole_hosts:
                 self._solve_host(step)
-            found = self._list_found(step) if step in self._steps.fair_cores and step in self._steps.shared_cores else None
+            found = (
+                self._list_found(step) if step in self._steps.fair_cores and step in self._steps.shared_cores else None
+            )
             solver = self._steps.open_solver(step, {}, found)
             responses = solver.solve()
             if step in self._steps.whole_hosts:

@@ -52,7 +52,11 @@ class SharedCoreLimits:
 
     def has_limit(self, name: str) -> bool:
         """Whether an activity has a limit."""
-        return name in self.of_host or name in self.found_ways or (self.backlog is not None and (name, 0) in self.backlog.delays)
+        return (
+            name in self.of_host
+            or name in self.found_ways
+            or (self.backlog is not None and (name, 0) in self.backlog.delays)
+        )
 
     def limit_delay(self, key: WayKey) -> int | None:
         """Return the limit of a way."""

@@ -8,7 +8,7 @@ from archgen.timing.load.busy_windows import SearchBudget
 from archgen.timing.load.core_responses import CoreResponses, CoreSolver, open_core_solver
 from archgen.timing.load.event_models import activation_model, arriving_model
 from archgen.timing.load.event_streams import EventStreams
-from archgen.timing.load.fair_shares import FairCores, FairSolver
+from archgen.timing.load.fair_shares import FAIR_TERMS, FairCores, FairSolver
 from archgen.timing.load.inner_triggers import FiringArc
 from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.propagation_steps import PropagationSteps
@@ -23,7 +23,6 @@ from archgen.timing.load.whole_hosts import HostLimit, limit_responses, list_hos
 from archgen.timing.system.core_placement import (
     ProcessingResource,
 )
-
 
 _MAX_FAIR_TURNS = 4
 """How often bounds in any order are looked for below those of fair shares."""
@@ -214,7 +213,7 @@ class StepUpdates(PropagationSteps):
             solver = self.open_fair_solver(cores, step, found, entering_models)
             solver.solve()
             for name, wait in found.storing_waits.items():
-                hold = solver.find_hold(name) if wait.value is None or wait.value > 0 else None
+                hold = solver.find_hold(name, wait.value)
                 if hold is not None and (wait.value is None or hold < wait.value):
                     found.storing_waits[name] = WorstResponse(hold, "fair")
             if not solver.is_improved or step not in self.shared_cores:
@@ -242,7 +241,8 @@ class StepUpdates(PropagationSteps):
             return None if isinstance(model, UnknownCause) else model
 
         known_responses = ChainMap(self.state.work_ends, self.state.responses)
-        return FairSolver(cores, find_way_model, self.state.event_models, found, known_responses, self.budget_of[step])
+        budget = self.budget_of[step].open_part(FAIR_TERMS)
+        return FairSolver(cores, find_way_model, self.state.event_models, found, known_responses, budget)
 
     def _limit_to_single_cores(
         self, step: str, responses: dict[str, WorstResponse], ways_to: dict[str, tuple[EntryWay, ...]]

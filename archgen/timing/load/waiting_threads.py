@@ -156,8 +156,10 @@ def _bound_unit(
     waits = _waits_by_use(state, own_ids, budget)
     candidates = [_bound_with(waits, interference, budget, in_order=is_in_order)]
     # Use by use, or all uses of others in the whole time at once: either may be the smaller one, but for a single activation.
-    if isinstance(bound := candidates[0], UnknownCause) or any(
-        max_arrivals(work.streams, bound + 1) > 1 for work in waits.works
+    if isinstance(waits, UnknownCause) or any(
+        isinstance(bound, UnknownCause) or max_arrivals(work.streams, bound + 1) > 1
+        for bound in candidates
+        for work in waits.works
     ):
         candidates.append(_bound_with(_waits_together(state, own_ids), interference, budget, in_order=is_in_order))
     bounds = [bound for bound in candidates if not isinstance(bound, UnknownCause)]

@@ -202,7 +202,7 @@ class FigureWorking:
             return self.work >= self.window == self.value
         # On several cores a longer window may ask for less: then the first one that is long enough is not all used.
         work = self.work
-        is_whole = work == self.window or ((self.core_count > 1 or self.leads) and work < self.window)
+        is_whole = work == self.window or ((self.core_count > 1 or bool(self.leads)) and work < self.window)
         return is_whole and self.value == max(self.window - self.arrival - self.lead, 0)
 
 

@@ -81,7 +81,8 @@ def _list_effective(node: Node, lookup: Lookup) -> dict[str, EffectiveParameter]
 def _read_host_order(host: Host, _lookup: Lookup) -> object:
     """Return the order; as a mapping where single cores have one of their own, or figures of a fair one are written."""
     fair = {"fair": dict(list_fair_figures(host.fair))} if host.fair else {}
-    return {**fair, **host.core_scheduling} or host.scheduling
+    orders: dict[object, object] = {**fair, **host.core_scheduling}
+    return orders or host.scheduling
 
 
 def _list_steps(use_case: Any, lookup: Lookup) -> list[ConnectedStep]:  # noqa: ANN401  # as all sources

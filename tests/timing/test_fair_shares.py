@@ -1,0 +1,164 @@
+"""Threads that share cores fairly: bounds worked by hand, the newcomer's robot, and a simulated kernel that exceeds none."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+
+from archgen.timing.chains.chain_bounds import bound_all_chains
+from archgen.timing.run_analysis import analyse_architecture
+from tests.property_sizes import mark_further_samples
+from tests.timing.random_fair import draw_fair_system, simulate_fair
+from tests.timing.random_systems import architecture
+from tests.timing.sketches import sketch
+
+MS = 10**6
+PERIODIC = "behaviour: periodic, bcet: 0 ms"
+
+
+def responses(nodes: dict[str, str], host: str, rest: str = "") -> dict[str, tuple[Fraction | None, str]]:
+    """Return the responses (ms) of a sketch and their tiers."""
+    text = sketch(nodes, "", f"hosts: {{h: {host}}}\n{rest}")
+    found = analyse_architecture(architecture(text, is_fair=True)).responses
+    return {
+        name: (None if each.worst.value is None else each.worst.value / MS, each.tier) for name, each in found.items()
+    }
+
+
+def test_no_other_thread_is_served_more_than_the_own_work_and_a_lead() -> None:
+    """2 + min(300, 2 + 20) + min(4, 2 + 20) = 28, and in any order all of it: 306."""
+    nodes = {
+        "a @h": f"{PERIODIC}, period: 1 s, wcet: 2 ms",
+        "b @h": f"{PERIODIC}, period: 1 s, wcet: 300 ms",
+        "c @h": f"{PERIODIC}, period: 1 s, wcet: 4 ms",
+    }
+    found = responses(nodes, "{cores: 1}")
+    assert found["a"] == (28, "fair")
+    assert found["b"] == (306, "host")
+    assert responses(nodes, "{cores: 1, scheduling: round_robin}")["a"] == (306, "host")
+    # A slice of 1 ms and no tick, three times: 2 + (2 + 3) + 4.
+    assert responses(nodes, "{cores: 1, scheduling: {fair: {slice: 1 ms, tick: 0 ms, lead: 3}}}")["a"] == (11, "fair")
+
+
+def test_light_threads_may_all_be_on_one_core_while_long_ones_keep_the_others_busy() -> None:
+    """So what others are served is not divided by the cores: 2 + 4 x 10 + 2 x 22 of them, where all cores are full."""
+    nodes = {f"l{at} @h": f"{PERIODIC}, period: 1 s, wcet: 10 ms" for at in range(4)}
+    nodes |= {f"b{at} @h": f"{PERIODIC}, period: 1 s, wcet: 700 ms" for at in range(2)}
+    nodes["a @h"] = f"{PERIODIC}, period: 1 s, wcet: 2 ms"
+    assert responses(nodes, "{cores: 2}")["a"] == (2 + 4 * 10 + 2 * 22, "fair")
+
+
+def test_real_time_threads_go_first_and_are_not_cut() -> None:
+    nodes = {
+        "a @h": f"{PERIODIC}, period: 1 s, wcet: 2 ms",
+        "b @h": f"{PERIODIC}, period: 1 s, wcet: 300 ms",
+        "rt @h": f"{PERIODIC}, period: 1 s, wcet: 100 ms, priority: 5",
+    }
+    found = responses(nodes, "{cores: 1}")
+    assert (found["rt"], found["a"]) == ((100, "priorities"), (2 + 100 + 22, "fair"))
+
+
+def test_a_neighbour_of_unknown_work_is_served_no_more_either() -> None:
+    nodes = {"a @h": f"{PERIODIC}, period: 100 ms, wcet: 2 ms", "b @h": "behaviour: periodic, period: 20 ms"}
+    assert responses(nodes, "{cores: 1}")["a"] == (24, "fair")
+
+
+def test_each_job_of_a_process_with_several_threads_may_wake_up_another_one() -> None:
+    """The process of `x` and `y` counts as two threads for `a`: 2 + 2 x 22. Alone each of them has a lead for each job."""
+    nodes = {
+        "a @h": f"{PERIODIC}, period: 1 s, wcet: 2 ms",
+        "x +box": f"{PERIODIC}, period: 1 s, wcet: 300 ms",
+        "y +box": f"{PERIODIC}, period: 1 s, wcet: 300 ms",
+    }
+    box = "containers: {box: {host: h, threads: 2}}"
+    assert responses(nodes, "{cores: 1}", box)["a"] == (2 + 2 * 22, "fair")
+
+
+def test_a_share_of_each_core_that_others_take_makes_all_longer() -> None:
+    """9 ms of work take 10 ms beside 10 % of other load, with the lead of the written figures."""
+    nodes = {"a @h": f"{PERIODIC}, period: 100 ms, wcet: 9 ms"}
+    found = responses(nodes, "{cores: 1, scheduling: {fair: {other_load: 10 %}}}")
+    assert found["a"] == (10, "host")
+
+
+def test_what_nobody_wrote_of_a_fair_order_is_said_at_the_figure() -> None:
+    nodes = {"a @h": f"{PERIODIC}, period: 1 s, wcet: 2 ms", "b @h": f"{PERIODIC}, period: 1 s, wcet: 300 ms"}
+    said = "threads of h lead one another by at most 5 times a slice of 3 ms and a tick of 1 ms"
+    for host, notes in (
+        ("{cores: 1}", (said,)),
+        ("{cores: 1, scheduling: fair}", (said,)),
+        ("{cores: 1, scheduling: {fair: {slice: 3 ms, tick: 1 ms, lead: 5}}}", ()),
+    ):
+        text = sketch(nodes, "", f"hosts: {{h: {host}}}")
+        analysis = analyse_architecture(architecture(text, is_fair=True))
+        assert analysis.responses["a"].worst.assumptions == notes
+        assert analysis.responses["b"].worst.assumptions == ()
+
+
+def test_other_orders_of_single_cores_are_not_fair() -> None:
+    nodes = {
+        "a @h": f"{PERIODIC}, period: 1 s, wcet: 2 ms, core: 0",
+        "b @h": f"{PERIODIC}, period: 1 s, wcet: 300 ms, core: 0",
+        "c @h": f"{PERIODIC}, period: 1 s, wcet: 2 ms, core: 1",
+        "d @h": f"{PERIODIC}, period: 1 s, wcet: 300 ms, core: 1",
+    }
+    found = responses(nodes, "{cores: 2, scheduling: {0: round_robin}}")
+    assert (found["a"], found["c"]) == ((302, "host"), (24, "fair"))
+
+
+NEWCOMER = sketch(
+    {
+        "camera @orin": "behaviour: periodic, rate: 30 Hz, wcet: 3 ms",
+        "detector @orin": "behaviour: event, wcet: 4 ms, uses: {gpu: 18 ms}",
+        "tracker @orin": "behaviour: event, wcet: 5 ms",
+        "lidar @pc": "behaviour: periodic, rate: 10 Hz, wcet: 2 ms",
+        "imu @pc": "behaviour: periodic, rate: 100 Hz, wcet: 300 us",
+        "ekf @pc": "behaviour: periodic, rate: 50 Hz, wcet: 1 ms",
+        "slam @pc": "behaviour: event, wcet: 60 ms",
+        "recorder @pc": "behaviour: event, wcet: 3 ms",
+        "costmap @pc": "behaviour: periodic, rate: 5 Hz, wcet: 40 ms",
+        "planner @pc": "behaviour: periodic, rate: 1 Hz, wcet: 150 ms",
+        "controller @pc": "behaviour: periodic, rate: 20 Hz, wcet: 12 ms",
+        "safety @pc": "behaviour: event, wcet: 500 us",
+        "base @pc": "behaviour: periodic, rate: 50 Hz, wcet: 300 us",
+        "behaviour @pc": "behaviour: periodic, rate: 10 Hz, wcet: 1 ms",
+    },
+    "camera>detector detector>tracker tracker>safety controller>safety safety>base lidar>costmap lidar>slam lidar>recorder "
+    "ekf>recorder tracker>recorder imu>ekf base>ekf slam>ekf ekf>costmap costmap>planner behaviour>planner ekf>planner "
+    "planner>controller costmap>controller ekf>controller tracker>behaviour",
+    "hosts: {orin: {cores: 6}, pc: {cores: 4, scheduling: SCHEDULING}}\nresources: {gpu: {host: orin}}\n"
+    "links: {cable: {connects: [orin, pc], latency: {best: 100 us, worst: 1 ms}}}\n"
+    "chains: {scan_and_stop: {through: [g.lidar, g.costmap, g.controller, g.safety, g.base], deadline: 400 ms}}",
+)
+
+
+@pytest.mark.parametrize(
+    ("scheduling", "bound"),
+    [
+        ("fixed_priority", 2003),
+        ("{fair: {slice: 3 ms, tick: 1 ms, lead: 5}}", 1339),
+        ("{fair: {slice: 3 ms, tick: 1 ms, lead: 3}}", 1115),
+        ("{fair: {slice: 1 ms, tick: 1 ms, lead: 5}}", 1054),
+        ("{fair: {slice: 1 ms, tick: 1 ms, lead: 3}}", 937),
+    ],
+)
+def test_a_robot_with_a_process_for_each_node(scheduling: str, bound: int) -> None:
+    """Eleven threads at a load of 40 % on four cores: each waits for all others in any order, and far less in a fair one."""
+    robot = architecture(NEWCOMER.replace("SCHEDULING", scheduling), is_fair=True)
+    chain = bound_all_chains(analyse_architecture(robot), robot)["scan_and_stop"]
+    assert chain.bound.value is not None
+    assert bound - 1 <= chain.bound.value / MS <= bound
+
+
+@pytest.mark.parametrize("first", mark_further_samples(range(0, 300, 30)))
+def test_no_simulated_kernel_exceeds_a_bound(first: int) -> None:
+    tiers: dict[str, int] = {}
+    for seed in range(first, first + 30):
+        text = draw_fair_system(seed)[0]
+        found = analyse_architecture(architecture(text, is_fair=True)).responses
+        for name, seen in simulate_fair(seed, runs=2, seconds=0.6).items():
+            bound = found[name].worst.value
+            tiers[found[name].tier] = tiers.get(found[name].tier, 0) + 1
+            assert bound is None or seen <= bound, (seed, name, found[name].tier)
+    assert tiers["fair"] > 5
