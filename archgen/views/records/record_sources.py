@@ -80,8 +80,9 @@ def _list_effective(node: Node, lookup: Lookup) -> dict[str, EffectiveParameter]
 
 def _read_host_order(host: Host, _lookup: Lookup) -> object:
     """Return the order; as a mapping where single cores have one of their own, or figures of a fair one are written."""
-    fair = {"fair": dict(list_fair_figures(host.fair))} if host.fair else {}
-    orders: dict[object, object] = {**fair, **host.core_scheduling}
+    orders: dict[object, object] = dict(host.core_scheduling)
+    if host.fair:
+        orders["fair"] = dict(list_fair_figures(host.fair))
     return orders or host.scheduling
 
 
