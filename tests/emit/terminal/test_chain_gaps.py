@@ -13,7 +13,7 @@ from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.run_analysis import analyse_architecture
 
 ROBOT = """\
-hosts: {pc: {cores: 2}, auto: {cores: 1}, far: {}}
+hosts: {pc: {cores: 2, scheduling: round_robin}, auto: {cores: 1}, far: {}}
 links: {cable: {connects: [pc, far], latency: 1 ms}}
 groups:
   g:
@@ -57,7 +57,7 @@ def test_a_chain_behind_a_missing_link_names_it(tmp_path: Path) -> None:
 
 # `e` and `f` may start a little late: so they are no part of a run, and each makes the next one wait without end.
 HEAVY = """\
-hosts: {pc: {cores: 1}}
+hosts: {pc: {cores: 1, scheduling: round_robin}}
 groups:
   g:
     components:

@@ -7,6 +7,7 @@ from fractions import Fraction
 import pytest
 
 from archgen.timing.chains.chain_bounds import bound_all_chains
+from archgen.timing.load.fair_shares import ThreadGroup
 from archgen.timing.run_analysis import analyse_architecture
 from tests.property_sizes import mark_further_samples
 from tests.timing.random_fair import draw_fair_system, simulate_fair
@@ -24,6 +25,12 @@ def responses(nodes: dict[str, str], host: str, rest: str = "") -> dict[str, tup
     return {
         name: (None if each.worst.value is None else each.worst.value / MS, each.tier) for name, each in found.items()
     }
+
+
+def test_a_process_is_cut_once_for_each_of_its_threads() -> None:
+    group = ThreadGroup((("a",), ("b",)), 2, is_urgent=False)
+    assert [group.cut_work(work, 10) for work in (5, 20, 30)] == [5, 20, 20]
+    assert group._replace(width=None).cut_work(30, 10) == group._replace(is_urgent=True).cut_work(30, 10) == 30
 
 
 def test_no_other_thread_is_served_more_than_the_own_work_and_a_lead() -> None:
