@@ -97,7 +97,7 @@ def test_where_no_bound_was_found_is_said_on_one_core_and_on_several(tmp_path: P
 def test_a_search_that_found_nothing_names_the_host_where_that_begins(tmp_path: Path) -> None:
     """What reads on `far` has no bound either, but for no fault of its own: it works at a load of 3 %."""
     text = (
-        HEAVY.replace("{pc: {cores: 1}}", "{pc: {cores: 1}, far: {cores: 1}}")
+        HEAVY.replace("round_robin}}", "round_robin}, far: {cores: 1}}")
         .replace("f: {implements: f, host: pc}", "f: {implements: f, host: pc}, r: {implements: r, host: far}")
         .replace("      p: {", "      r: {inputs: {i: f.o}, timing: {wcet: 1 ms}}\n      p: {")
         .replace("through: [g.s, g.e, g.f]", "through: [g.f, g.r]")
