@@ -27,7 +27,7 @@ MS = 10**6
     ],
 )
 def test_a_host_without_another_order_shares_its_cores(host: str, lead: int | None, *, assumes: bool) -> None:
-    nodes = {name: "behaviour: periodic, period: 100 ms, wcet: 2 ms" for name in ("a @h", "b @h")}
+    nodes = dict.fromkeys(("a @h", "b @h"), "behaviour: periodic, period: 100 ms, wcet: 2 ms")
     system, _ = build_system(architecture(sketch(nodes, "", f"hosts: {{h: {host}}}"), is_fair=True))
     share = find_fair_share(system, find_resources(system)[0])
     assert (None if share is None else share.lead * system.tick) == (None if lead is None else lead * MS)
