@@ -80,7 +80,8 @@ def _list_effective(node: Node, lookup: Lookup) -> dict[str, EffectiveParameter]
 
 def _read_host_order(host: Host, _lookup: Lookup) -> object:
     """Return the order; as a mapping where single cores have one of their own, or figures of a fair one are written."""
-    orders: dict[object, object] = dict(host.core_scheduling)
+    orders: dict[object, object] = {}
+    orders.update(host.core_scheduling.items())
     if host.fair:
         orders["fair"] = dict(list_fair_figures(host.fair))
     return orders or host.scheduling
