@@ -29,10 +29,11 @@ from archgen.timing.chains.chain_bounds import bound_all_chains  # noqa: E402
 from archgen.timing.run_analysis import analyse_architecture, analyse_system  # noqa: E402
 from archgen.timing.system.system_builder import build_system  # noqa: E402
 from tests.timing.exceeded import bounded  # noqa: E402
+from tests.timing.random_pairs import list_pairs, random_pair_text  # noqa: E402
 from tests.timing.random_styles import random_style_text  # noqa: E402
 from tests.timing.random_systems import architecture, random_text  # noqa: E402
 from tests.timing.random_threads import random_threads_text  # noqa: E402
-from tests.timing.random_uses import random_crowded_system, random_use_system  # noqa: E402
+from tests.timing.random_uses import random_use_system  # noqa: E402
 
 Bounds = dict[tuple[str, str], float]
 """Bounds in ns, by system and what they are of."""
@@ -68,12 +69,6 @@ REFINEMENTS = (
         "if True or len(ways) != 1 or",
     ),
     Refinement(
-        "the time to the step before, and the response of the last",
-        "load.core_responses:CoreSolver._find_delay",
-        "candidates.append(before + response)",
-        "pass",
-    ),
-    Refinement(
         "a response is no longer than its longest way",
         "load.core_responses:CoreSolver.solve",
         "if response.value is not None and longest < response.value:",
@@ -88,10 +83,10 @@ REFINEMENTS = (
     # Several cores.
     Refinement("a host as a whole", "load.whole_hosts:find_whole_hosts", "return whole_hosts", "return {}"),
     Refinement(
-        "what leaves a host as a whole",
+        "what leaves a host, or a way over hosts, as a whole",
         "load.event_models:leaving_model",
-        "if not host_ways or isinstance(leaving, UnknownCause):",
-        "if True:",
+        "for each in bounded_ways if each]",
+        "for each in () if each]",
     ),
     Refinement(
         "each of several cores that others are pinned to",
@@ -122,18 +117,6 @@ REFINEMENTS = (
         "load.idle_backlogs:choose_largest_lanes",
         "if any(len(lane) > 1 for lane in lanes):",
         "if True:",
-    ),
-    Refinement(
-        "full threads left out",
-        "load.shared_core_responses:SharedCoreSolver._open_rest_solver",
-        "if full_ids else None",
-        "if False else None",
-    ),
-    Refinement(
-        "of them: the thread that is nearly full",
-        "load.full_threads:CoreShares.choose_full_units",
-        "return [unit] if",
-        "return [unit] if False and",
     ),
     Refinement(
         "a run as a whole, not step by step",
@@ -183,6 +166,13 @@ REFINEMENTS = (
         "if time < block.time else block",
         "if False else block",
     ),
+    # Hosts that fire one another.
+    Refinement(
+        "ways over hosts as wholes",
+        "load.transactions:find_transactions",
+        "if len(group) > 1 else None",
+        "if False else None",
+    ),
     # Orders.
     *(
         Refinement(
@@ -192,12 +182,6 @@ REFINEMENTS = (
             f"order = None if written_order == {order!r} else _QUEUE_ORDERS.get(written_order)",
         )
         for order in ("non_preemptive", "fifo", "edf", "ros2_executor")
-    ),
-    Refinement(
-        "ways through a queue",
-        "load.ordered_cores:OrderedCore.limit",
-        "delay = min(delay, before + bound)",
-        "pass",
     ),
     # What is stored.
     Refinement(
@@ -243,12 +227,6 @@ REFINEMENTS = (
         'if order == "fifo" else None',
         "if False else None",
     ),
-    Refinement(
-        "uses by what arrives, where they come in turn",
-        "load.resource_waits:find_use_time",
-        "return by_arrivals if in_turn is None else min(in_turn, by_arrivals)",
-        "return by_arrivals if in_turn is None else in_turn",
-    ),
     # Event models.
     Refinement(
         "what leaves by the ways that lead there",
@@ -288,7 +266,7 @@ REFINEMENTS = (
     ),
     Refinement(
         "messages of one job",
-        "load.match_windows:find_match_windows",
+        "load.match_delays:find_match_windows",
         "if same_source or",
         "if",
     ),
@@ -327,21 +305,11 @@ def without(refinement: Refinement) -> Iterator[None]:
     )
     exec(changed, {**function.__globals__}, namespace)  # noqa: S102 - it is the checkout's own text, with one line changed
     code, replaced = function.__code__, namespace[function.__name__]
-    _forget_searches()
     function.__code__ = replaced.__code__  # type: ignore[attr-defined]  # a function of that name
     try:
         yield
     finally:
         function.__code__ = code
-        _forget_searches()
-
-
-def _forget_searches() -> None:
-    """Empty the caches of results that a refinement may be in."""
-    lone_work = import_module("archgen.timing.load.lone_work")
-    for found in vars(lone_work).values():
-        if hasattr(found, "cache_clear"):
-            found.cache_clear()
 
 
 def list_systems(last: int) -> dict[str, Callable[[], Bounds]]:
@@ -358,9 +326,10 @@ def list_systems(last: int) -> dict[str, Callable[[], Bounds]]:
             name = f"{kind} {seed}"
             systems[name] = partial(_bound_model, name, architecture(make(seed)))
         systems[f"loaded {seed}"] = partial(_bound_loaded, f"loaded {seed}", architecture(random_style_text(seed)))
-        for kind, make_system in (("uses", random_use_system), ("crowded", random_crowded_system)):
-            name = f"{kind} {seed}"
-            systems[name] = partial(lambda key, of: _list_bounds(key, analyse_system(of)), name, make_system(seed))
+        name = f"uses {seed}"
+        systems[name] = partial(lambda key, of: _list_bounds(key, analyse_system(of)), name, random_use_system(seed))
+        pair = list_pairs()[seed % len(list_pairs())]
+        systems[f"pairs {seed}"] = partial(_bound_model, f"pairs {seed}", architecture(random_pair_text(pair, seed)))
     return systems
 
 
@@ -409,8 +378,8 @@ def bound_systems(systems: dict[str, Callable[[], Bounds]]) -> tuple[Bounds, dic
             if event == "call" and frame.f_code in codes:
                 called.add(frame.f_code)
 
-        _forget_searches()
-        sys.setprofile(note_call)
+            sys.setprofile(note_call)
+
         try:
             bounds |= bound_system()
         finally:

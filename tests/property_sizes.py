@@ -20,13 +20,13 @@ _QUICK_SHARE = 4
 
 # The same draws in each run: a pull request must not turn red over a fault that was there before it. New draws are for those
 # who look for such faults: `make properties`.
-_DRAWS_ANEW = bool(os.environ.get("ARCHGEN_DRAW_ANEW"))
+DRAWS_ANEW = bool(os.environ.get("ARCHGEN_DRAW_ANEW"))
 # Of each twenty texts and numbers, Hypothesis takes one from the source code of the modules that are imported by then: a test
 # would draw something else after other tests, and after any change of archgen. Each worker reads 900 files for it, too.
-if not _DRAWS_ANEW:
+if not DRAWS_ANEW:
     providers._get_local_constants = lambda: providers._local_constants  # noqa: SLF001 - there is no setting for it
 # How long an example takes says nothing about it where other tests run at the same time.
-_SHARED = settings(derandomize=not _DRAWS_ANEW, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+_SHARED = settings(derandomize=not DRAWS_ANEW, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.register_profile(FULL_PROFILE, _SHARED)
 settings.register_profile(QUICK_PROFILE, _SHARED, max_examples=_SHARED.max_examples // _QUICK_SHARE)
 

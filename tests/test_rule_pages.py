@@ -10,8 +10,7 @@ import pytest
 from archgen import resources
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.findings import rule_pages
-from archgen.findings.comparison_rules import COMPARISON_RULES
-from archgen.findings.generation_rules import GENERATION_RULES
+from archgen.findings.comparison_rules import COMPARISON_RULES, GENERATION_RULES
 from archgen.findings.rule_table import FAILED_RULE, index_rules
 from archgen.pipeline import SHIPPED_RULES, check_project, check_text
 from tests.repositories import repository

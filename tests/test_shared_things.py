@@ -9,7 +9,7 @@ import pytest
 from archgen import pipeline
 from archgen.emit.graphviz import worker_pool
 from archgen.emit.graphviz.drawing_worker import DrawingTask
-from archgen.views.graph_shapes import Box, Graph
+from archgen.views.picture_shapes import Box, Graph
 from tests import judged_projects
 from tests.kept_workers import KeptWorker
 from tests.running import archgen, archgen_here

@@ -21,7 +21,7 @@ from archgen.timing.analysis import (
 )
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
 from archgen.timing.system.timing_system import Activity, Arc, TimingSystem
-from archgen.views.graphs.node_boxes import list_node_flows
+from archgen.views.graphs.element_boxes import list_node_flows
 from archgen.views.timing import timing_lookup as timed_module
 from archgen.views.timing.timing_lookup import TimingLookup
 

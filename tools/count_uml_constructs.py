@@ -16,8 +16,7 @@ from pathlib import Path
 from archgen.importers.foreign_import import ForeignFileError
 from archgen.plugins.xmi.import_ledger import NOT_TAKEN, NOTED, TAKEN, ImportLedger
 from archgen.plugins.xmi.uml_catalogue import TOOL_TAGS
-from archgen.plugins.xmi.uml_index import UmlIndex, get_kind, is_written_here
-from archgen.plugins.xmi.xmi_files import XmiDocument, read_documents
+from archgen.plugins.xmi.uml_index import UmlIndex, XmiDocument, get_kind, is_written_here, read_documents
 from archgen.plugins.xmi.xmi_import import convert_documents
 
 FATES = (TAKEN, NOTED, NOT_TAKEN)

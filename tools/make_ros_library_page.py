@@ -8,7 +8,7 @@ from pathlib import Path
 
 from archgen.link import mapping_values
 from archgen.model.known_interfaces import KNOWN_DISTROS
-from archgen.project.shipped_library import load_shipped_component_types
+from archgen.project.library_reading import load_shipped_component_types
 from archgen.project.shipped_sources import ShippedSource, list_type_facts, read_shipped_sources
 from archgen.syntax.yaml_tree import MappingNode
 

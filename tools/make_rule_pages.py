@@ -9,8 +9,7 @@ from pathlib import Path
 from generator_table import PAGE, renew_table
 
 from archgen.findings import rule_pages
-from archgen.findings.comparison_rules import COMPARISON_RULES
-from archgen.findings.generation_rules import GENERATION_RULES
+from archgen.findings.comparison_rules import COMPARISON_RULES, GENERATION_RULES
 from archgen.findings.rule_table import FAILED_RULE, index_rules
 from archgen.pipeline import SHIPPED_RULES
 

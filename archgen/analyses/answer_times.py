@@ -1,28 +1,29 @@
-"""Do components and services answer in the time that they have?"""
+"""Do components, services, callbacks and chains answer in the time that they have, and is what is read as fresh as needed?"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from typing import NamedTuple
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.rule_options import RuleOption, format_percentage
-from archgen.diagnostics.source_span import NO_SPAN
-from archgen.timing.chains.whole_bounds import bound_wholes, list_limits
+from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component, PerformanceIndicator
+from archgen.model.deployment import Host
+from archgen.timing.analysis import Analysis, ChainTerm, ServiceLoad
+from archgen.timing.chains.chain_bounds import LateChain, find_missed_shares, find_unmet_chains
+from archgen.timing.chains.read_ages import ReadAge, find_read_ages
+from archgen.timing.chains.unfound_bounds import find_overloaded_hosts, find_unfound_places
+from archgen.timing.chains.use_case_times import WholeBound, WholeLimit, bound_wholes, list_limits
+from archgen.timing.figures import figure_wording
 from archgen.timing.figures.figure_wording import format_duration, join_first_names
-from archgen.timing.figures.value_arithmetic import is_known_bound
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-    from fractions import Fraction
-
-    from archgen.diagnostics.source_span import Span
-    from archgen.model.architecture import Architecture
-    from archgen.model.component import Component, PerformanceIndicator
-    from archgen.model.deployment import Host
-    from archgen.timing.analysis import Analysis, ServiceLoad
-    from archgen.timing.chains.whole_bounds import WholeBound, WholeLimit
-    from archgen.timing.system.timing_system import Activity
+from archgen.timing.figures.value_arithmetic import is_boundless, is_known_bound, is_unfound
+from archgen.timing.system.thread_pools import name_lane
+from archgen.timing.system.timing_system import Activity
 
 
 def slow_component(architecture: Architecture, analysis: Analysis, *, margin: Fraction) -> Iterator[Diagnostic]:
@@ -90,8 +91,7 @@ def _report_slow_host(host: Host, slow_answers: Sequence[_SlowAnswer], margin: F
         f"with all that works on `{host.id}`, {len(slow_answers)} promises may not be kept: {join_words([*phrases, *more_text])}{_describe_margin(margin)}",
         host.at,
         labels=tuple(Label(answer.indicator.at, "asks for less") for answer in slow_answers[:_MAX_NAMED_ANSWERS]),
-        help="give what is urgent a priority or a core, move something to another host, or correct what the performances "
-        "promise",
+        help="`archgen timing --why` with one of them shows what gets in its way; or correct what the performances promise",
         element=host.id,
     )
 
@@ -108,7 +108,9 @@ def _report_slow_component(slow_answer: _SlowAnswer, margin: Fraction) -> Diagno
         labels=(Label(span, "takes longer" if is_undisturbed else "takes longer with what gets in its way"),)
         if span != NO_SPAN
         else (),
-        help="make the node quicker, give it a priority or a core, or correct what the performance promises",
+        help="make the node quicker, or correct what the performance promises"
+        if is_undisturbed
+        else f"`archgen timing --why {activity.id}` shows what gets in its way; or correct what the performance promises",
         element=component.id,
     )
 
@@ -178,6 +180,165 @@ def _describe_margin(margin: Fraction) -> str:
     return f"; {format_percentage(margin)} of it must stay free" if margin else ""
 
 
+def long_callback(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
+    """A callback takes longer than the period of another one that waits for the same thread."""
+    members_by_thread: dict[str, list[Activity]] = defaultdict(list)
+    for activity in analysis.system.activities.values():
+        members_by_thread[name_lane(analysis.system, activity)].append(activity)
+    for members in members_by_thread.values():
+        if len(members) > 1:
+            yield from _find_long_callbacks(analysis, members)
+
+
+def _find_long_callbacks(analysis: Analysis, members: Sequence[Activity]) -> Iterator[Diagnostic]:
+    """Yield a finding for each callback of a thread that lets another one miss a tick, with the most frequent of these."""
+    # What others fire is due whenever they do: how late it may come is for chains to say.
+    timed = [(member.period, member) for member in members if member.behaviour == "periodic" and member.period]
+    timed.sort(key=lambda pair: pair[0])
+    for slow in members:
+        # While it uses a resource, or waits within its declared response, it keeps its thread.
+        held = max((slow.wcet or 0) + sum(use.worst for use in slow.uses.values()), slow.response or 0)
+        delayed = [(period, member) for period, member in timed if period < held and member is not slow]
+        if not delayed:
+            continue
+        period, first = delayed[0]
+        more_count = len(delayed) - 1
+        more_text = f", and of {more_count} more timer{'s' if more_count > 1 else ''}" if more_count else ""
+        period_span = first.places.get("period", first.places.get("rate", NO_SPAN))
+        held_text, period_text = (format_duration(Fraction(ticks * analysis.system.tick)) for ticks in (held, period))
+        yield Diagnostic(
+            "long-callback",
+            f"`{slow.id}`, {held_text}, shares the thread of `{first.id}`, which is due every {period_text}{more_text}",
+            slow.places.get("response", slow.places.get("wcet", slow.at)),
+            labels=(Label(period_span, "due in the meantime"),) if period_span != NO_SPAN else (),
+            help=f"`archgen timing --why {first.id}` shows how late it may come, `archgen timing --propose` what helps chains "
+            "that are late for it",
+            element=slow.node,
+        )
+
+
+def late_chain(architecture: Architecture, analysis: Analysis, *, margin: Fraction) -> Iterator[Diagnostic]:
+    """A chain misses its deadline, or nothing proves that it meets it."""
+    if not any(chain.deadline_text for chain in architecture.chains.values()):
+        return
+    for chain, share, best in find_missed_shares(analysis, architecture):
+        yield Diagnostic(
+            "late-chain",
+            f"the chain `{chain.id}` misses its deadline of {figure_wording.format_duration(share.limit)} for {share.name} of its "
+            f"reactions: each takes at least {figure_wording.format_duration(best.value or 0)}",
+            chain.deadline_places[share.name],
+            help=f"`archgen timing --sensitivity {chain.id}` shows which figure shortens it most",
+            element=chain.id,
+        )
+    for late_result in find_unmet_chains(analysis, architecture, margin):
+        chain_id, chain = late_result.chain.id, late_result.chain
+        deadline = f"its deadline of {chain.deadline}"
+        verdict_text = (
+            f"the chain `{chain_id}` misses {deadline}"
+            if late_result.verdict == "missed"
+            else f"nothing proves that the chain `{chain_id}` meets {deadline}"
+            + (f" with a margin of {format_percentage(margin)}" if margin else "")
+        )
+        yield Diagnostic(
+            "late-chain",
+            f"{verdict_text}: {_describe_bound(analysis, late_result)}",
+            chain.at,
+            labels=(_label_largest_part(architecture, analysis, late_result),),
+            help=f"`archgen timing --sensitivity {chain_id}` shows which figure shortens it most",
+            element=chain_id,
+        )
+
+
+def _describe_bound(analysis: Analysis, late_chain: LateChain) -> str:
+    """Describe how long a chain takes, or why nobody can say."""
+    bound, deadline = late_chain.bound, late_chain.chain.deadline
+    if is_boundless(bound):
+        hosts = join_words([f"`{host}`" for host in find_overloaded_hosts(analysis, late_chain.terms)])
+        return (
+            f"it may take any time, for more is to be done on {hosts} than can be" if hosts else "it may take any time"
+        )
+    if late_chain.verdict == "missed" and late_chain.best.value is not None:
+        return f"it takes at least {figure_wording.format_duration(late_chain.best.value)}"
+    if bound.value is None or (deadline is not None and bound.value <= deadline.value and is_unfound(bound)):
+        places = find_unfound_places(analysis, late_chain.terms)
+        hosts = join_words([f"`{place.host}`{place.load_text}" for place in places if place.host])
+        return f"no bound was found on {hosts}" if hosts else "no bound was found"
+    suffix = "" if is_known_bound(bound) else " and more, for not all of its figures are known"
+    return f"it may take {figure_wording.format_duration(bound.value)}{suffix}"
+
+
+def _label_largest_part(architecture: Architecture, analysis: Analysis, late_chain: LateChain) -> Label:
+    """Return a label at what takes the largest part of a chain's time.
+
+    Where a host has too much to do, or leaves no bound to find, the label is at the host: the figures of the elements
+    that happen to run there may all be innocent.
+    """
+    for host_id in find_overloaded_hosts(analysis, late_chain.terms):
+        boundless_ids = [
+            f"`{term.activity}`"
+            for term in late_chain.terms
+            if is_boundless(term.response) and analysis.system.activities[term.activity].host == host_id
+        ]
+        verb = "runs" if len(boundless_ids) == 1 else "run"
+        text = f"has more to do than it can, and {join_words(boundless_ids)} {verb} here"
+        return Label(architecture.hosts[host_id].at, text)
+    for place in find_unfound_places(analysis, late_chain.terms):
+        if place.host is not None:
+            names = join_words([f"`{name}`" for name in place.activities])
+            return Label(architecture.hosts[place.host].at, f"no bound was found for {names} here")
+    largest_term = max(late_chain.terms, key=_term_weight)
+    activity = analysis.system.activities[largest_term.activity]
+    parts = [largest_term.sampling.value, largest_term.response.value, largest_term.link.value]
+    is_own_work = None not in parts and parts[1] == max(parts)  # type: ignore[type-var]  # no None among them
+    span = activity.places.get("wcet", largest_term.at) if is_own_work else largest_term.at
+    return Label(span, f"the largest part: {largest_term.activity}, {_format_term(largest_term)}")
+
+
+def _term_weight(term: ChainTerm) -> tuple[bool, object]:
+    """Return a sort key: unbounded terms above all others, then the known parts of the sum (ns)."""
+    is_endless = is_boundless(term.sampling) or is_boundless(term.response)
+    return (is_endless, sum((v.value for v in (term.sampling, term.response, term.link) if v.value is not None), 0))
+
+
+def _format_term(term: ChainTerm) -> str:
+    """Format a term of a chain as its waiting, its response and its link; parts of 0 are left out."""
+    contributions = (("waits", term.sampling), ("takes", term.response), ("link", term.link))
+    phrases = [
+        f"{word} {figure_wording.format_duration(value.value) if value.value is not None else figure_wording.name_unknown_reason(value)}"
+        for word, value in contributions
+        if value.value != 0
+    ]
+    return ", ".join(phrases) or "no time"
+
+
+def stale_input(_: Architecture, analysis: Analysis) -> Iterator[Diagnostic]:
+    """What an element reads at an input may be older than the input's `freshness` allows."""
+    for read_age in find_read_ages(analysis):
+        if read_age.state == "broken":
+            yield _report_age(analysis, read_age)
+
+
+def _report_age(analysis: Analysis, read_age: ReadAge) -> Diagnostic:
+    arc, age = read_age.arc, read_age.age
+    reader, source = analysis.system.activities[arc.target], analysis.system.activities[arc.source]
+    port = arc.input.rpartition(".")[2]
+    limit_text = figure_wording.format_duration(read_age.limit)
+    if is_boundless(age):
+        age_text = f"is sent once or need not come at all, so that it may be of any age at `{reader.id}`"
+    elif is_unfound(age) or age.value is None or not is_known_bound(age):
+        age_text = f"may be of any age at `{reader.id}`, for no bound was found"
+    else:
+        age_text = f"may be {figure_wording.format_duration(age.value)} old when `{reader.id}` reads it"
+    return Diagnostic(
+        "stale-input",
+        f"what `{source.id}` sends to `{port}` {age_text}: its freshness is {limit_text}",
+        arc.at if arc.at != NO_SPAN else reader.at,
+        labels=(Label(source.at, f"`{source.id}` sends it"),) if source.at != NO_SPAN else (),
+        help="let the source send more often, or let what it sends fire the reader",
+        element=reader.id,
+    )
+
+
 RULES = (
     (
         slow_component,
@@ -189,4 +350,11 @@ RULES = (
         Severity.WARNING,
         (RuleOption("margin", 0, 0, 99, "The share of the caller's period that must stay free."),),
     ),
+    (long_callback, Severity.WARNING),
+    (
+        late_chain,
+        Severity.WARNING,
+        (RuleOption("margin", 0, 0, 99, "The share of the deadline that must stay free."),),
+    ),
+    (stale_input, Severity.WARNING),
 )

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from archgen.model.architecture import Architecture
-    from archgen.model.component import Component
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component
 
 
 def list_missing_details(architecture: Architecture, component: Component, *, is_timed: bool) -> Iterator[str]:

@@ -1,18 +1,14 @@
-"""Is everything connected? Isolated components, inputs that nothing feeds, outputs that nobody reads."""
+"""Is everything connected? Isolated components, inputs that nothing feeds or that name a source twice, outputs that nobody reads."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity, diagnose_repetition
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component, Connection, Output
 from archgen.model.library_ports import is_offered_by_library, waits_for_calls
 from archgen.model.port_media import is_physical
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from archgen.model.architecture import Architecture
-    from archgen.model.component import Component, Connection, Output
 
 
 def find_linked_components(architecture: Architecture) -> frozenset[str]:
@@ -44,7 +40,9 @@ def disconnected_component(architecture: Architecture) -> Iterator[Diagnostic]:
     for component in architecture.components.values():
         if component.id in linked or _has_open_reference(component) or waits_for_calls(architecture, component):
             continue
-        if _has_external_port(component, shared_outputs):
+        if any(i.external for i in component.inputs.values()) or any(
+            o.external or o.id in shared_outputs for o in component.outputs.values()
+        ):
             continue
         if not architecture.suspected_ids.isdisjoint(
             (component.group, component.id, *(o.id for o in component.outputs.values()))
@@ -159,12 +157,6 @@ def _target_components(architecture: Architecture, connection: Connection) -> It
     return ()
 
 
-def _has_external_port(component: Component, shared_outputs: set[str]) -> bool:
-    return any(i.external for i in component.inputs.values()) or any(
-        o.external or o.id in shared_outputs for o in component.outputs.values()
-    )
-
-
 def _list_shared_outputs(architecture: Architecture) -> set[str]:
     """Return the outputs on topics that all nodes share."""
     return {e.port for topic in architecture.topics.values() if topic.shared for e in topic.writers if e.port}
@@ -177,9 +169,41 @@ def _has_open_reference(component: Component) -> bool:
     )
 
 
+def repeated_source(architecture: Architecture) -> Iterator[Diagnostic]:
+    """An input names the same source twice."""
+    for port in architecture.inputs.values():
+        first_connections: dict[str, Connection] = {}
+        for connection in port.connections:
+            first_connection = first_connections.setdefault(connection.target, connection)
+            if first_connection is not connection:
+                yield diagnose_repetition(
+                    "repeated-source",
+                    f"`{port.name}` of `{port.component}` names `{connection.target}` twice",
+                    connection.at,
+                    first_connection.at,
+                    help_line="take one of them out, or name what was meant",
+                    element=port.component,
+                )
+
+
+def mixed_source(architecture: Architecture) -> Iterator[Diagnostic]:
+    """An input comes from a component and from outside of the system at once."""
+    for port in architecture.inputs.values():
+        if port.connections and port.external is not None:
+            yield Diagnostic(
+                "mixed-source",
+                f"`{port.name}` of `{port.component}` comes from `{port.connections[0].target}` and from outside",
+                port.at,
+                help="keep `from` or `external`, or write two inputs",
+                element=port.component,
+            )
+
+
 RULES = (
     (disconnected_component, Severity.WARNING),
     (unfed_input, Severity.WARNING),
     (empty_reference, Severity.WARNING),
     (unread_output, Severity.WARNING),
+    (repeated_source, Severity.WARNING),
+    (mixed_source, Severity.WARNING),
 )

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from itertools import chain
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.diagnostics.source_span import NO_SPAN
+from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.model.architecture import Architecture
 from archgen.model.component_nesting import list_described_outputs, list_relied_outputs
 from archgen.model.deprecation_lookup import find_deprecation, find_replacement
 from archgen.model.generic_names import read_generic_name
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from archgen.diagnostics.source_span import Span
-    from archgen.model.architecture import Architecture
-    from archgen.model.promise import Deprecation
+from archgen.model.promise import Deprecation
 
 _KIND_WORDS = {"output": "output", "type": "type", "component_type": "component type"}
 _MAX_LISTED = 6

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from itertools import islice
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import find_closest
+from archgen.model.architecture import Architecture
 from archgen.model.component_nesting import list_described_outputs
-from archgen.model.coordinate_frames import walk_ancestors
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from archgen.diagnostics.source_span import Span
-    from archgen.model.architecture import Architecture
-    from archgen.model.coordinate_frames import Frame
+from archgen.model.coordinate_frames import Frame, walk_ancestors
 
 _MAX_LISTED = 6
 """So many frames of a circle are named, and so many places of it shown."""

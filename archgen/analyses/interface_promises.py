@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN
-from archgen.model.component_nesting import list_described_outputs, list_relied_outputs
+from archgen.model.architecture import Architecture
+from archgen.model.component import Output
+from archgen.model.component_nesting import ReliedOutput, list_described_outputs, list_relied_outputs
 from archgen.model.known_interfaces import find_only_number, list_units
-from archgen.model.promise import format_limit
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from archgen.model.architecture import Architecture
-    from archgen.model.component import Output
-    from archgen.model.component_nesting import ReliedOutput
-    from archgen.model.promise import Promise
-    from archgen.model.quantity import Quantity
+from archgen.model.promise import Promise, format_limit
+from archgen.model.quantity import Quantity
 
 
 def unpromised_freshness(architecture: Architecture) -> Iterator[Diagnostic]:

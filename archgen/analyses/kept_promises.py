@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.diagnostics.source_span import NO_SPAN
+from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.model.architecture import Architecture
 from archgen.model.component_nesting import list_described_outputs
+from archgen.model.node import Endpoint
+from archgen.model.promise import Promise
+from archgen.model.quantity import Quantity
 from archgen.model.ros_distro import is_ros_1
+from archgen.timing.analysis import Analysis, EventPace
 from archgen.timing.chains.limit_states import LimitState, judge_lower_limit, judge_upper_limit
 from archgen.timing.chains.read_ages import find_sent_ages
 from archgen.timing.endpoint_paces import find_pace
@@ -17,18 +23,7 @@ from archgen.timing.figures.figure_wording import format_duration, format_rate
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
 from archgen.timing.figures.value_arithmetic import add_values, smallest_value
 from archgen.timing.system import activity_builder
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
-
-    from archgen.diagnostics.source_span import Span
-    from archgen.model.architecture import Architecture
-    from archgen.model.node import Endpoint
-    from archgen.model.promise import Promise
-    from archgen.model.quantity import Quantity
-    from archgen.timing.analysis import Analysis, EventPace
-    from archgen.timing.system.timing_system import Arc
-
+from archgen.timing.system.timing_system import Arc
 
 PROMISED_WORDS = {"rate": "", "max_gap": "gaps of at most ", "max_age": "no greater age than "}
 """What stands before a promised figure, by its key."""

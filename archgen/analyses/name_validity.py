@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator
 
 from archgen.derivation.wire.name_expansion import expand_name, find_name_fault, find_node_name_fault
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.model.architecture import Architecture
+from archgen.model.deployment import Container
+from archgen.model.node import Node, PortUse
 from archgen.model.port_media import uses_ros
 from archgen.model.ros_distro import is_ros_1
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from archgen.model.architecture import Architecture
-    from archgen.model.deployment import Container
-    from archgen.model.node import Node, PortUse
 
 
 def invalid_ros_name(architecture: Architecture) -> Iterator[Diagnostic]:

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component, Input
+from archgen.model.node import Node
 from archgen.model.port_media import uses_ros
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from archgen.model.architecture import Architecture
-    from archgen.model.component import Component, Input
-    from archgen.model.node import Node
 
 
 def nodes_of_components(architecture: Architecture) -> Mapping[str, tuple[Node, ...]]:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 from archgen.derivation.wire.running_state import CLOCK_PARAMETER
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
-from archgen.diagnostics.source_span import NO_SPAN
+from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.diagnostics.suggestions import did_you_mean
-from archgen.model.parameter import Parameter
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component
+from archgen.model.node import Node, PortUse
+from archgen.model.parameter import Parameter, ParameterValue
 from archgen.model.parameter_values import (
     canonical_name,
     find_declarations,
@@ -20,15 +23,6 @@ from archgen.model.parameter_values import (
     list_node_components,
 )
 from archgen.model.ros_distro import is_ros_1
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from archgen.diagnostics.source_span import Span
-    from archgen.model.architecture import Architecture
-    from archgen.model.component import Component
-    from archgen.model.node import Node, PortUse
-    from archgen.model.parameter import ParameterValue
 
 _GUESS_BUDGET = 1_000_000
 """Names that unknown ones are compared with, in all: 20,000 unknown ones among 50,000 would take minutes."""

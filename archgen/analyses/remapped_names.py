@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator
 
 from archgen.derivation.ros_names import SHARED_TOPICS
 from archgen.derivation.wire.remap_rules import (
@@ -19,14 +19,10 @@ from archgen.derivation.wire.remap_rules import (
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.suggestions import find_closest
+from archgen.model.architecture import Architecture
 from archgen.model.common_callbacks import is_common_callback
+from archgen.model.node import Endpoint, Node
 from archgen.model.ros_distro import is_ros_1
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from archgen.model.architecture import Architecture
-    from archgen.model.node import Endpoint, Node
 
 _SHOWN_NAMES = 3
 _WRITING = frozenset({"publishes", "serves"})

@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.rule_options import RuleOption, format_percentage
 from archgen.diagnostics.source_span import NO_SPAN
+from archgen.model.architecture import Architecture
+from archgen.timing.analysis import Analysis, HostLoad
 from archgen.timing.figures.figure_wording import format_number
 from archgen.timing.figures.value_arithmetic import add_values
 from archgen.timing.load.host_loads import activity_share
 from archgen.timing.system.unplaced_pools import find_unplaced_pools
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from archgen.model.architecture import Architecture
-    from archgen.timing.analysis import Analysis, HostLoad
 
 
 def overloaded_host(architecture: Architecture, analysis: Analysis, *, limit: Fraction) -> Iterator[Diagnostic]:

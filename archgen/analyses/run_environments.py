@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator, Mapping
 
 from archgen.derivation.wire.running_state import (
     DOMAIN_VARIABLE,
@@ -15,14 +15,10 @@ from archgen.derivation.wire.running_state import (
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import Span
+from archgen.model.architecture import Architecture
+from archgen.model.deployment import Container
+from archgen.model.node import Endpoint, Node
 from archgen.model.ros_distro import is_ros_1
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
-
-    from archgen.model.architecture import Architecture
-    from archgen.model.deployment import Container
-    from archgen.model.node import Endpoint, Node
 
 NodePair = tuple[str, str]
 _BRIDGE_PACKAGE = "domain_bridge"

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Iterable, Iterator
 from fractions import Fraction
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from archgen.frozen import dataclass
 from archgen.model.annotated_elements import list_annotated_elements
+from archgen.model.architecture import Architecture
+from archgen.model.component import Component
+from archgen.model.element_annotations import PropertyDeclaration
 from archgen.model.port_media import uses_ros
 from archgen.model.requirement import add_wholes
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from archgen.model.architecture import Architecture
-    from archgen.model.component import Component
-    from archgen.model.element_annotations import PropertyDeclaration
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
+from archgen.bringup.plan_shapes import DroppedWait, StartPlan
 from archgen.bringup.start_plan import make_start_plan, resolve_conditions
 from archgen.derivation.ros_names import shared_topic_names
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean
+from archgen.model.architecture import Architecture
+from archgen.model.node import Node, Topic
 from archgen.model.start_up import DEFAULT_PHASE, NO_START
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from archgen.bringup.plan_shapes import DroppedWait, StartPlan
-    from archgen.diagnostics.source_span import Span
-    from archgen.model.architecture import Architecture
-    from archgen.model.node import Node, Topic
 
 _MAX_LISTED = 6
 """So many steps of a circle are named."""

@@ -18,8 +18,8 @@ from archgen.model.architecture import Architecture
 from archgen.model.deployment import Container
 from archgen.model.node import Node
 from archgen.model.parameter_values import canonical_name, find_declarations
-from archgen.model.process_threads import MANY_THREADED, find_container_threads
 from archgen.model.ros_distro import is_ros_1
+from archgen.model.runtime_facts import MANY_THREADED, find_container_threads
 from archgen.model.start_up import NO_START
 
 MAX_GUARDED_PORT = 1023

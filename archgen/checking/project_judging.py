@@ -22,10 +22,8 @@ from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.diagnostics.suggestions import find_closest
 from archgen.findings import (
     error_aftermath,
-    finding_limit,
     ignore_comments,
     instance_findings,
-    option_settings,
     rule_table,
 )
 from archgen.installed_plugins import RULES, list_entries
@@ -51,7 +49,7 @@ def judge_merged_project(
         loaded_project.lost_keys,
         is_partial=loaded_project.partial,
     )
-    rule_options, option_findings = option_settings.settle_rule_options(loaded_project.rule_options, index_all_rules())
+    rule_options, option_findings = rule_table.settle_rule_options(loaded_project.rule_options, index_all_rules())
     all_diagnostics = (
         *add_title_guesses(
             (*loaded_project.diagnostics, *linked_project.link_findings), architecture, loaded_project.sources
@@ -134,7 +132,7 @@ def _settle_findings(
         if ignores or Severity.OFF in loaded_project.rule_settings.values()
         else ()
     )
-    return finding_limit.limit_findings(settled_findings), silenced_findings
+    return instance_findings.limit_findings(settled_findings), silenced_findings
 
 
 def _find_silenced(

@@ -12,7 +12,7 @@ from archgen.checking.merged_project import MergedProject, merge_project
 from archgen.checking.project_judging import judge_merged_project
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.suggestions import did_you_mean
-from archgen.findings import finding_limit
+from archgen.findings import instance_findings
 from archgen.frozen import replace
 from archgen.link import mapping_values, slice_merging
 from archgen.link.variants import variant_order
@@ -65,7 +65,7 @@ def judge_in_variants(
     return replace(
         checked_project,
         loaded_project=loaded_project,
-        findings=finding_limit.limit_findings(joined_findings),
+        findings=instance_findings.limit_findings(joined_findings),
         own_findings=checked_project.findings,
         variants=variants,
     )

@@ -14,7 +14,7 @@ from archgen.diagnostics.safe_text import make_visible
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from archgen.forge.open_requests import OpenRequest
+    from archgen.forge.pull_request import OpenRequest
     from archgen.merge.branch_merge import BranchMerge
 
 
@@ -36,7 +36,7 @@ def command(*, list_refs: bool, output: Path | None, project: Path | None) -> No
     requests.
     """
     from archgen.forge import ForgeError
-    from archgen.forge.open_requests import find_target_branch, list_open_requests
+    from archgen.forge.pull_request import find_target_branch, list_open_requests
 
     try:
         requests, branch = list_open_requests(), find_target_branch()

@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING, NoReturn, TextIO, TypeVar
 import click
 
 from archgen.cli.shared_options import find_asked_variants
-from archgen.diagnostics.diagnostic import Diagnostic, Severity, sort_gravest_first
+from archgen.diagnostics.diagnostic import Diagnostic, Severity, settle_diagnostics, sort_gravest_first
 
 if TYPE_CHECKING:
     from archgen.diagnostics.source_span import SourceTexts
+    from archgen.edit.element_edit import FileEdit
     from archgen.model.architecture import Architecture
     from archgen.model.selector_evaluation import Selection
     from archgen.model.selector_parser import SelectorProblem
@@ -227,6 +228,20 @@ def choose_format(
     return formats[ending]
 
 
+def write_edit(root: Path, edit: FileEdit, detail: str) -> None:
+    """Write an edited file of the project in a folder, and print that."""
+    from archgen.emit import file_tree
+
+    target = (root / edit.file).resolve()
+    with explain_write_errors():
+        # `write_file` puts a new file in place of the old one, which would lose its permissions.
+        mode = target.stat().st_mode if edit.old_content is not None else None
+        file_tree.write_file(target, edit.new_content)
+        if mode is not None:
+            target.chmod(mode)
+    print_written(root / edit.file, detail)
+
+
 def print_written(path: Path, detail: str = "") -> None:
     """Print what was written, relative to the current folder where that is shorter."""
     click.echo(f"wrote {shorten_path(path)}{f' ({detail})' if detail else ''}")
@@ -275,7 +290,6 @@ def require_host(architecture: Architecture, host: str) -> None:
 
 def settle_problems(problems: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
     """Return what is wrong with files that are no part of the project, with the severities of the rules."""
-    from archgen.diagnostics.diagnostic import settle_diagnostics
     from archgen.pipeline import index_all_rules
 
     return settle_diagnostics(problems, index_all_rules(), {})

@@ -60,7 +60,7 @@ def list_type_names(project_path: Path | None) -> tuple[str, ...]:
 
 def _list_shipped_entries(checked_project: CheckedProject) -> dict[str, MappingEntry]:
     """Return what ships for the project's distribution, as one calls it that writes `libraries: {ros: builtin}`."""
-    from archgen.project.shipped_library import SHIPPED_ID, SHIPPED_PATH, choose_distro, load_shipped_component_types
+    from archgen.project.library_reading import SHIPPED_ID, SHIPPED_PATH, choose_distro, load_shipped_component_types
 
     types = load_shipped_component_types(choose_distro(checked_project.loaded_project.distro))
     hint = f"With `libraries: {{{SHIPPED_ID}: {SHIPPED_PATH}}}` in archgen.yaml the project may name these."

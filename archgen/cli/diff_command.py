@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
+from archgen.diagnostics.diagnostic import sort_gravest_first
 
 if TYPE_CHECKING:
     from archgen.compare import Comparison
@@ -114,9 +115,8 @@ def _write_svg(comparison: Comparison, _old_version: ProjectVersion, _new_versio
 
 def _write_github(comparison: Comparison, _old_version: ProjectVersion, new_version: ProjectVersion) -> str:
     from archgen.cli.finding_documents import folder_in_repository
-    from archgen.diagnostics.diagnostic import sort_gravest_first
-    from archgen.emit.data.github_commands import format_github_commands
-    from archgen.products.break_findings import find_breaks
+    from archgen.emit.data.findings_data import format_github_commands
+    from archgen.products.merge_breaks import find_breaks
 
     breaks = find_breaks(comparison, new_version.checked_project)
     findings = (*breaks, *sort_gravest_first(comparison.new_findings))

@@ -124,7 +124,6 @@ def add_element(
     """Write an element to its place, or print the difference; refuse what is not proven."""
     from archgen.diagnostics.safe_text import make_visible
     from archgen.edit import element_edit
-    from archgen.emit import file_tree
 
     try:
         edit = element_edit.plan_edit(checked_project, place, element, full_id)
@@ -133,16 +132,9 @@ def add_element(
     for old_id, new_id in edit.renamed_nodes:
         click.echo(f"the node `{old_id}` gets the id `{new_id}`, since its id follows from its component", err=True)
     if dry_run:
-        sys.stdout.writelines(f"{make_visible(line)}\n" for line in edit.unified_diff())
+        sys.stdout.writelines(f"{make_visible(line.rstrip())}\n" for line in edit.unified_diff())
         return
-    target = (checked_project.root / edit.file).resolve()
-    with command_support.explain_write_errors():
-        # `write_file` puts a new file in place of the old one, which would lose its permissions.
-        mode = target.stat().st_mode if edit.old_content is not None else None
-        file_tree.write_file(target, edit.new_content)
-        if mode is not None:
-            target.chmod(mode)
-    command_support.print_written(checked_project.root / edit.file, f"`{full_id}` at line {edit.line}")
+    command_support.write_edit(checked_project.root, edit, f"`{full_id}` at line {edit.line}")
     click.echo("`archgen check` says what it still lacks.")
 
 

@@ -19,7 +19,7 @@ def render_findings(
     format_name: str, reported_findings: ReportedFindings, checked_project: CheckedProject, *, strict: bool = False
 ) -> str:
     """Render findings as json, GitHub's commands, sarif or junit. With `strict`, warnings are failures too."""
-    from archgen.emit.data import findings_json, github_commands, junit_results, sarif_document
+    from archgen.emit.data import findings_data, junit_results, sarif_document
     from archgen.findings.comparison_rules import COMPARISON_RULES
     from archgen.findings.rule_table import index_rules
     from archgen.pipeline import index_all_rules
@@ -27,10 +27,10 @@ def render_findings(
 
     folder = folder_in_repository(checked_project.root)
     if format_name == "json":
-        return findings_json.format_findings_json(reported_findings.findings)
+        return findings_data.format_findings_json(reported_findings.findings)
     if format_name == "github":
         return "".join(
-            f"{line}\n" for line in github_commands.format_github_commands(reported_findings.findings, folder=folder)
+            f"{line}\n" for line in findings_data.format_github_commands(reported_findings.findings, folder=folder)
         )
     if format_name == "junit":
         lines = junit_results.format_junit(

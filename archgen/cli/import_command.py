@@ -13,6 +13,7 @@ import click
 
 from archgen.cli import command_support, shared_options
 from archgen.diagnostics.safe_text import make_visible
+from archgen.importers.foreign_import import ForeignFileError
 from archgen.importers.import_formats import ImportFormat, guess_format, list_import_formats
 
 if TYPE_CHECKING:
@@ -201,8 +202,6 @@ def _import_slices(  # noqa: PLR0913 - what, where and how
 def _read_model(
     import_format: ImportFormat, files: list[Path], arguments: dict[str, str], known_ids: dict[str, str]
 ) -> ForeignImport:
-    from archgen.importers.foreign_import import ForeignFileError
-
     try:
         given = {"arguments": arguments} if import_format.takes_arguments else {}
         given |= {"known_ids": known_ids} if import_format.keeps_ids else {}

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NoReturn
 import click
 
 from archgen.cli import command_support, measured_recordings, shared_options
+from archgen.diagnostics.safe_text import make_visible
 
 if TYPE_CHECKING:
     from archgen.pipeline import CheckedProject
@@ -79,7 +80,6 @@ def command(  # noqa: PLR0913 - one for each option
     Each topic, service and action with its version, its message, what is promised and what is only expected of it, chains,
     requirements, open points, and who serves and who reads it. `archgen interfaces --between certh sssa -o certh-sssa.docx`
     """
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.products import agreement_documents, leaving_links
     from archgen.products.output_options import OutputOptions
 
@@ -122,7 +122,6 @@ def command(  # noqa: PLR0913 - one for each option
 
 
 def _check_date(text: str) -> str:
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.products.agreement_documents import parse_issue_date
 
     try:
@@ -135,7 +134,6 @@ def _exit_by_terms(
     checked_project: CheckedProject, agreement: PartnerAgreement, signed_version: ProjectVersion | None
 ) -> NoReturn:
     """End with the status of the findings; with 1 where terms are not as signed, which is said on the error stream."""
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.git.project_revision import find_revision
     from archgen.views.agreement.signed_terms import has_departures, list_launch_notes, write_verdict
 
@@ -154,8 +152,6 @@ def _exit_by_terms(
 
 def _refuse_unsound(checked_project: CheckedProject, when: str) -> None:
     """End with 1 where a state cannot be read whole, and say what is wrong with it first."""
-    from archgen.diagnostics.safe_text import make_visible
-
     if checked_project.structural_errors:
         error = checked_project.structural_errors[0]
         reason = f"{error.span.file}:{error.span.line}: {error.message}"
@@ -166,7 +162,6 @@ def _refuse_unsound(checked_project: CheckedProject, when: str) -> None:
 
 def _read_earlier(revision: str, option: str, checked_project: CheckedProject, project: Path | None) -> ProjectVersion:
     """Read the project as it was. A revision that cannot be read is wrong usage."""
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.git import GitError
     from archgen.products.signed_agreements import read_agreed_version
     from archgen.project import ProjectNotFoundError

@@ -45,7 +45,7 @@ def command(main_line: str, branches: tuple[str, ...], form: str, *, strict: boo
     except (GitError, ProjectNotFoundError) as error:
         raise click.UsageError(make_visible(str(error))) from None
     if form == "json":
-        from archgen.merge.branch_merge_json import format_merges_json
+        from archgen.merge.merge_sentences import format_merges_json
 
         sys.stdout.write(format_merges_json(main_line, merges_by_project[0]))
     else:

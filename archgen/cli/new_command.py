@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, get_args
 
 import click
 
-from archgen.cli import command_support, element_adding, new_instance, new_variant, shared_options
+from archgen.cli import command_support, element_adding, new_instance, shared_options
 from archgen.model.component import ComponentRole
 from archgen.model.node import NodeStatus
 
@@ -27,7 +27,7 @@ def command() -> None:
 
 command.add_command(new_instance.add_type)
 command.add_command(new_instance.add_instance)
-command.add_command(new_variant.add_variant)
+command.add_command(new_instance.add_variant)
 
 
 @command.command("group")

@@ -1,4 +1,4 @@
-"""`archgen new type` and `archgen new instance`: component types, and components that are made from them."""
+"""`archgen new type`, `archgen new instance` and `archgen new variant`: what other elements are made from, and what is made otherwise."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from archgen.cli import command_support, element_adding
+from archgen.cli import command_support, element_adding, shared_options
+from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.source_span import NO_SPAN
 
 if TYPE_CHECKING:
     from archgen.pipeline import CheckedProject
@@ -120,9 +122,7 @@ def _find_type_body(
     """Return what a component type has, with what it is made from and generic names bound. Raise UsageError."""
     from archgen.compose import list_type_entries
     from archgen.compose.type_table import TypeTable
-    from archgen.diagnostics.diagnostic import Diagnostic
     from archgen.diagnostics.safe_text import make_visible
-    from archgen.diagnostics.source_span import NO_SPAN
     from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
     diagnostics: list[Diagnostic] = []
@@ -150,3 +150,66 @@ def _describe_open_inputs(type_body: MappingNode) -> dict[str, str]:
         if {"from", "external"}.isdisjoint(port.entries) and not mapping_values.get_flag(port, "optional")
         for type_text in [mapping_values.get_text(port, "type")]
     }
+
+
+@click.command("variant")
+@click.option(
+    "--of", "bases", metavar="VARIANT", multiple=True, help="A variant that it is built on; may be repeated, in order."
+)
+@click.option("--without", metavar="SELECTOR", help="What is not there: `tag:hardware`, `sensing.lidar`.")
+@click.option("--dry-run", is_flag=True, help="Print the difference and write nothing.")
+@shared_options.project_option
+@click.option("--title", metavar="TEXT", help="The title.  [default: made from the ID]")
+@click.argument("name", metavar="ID")
+def add_variant(  # noqa: PLR0913 - one for each option
+    name: str, bases: tuple[str, ...], without: str | None, title: str | None, project: Path | None, *, dry_run: bool
+) -> None:
+    """Add a variant, in the file that holds most of them. What it changes is written below `changes`."""
+    from archgen.edit import element_place
+    from archgen.edit.edit_proof import NewElement
+    from archgen.model.path_resolver import title_from_id
+    from archgen.model.variant import BASE_NAME
+
+    checked_project = command_support.check_or_exit(project)
+    variants = checked_project.architecture.variants
+    if name == BASE_NAME:
+        msg = f"'{BASE_NAME}' is what the project itself is called where variants are named: choose another id"
+        raise click.UsageError(msg)
+    element_adding.require_free_id(name, "variant", {key: value.at for key, value in variants.items()})
+    _require_variants(checked_project, bases)
+    if without is not None:
+        _require_selection(checked_project, without)
+    bases = tuple(dict.fromkeys(bases))
+    body = element_adding.drop_missing(
+        title=title or title_from_id(name), of=bases[0] if len(bases) == 1 else bases or None, without=without
+    )
+    hints = {"changes": "sections as in any file; what stands here wins"}
+    element_adding.add_element(
+        checked_project,
+        element_place.place_in_section(checked_project, "variants"),
+        NewElement(name, {**body, "changes": None}, hints),
+        name,
+        dry_run=dry_run,
+    )
+
+
+def _require_variants(checked_project: CheckedProject, names: tuple[str, ...]) -> None:
+    """Raise UsageError for a name that is no variant of the project."""
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.diagnostics.suggestions import did_you_mean
+
+    known_names = checked_project.architecture.variants
+    for name in names:
+        if name not in known_names:
+            known = ", ".join(known_names) or "none yet"
+            guess = did_you_mean(name, known_names) or f"there are: {known}"
+            msg = make_visible(f"there is no variant '{name}'; {guess}")
+            raise click.UsageError(msg)
+
+
+def _require_selection(checked_project: CheckedProject, selector: str) -> None:
+    """Raise UsageError for a selector that is wrong; print a warning for a word that selects nothing."""
+    from archgen.products import project_views
+
+    _, problems = project_views.select_elements(checked_project, selector)
+    command_support.report_selector_problems(problems)

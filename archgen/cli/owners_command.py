@@ -12,6 +12,7 @@ import click
 
 from archgen.cli import command_support, shared_options
 from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics.safe_text import defuse_command, make_visible
 from archgen.diagnostics.text_columns import find_width, format_table
 
 if TYPE_CHECKING:
@@ -65,8 +66,6 @@ def command(project: Path | None, form: str, output: Path | None, *, keep_going:
 
 
 def _format_ownership(ownership: Ownership, width: int | None) -> str:
-    from archgen.diagnostics.safe_text import defuse_command, make_visible
-
     owned_parts = [
         *ownership.partners,
         *([ownership.nobody] if any(ownership.nobody.elements.values()) or ownership.nobody.files else []),

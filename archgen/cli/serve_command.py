@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
+from archgen.diagnostics.diagnostic import Severity
 
 if TYPE_CHECKING:
     from archgen.serve.live_site import LiveSite
@@ -129,7 +130,5 @@ def _start_site(live_site: LiveSite) -> None:
 
 def _print_state(live_site: LiveSite) -> None:
     """Print what is wrong in the files, or that nothing is, to the error stream."""
-    from archgen.diagnostics.diagnostic import Severity
-
     if live_site.checked_project is not None:
         command_support.print_findings_above(live_site.checked_project, lowest_severity=Severity.ERROR)

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, shared_options
-from archgen.diagnostics.safe_text import measure_width
+from archgen.diagnostics.safe_text import defuse_command, make_visible, measure_width
 from archgen.diagnostics.text_columns import find_width, wrap_line
 
 if TYPE_CHECKING:
-    from archgen.views.elements.card_parts import ElementCard
+    from archgen.views.elements.annotation_facts import ElementCard
 
 
 _TEXT_WIDTH = 96
@@ -30,7 +30,6 @@ def command(words: tuple[str, ...], project: Path | None) -> None:
     A word is an id (`object_recognition`, `sensing.rgbd_camera.rgbd`, `/camera/rgbd`, `R-12`), the end of one, or a
     title in quotes.
     """
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.timing.chains.word_resolution import unknown_name_text
     from archgen.views.elements import element_card, element_names
     from archgen.views.lookup import add_timing, make_lookup
@@ -58,8 +57,6 @@ def command(words: tuple[str, ...], project: Path | None) -> None:
 
 def format_card(card: ElementCard, width: int | None = None) -> str:
     """Lay out a card for the terminal, with control characters made visible."""
-    from archgen.diagnostics.safe_text import defuse_command, make_visible
-
     text_width = min(width or _TEXT_WIDTH, _TEXT_WIDTH)
     span_text = f"   {card.span}" if card.span.file else ""
     title = f" - {card.title}" if card.title != card.id else ""

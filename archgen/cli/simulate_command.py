@@ -6,12 +6,19 @@ import json
 import sys
 from fractions import Fraction
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from archgen.cli import command_support, shared_options
 from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics.safe_text import make_visible
 from archgen.diagnostics.text_columns import find_width, wrap_line
+
+if TYPE_CHECKING:
+    from archgen.pipeline import CheckedProject
+    from archgen.simulation import SimulationResult
+    from archgen.timing.analysis import Analysis
 
 
 @click.command("simulate")
@@ -21,9 +28,22 @@ from archgen.diagnostics.text_columns import find_width, wrap_line
 @click.option("--seeds", type=click.IntRange(1, 10_000), default=20, show_default=True, help="How many runs.")
 @click.option("--seed", type=click.IntRange(0), metavar="N", help="Only the run with this number, as one of --seeds.")
 @click.option("--chain", "asked", multiple=True, metavar="ID", help="Only this chain; may be repeated.")
+@click.option(
+    "--trace",
+    "trace_file",
+    metavar="FILE",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="With one --chain: write the run in which it was latest, for ui.perfetto.dev.",
+)
 @click.option("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
 def command(  # noqa: PLR0913, PLR0917 - one for each option
-    project: Path | None, seconds: int, seeds: int, seed: int | None, asked: tuple[str, ...], form: str
+    project: Path | None,
+    seconds: int,
+    seeds: int,
+    seed: int | None,
+    asked: tuple[str, ...],
+    trace_file: Path | None,
+    form: str,
 ) -> None:
     """Simulate PROJECT: activities on their hosts, samples on their way, from random phases and execution times.
 
@@ -31,13 +51,15 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     the same figures; --seed N repeats one run.
     """
     from archgen import simulation
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.simulation import analysis_bounds, simulation_json
     from archgen.simulation import simulation_text as words
     from archgen.simulation.event_loop import EventFloodError
     from archgen.timing.chains.chain_bounds import bound_all_chains
     from archgen.timing.run_analysis import analyse_architecture
 
+    if trace_file is not None and len(set(asked)) != 1:
+        msg = "--trace shows one chain: name it with --chain"
+        raise click.UsageError(msg)
     checked_project = command_support.check_or_exit(project)
     command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
     architecture = checked_project.architecture
@@ -60,6 +82,8 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
         )
     except EventFloodError as flood:
         raise click.ClickException(_describe_flood(flood.gave_up_at)) from None
+    if trace_file is not None:
+        _write_trace(checked_project, analysis, observations, asked[0], trace_file)
     if form == "json":
         click.echo(
             json.dumps(
@@ -72,6 +96,31 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
         for line in text.splitlines():
             click.echo("\n".join(wrap_line(line, width)))
     command_support.exit_by_findings(checked_project)
+
+
+def _write_trace(
+    checked_project: CheckedProject, analysis: Analysis, observations: SimulationResult, chain_id: str, target: Path
+) -> None:
+    """Write the run in which a chain was latest."""
+    from archgen.emit.data.trace_events import format_trace
+    from archgen.products.product_writing import write_product_file
+    from archgen.simulation.analysis_bounds import find_publish_pauses
+    from archgen.simulation.schedule_log import record_schedule
+
+    observed = observations.chains[chain_id]
+    pauses, seed = find_publish_pauses(analysis), observed.latest_seed
+    schedule = (
+        record_schedule(analysis.system, observed.through, seed, observations.seconds, pauses)
+        if seed is not None
+        else None
+    )
+    if schedule is None:
+        msg = f"nothing passed along the chain {chain_id} in these runs: there is no run to write"
+        raise click.ClickException(msg)
+    with command_support.explain_write_errors():
+        write_product_file(checked_project, target, format_trace(chain_id, schedule))
+    # Not on standard output, where JSON may stand.
+    click.echo(f"wrote {command_support.shorten_path(target)}", err=True)
 
 
 def _describe_endless(rings: tuple[tuple[str, ...], ...]) -> str:
@@ -89,7 +138,6 @@ def _describe_flood(time: Fraction) -> str:
 
 
 def _require_chains(asked_ids: tuple[str, ...], chain_ids: tuple[str, ...]) -> None:
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.diagnostics.suggestions import did_you_mean
     from archgen.timing.figures.figure_wording import join_first_names
 

@@ -12,7 +12,9 @@ import click
 
 from archgen.cli import command_support, shared_options
 from archgen.diagnostics.common_wording import floor_percent
-from archgen.diagnostics.text_columns import find_width, wrap_line
+from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics.safe_text import defuse_command, format_json, make_visible
+from archgen.diagnostics.text_columns import find_width, format_table, wrap_line
 
 if TYPE_CHECKING:
     from archgen.analyses.size_counts import ArchitectureSize, ProgressCounts
@@ -48,8 +50,6 @@ def command(project: Path | None, form: str, by: HistoryInterval | None, *, hist
 
 def _print_current(project: Path | None, form: str) -> None:
     from archgen.analyses.size_counts import measure_progress, measure_size
-    from archgen.diagnostics.diagnostic import Severity
-    from archgen.diagnostics.safe_text import format_json
 
     checked_project = command_support.check_or_exit(project)
     command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
@@ -75,7 +75,6 @@ def _print_current(project: Path | None, form: str) -> None:
 
 def _print_history(project: Path | None, form: str, by: HistoryInterval) -> None:
     from archgen import git
-    from archgen.diagnostics.safe_text import format_json, make_visible
     from archgen.emit.terminal import history_text
     from archgen.history import count_history
     from archgen.products import report_cache
@@ -99,8 +98,6 @@ def _print_history(project: Path | None, form: str, by: HistoryInterval) -> None
 
 
 def _format_statistics(title: str, project_size: ArchitectureSize, rows: tuple[ProgressCounts, ...], files: int) -> str:
-    from archgen.diagnostics.safe_text import defuse_command, make_visible
-    from archgen.diagnostics.text_columns import format_table
     from archgen.views.tables.statistics_tables import PROGRESS_STEPS, format_figures
 
     width = find_width(sys.stdout)

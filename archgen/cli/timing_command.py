@@ -13,14 +13,19 @@ from archgen.cli.timing_printing import (
     print_budget,
     print_chain,
     print_paths,
+    print_proposal,
     print_reasons,
     print_sensitivity,
     print_timing_summary,
     raise_usage_error,
 )
+from archgen.diagnostics.diagnostic import Severity
 
 if TYPE_CHECKING:
     from archgen.model.architecture import Architecture
+
+ANY_PROPOSAL = "any"
+"""What `--propose` stands for alone."""
 
 
 @click.command("timing")
@@ -52,6 +57,16 @@ if TYPE_CHECKING:
     help="How long each element may take, how rarely it may work, and what each partner may take, until a chain is late.",
 )
 @click.option(
+    "--propose",
+    metavar="[settings]",
+    is_flag=False,
+    flag_value=ANY_PROPOSAL,
+    type=click.Choice([ANY_PROPOSAL, "settings"]),
+    help="Look for processes, priorities and triggers with which the chains that are late meet their deadlines, and show all "
+    "that was tried, and a patch. `--propose settings` leaves triggers, and with them all programs, as they are.",
+)
+@click.option("--apply", "applies", is_flag=True, help="With --propose: write the patch into the files.")
+@click.option(
     "--measured",
     "recordings",
     metavar="FILE",
@@ -82,23 +97,28 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     recordings: tuple[Path, ...],
     adopt: Path | None,
     budget: str | None,
+    propose: str | None,
+    *,
+    applies: bool,
 ) -> None:
     """Show how often everything in PROJECT works, how long its chains take, and what hosts and links carry.
 
     All bounds are safe; what is not known is said, and never taken for zero.
     """
+    asked = [
+        q for q in (chain, why, source or target, sensitivity, budget, propose, recordings or None) if q is not None
+    ]
     if (source is None) != (target is None):
         msg = "--from and --to belong together"
         raise click.UsageError(msg)
-    questions = [q for q in (chain, why, source, sensitivity, budget, recordings or None) if q is not None]
-    if len(questions) > 1:
-        msg = "--chain, --why, --from, --sensitivity, --budget and --measured are questions of their own: ask one at a time"
+    if len(asked) > 1:
+        msg = (
+            "--chain, --why, --from, --sensitivity, --budget, --propose and --measured are questions of their own: "
+            "ask one at a time"
+        )
         raise click.UsageError(msg)
-    if adopt is not None and (written or not recordings):
-        msg = "--adopt writes what --measured reads, and goes with no --set"
-        raise click.UsageError(msg)
+    _refuse_writing(written, recordings, adopt, propose, applies=applies)
     checked_project = command_support.check_or_exit(project)
-    from archgen.diagnostics.diagnostic import Severity
 
     command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
     request = TimingRequest(
@@ -114,6 +134,8 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
         print_sensitivity(request, sensitivity)
     elif budget is not None:
         print_budget(request, budget)
+    elif propose is not None:
+        print_proposal(request, keep_triggers=propose != ANY_PROPOSAL, applies=applies)
     elif recordings:
         measured_recordings.answer_recordings(
             checked_project, request.architecture, recordings, adopt, as_json=request.as_json
@@ -121,6 +143,17 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     else:
         print_timing_summary(request)
     command_support.exit_by_findings(checked_project)
+
+
+def _refuse_writing(
+    written: tuple[str, ...], recordings: tuple[Path, ...], adopt: Path | None, propose: str | None, *, applies: bool
+) -> None:
+    if adopt is not None and (written or not recordings):
+        msg = "--adopt writes what --measured reads, and goes with no --set"
+        raise click.UsageError(msg)
+    if (propose is not None and written) or (applies and propose is None):
+        msg = "--propose is about what the files say, and goes with no --set; --apply writes what it proposes"
+        raise click.UsageError(msg)
 
 
 def _apply_overrides(architecture: Architecture, overrides: tuple[str, ...]) -> Architecture:

@@ -8,10 +8,14 @@ from typing import TYPE_CHECKING, NoReturn
 
 import click
 
+from archgen.cli import command_support
+from archgen.cli.shared_options import find_asked_variants
+from archgen.diagnostics.safe_text import format_json, make_visible
 from archgen.diagnostics.text_columns import find_width, wrap_line
 from archgen.frozen import dataclass
 
 if TYPE_CHECKING:
+    from archgen.edit.element_edit import FileEdit
     from archgen.model.architecture import Architecture
     from archgen.pipeline import CheckedProject
     from archgen.simulation.chain_evidence import ChainEvidence
@@ -63,13 +67,13 @@ def print_chain(request: TimingRequest, chain_id: str) -> None:
     from archgen.timing.chains.cost_network import CostNetwork
 
     analysis, chains = _analyse_chains(request.architecture)
-    asked_chain = {chain_id: _find_chain(chains, chain_id)}
+    _find_chain(chains, chain_id)
     # What `--set` lays over the files cannot be simulated by a command of its own: then nothing is looked for.
     if not request.overrides:
-        analysis, asked_chain, evidence = _search_beyond(request.architecture, analysis, asked_chain)
+        analysis, chains, evidence = _search_beyond(request.architecture, analysis, chains, chain_id)
     else:
         evidence = ChainEvidence()
-    result = asked_chain[chain_id]
+    result = chains[chain_id]
     # Without terms the chain is open: its elements may be components that no activity stands for.
     published = duerr_bounds.bound_periodic_chain(analysis, result.through) if result.terms else None
     if request.as_json:
@@ -145,7 +149,7 @@ def print_sensitivity(request: TimingRequest, chain_id: str) -> None:
 
 def print_budget(request: TimingRequest, chain_id: str) -> None:
     """Print how long what a chain rests on may take until it misses its deadline (`--budget`)."""
-    from archgen.emit.terminal import budget_text
+    from archgen.emit.terminal import chain_text
     from archgen.emit.terminal.chain_gaps import describe_gaps
     from archgen.link.timing_overrides import apply_overrides
     from archgen.timing.search.chain_budgets import MAX_TRIES, UnknownBudgetError, find_chain_budget
@@ -163,20 +167,61 @@ def print_budget(request: TimingRequest, chain_id: str) -> None:
             + ("" if result.deadline else f"; write `deadline` at `chains: {chain_id}`")
         )
     if request.as_json:
-        _print_json(budget_text.budget_to_json(result, budget))
+        _print_json(chain_text.budget_to_json(result, budget))
     else:
         titles = {partner.id: partner.title for partner in architecture.partners.values()}
-        _print_lines(budget_text.format_budget(result, budget, titles, find_width(sys.stdout)))
+        _print_lines(chain_text.format_budget(result, budget, titles, find_width(sys.stdout)))
+
+
+def print_proposal(request: TimingRequest, *, keep_triggers: bool, applies: bool) -> None:
+    """Print a configuration in which chains are less late (`--propose`), with its patch; or write it (`--apply`)."""
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.edit.configuration_patch import plan_patch
+    from archgen.edit.element_edit import EditRefusedError
+    from archgen.emit.terminal import chain_remedies
+    from archgen.link.timing_overrides import apply_overrides
+    from archgen.timing.search.change_trials import ChangeTrials
+    from archgen.timing.search.proposals import MAX_TRIES, find_proposal
+
+    architecture = request.architecture
+    analysis, chains = _analyse_chains(architecture)
+    trials = ChangeTrials(architecture, analysis, apply_overrides, MAX_TRIES)
+    proposal = find_proposal(trials, chains, keep_triggers=keep_triggers)
+    edits: tuple[FileEdit, ...] = ()
+    refusal: str | None = None
+    try:
+        if proposal.best.changes:
+            edits = plan_patch(request.checked_project, proposal.best, find_asked_variants())
+    except EditRefusedError as error:
+        command_support.print_findings(error.errors, request.checked_project, sys.stderr)
+        refusal = error.message
+    patch = "".join(line for edit in edits for line in edit.unified_diff())
+    if request.as_json:
+        _print_json(chain_remedies.proposal_to_json(proposal, patch or None, refusal))
+    else:
+        _print_lines(chain_remedies.format_proposal(proposal, find_width(sys.stdout), shows_tried=not applies))
+    if refusal is not None:
+        options = " ".join(f"--set {change}" for change in proposal.best.changes)
+        msg = f"no patch: {refusal}; to be written by hand: {options}"
+        raise click.ClickException(make_visible(msg))
+    if applies:
+        for edit in edits:
+            command_support.write_edit(request.checked_project.root, edit, "as proposed")
+    elif patch and not request.as_json:
+        click.echo("\nPatch, for `git apply` in this project's folder (`--apply` writes it):\n")
+        # What is piped into `git apply` has to be exact.
+        shown_lines = map(make_visible, patch.split("\n")) if sys.stdout.isatty() else patch.split("\n")
+        click.echo("\n".join(shown_lines), nl=False)
 
 
 def _search_beyond(
-    architecture: Architecture, analysis: Analysis, chains: dict[str, ChainResult]
+    architecture: Architecture, analysis: Analysis, chains: dict[str, ChainResult], asked: str | None = None
 ) -> tuple[Analysis, dict[str, ChainResult], ChainEvidence]:
     """Look for runs in which chains are late, and for what would prove those that are not met."""
     from archgen.link.timing_overrides import apply_overrides
     from archgen.simulation.chain_evidence import apply_witnesses, find_evidence
 
-    evidence = find_evidence(architecture, analysis, chains, apply_overrides)
+    evidence = find_evidence(architecture, analysis, chains, apply_overrides, asked)
     return analysis, apply_witnesses(chains, evidence.witnesses), evidence
 
 
@@ -204,20 +249,14 @@ def _find_chain(chain_results: dict[str, ChainResult], chain_id: str) -> ChainRe
 
 def raise_usage_error(text: str) -> NoReturn:
     """Raise the error for wrong usage with a text that may hold anything."""
-    from archgen.diagnostics.safe_text import make_visible
-
     raise click.UsageError(make_visible(text))
 
 
 def _print_json(document: object) -> None:
-    from archgen.diagnostics.safe_text import format_json
-
     click.echo(format_json(document), nl=False)
 
 
 def _print_lines(lines: Iterable[str]) -> None:
-    from archgen.diagnostics.safe_text import make_visible
-
     width = find_width(sys.stdout)
     for line in lines:
         click.echo("\n".join(wrap_line(make_visible(line), width)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from archgen.model.known_interfaces import KNOWN_DISTROS
-from archgen.project.shipped_library import SHIPPED_ID, load_shipped_component_types
+from archgen.project.library_reading import SHIPPED_ID, load_shipped_component_types
 from archgen.project.shipped_sources import ShippedSource, read_shipped_sources
 
 

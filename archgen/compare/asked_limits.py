@@ -6,8 +6,9 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-from archgen.analyses.kept_promises import judge_promises, judge_sent_limits, list_sent_limits
-from archgen.compare.figure_changes import LimitChange
+from archgen.analyses.kept_promises import PROMISED_WORDS, judge_promises, judge_sent_limits, list_sent_limits
+from archgen.compare.comparison import LimitChange
+from archgen.compare.key_phrases import tick_names
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.timing_pair import TimingPair
 from archgen.frozen import dataclass
@@ -18,6 +19,7 @@ from archgen.model.quantity import Quantity
 from archgen.timing.analysis import Analysis
 from archgen.timing.chains.limit_states import LimitState, find_worst_state
 from archgen.timing.chains.read_ages import find_read_ages
+from archgen.timing.figures.figure_wording import format_compared, format_duration, format_rate
 from archgen.timing.figures.timing_values import TimingValue
 
 AskedLimits = Mapping[tuple[str, str], Quantity]
@@ -159,3 +161,31 @@ def list_reliers(architecture: Architecture, matched_ids: MatchedIds) -> Iterato
             reader = matched_ids.common_id("input", counted.reader.id)
             for port in dict.fromkeys((counted.port.id, counted.leaf.id)):
                 yield _name_output(architecture, matched_ids, port), reader
+
+
+def describe_limit(limit: LimitChange) -> str:
+    """Name what is asked: `the promise of x of gaps of at most 130 ms`."""
+    if limit.key == "freshness":
+        return f"the freshness of {limit.limit} of what {tick_names([limit.port])} reads"
+    if limit.key == "qos.deadline":
+        return f"the deadline of {limit.limit} that is offered for {tick_names([limit.port])}"
+    if limit.key == "timing.max_gap":
+        return f"the largest gap of {limit.limit} of {tick_names([limit.port])}"
+    return f"the promise of {tick_names([limit.port])} of {PROMISED_WORDS[limit.key]}{limit.limit}"
+
+
+def describe_growth(limit: LimitChange) -> str:
+    """Return what followed from the figures before, and what does now: `112 ms → 172 ms`."""
+    values = [value.value for value in (limit.before, limit.after) if value.value is not None]
+    is_rate = limit.key == "rate"
+    write = format_rate if is_rate else format_duration
+    texts = iter(format_compared(values, write, upwards=not is_rate, limit=limit.limit.value))
+    phrases = [_describe_value(value, texts) for value in (limit.before, limit.after)]
+    return phrases[1] if phrases[0] == phrases[1] else " → ".join(phrases)
+
+
+def _describe_value(value: TimingValue, texts: Iterator[str]) -> str:
+    text = next(texts) if value.value is not None else "no bound"
+    if value.missing and not value.complete:
+        return f"not known without figures of {tick_names(sorted(value.missing), 4)}"
+    return text

@@ -7,18 +7,19 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from archgen.compare.agreements import AgreementJudge, names_change
-from archgen.compare.comparison import ChainChange, Change, Comparison, PartnerBreak
+from archgen.compare.comparison import ChainChange, Change, Comparison, LimitChange, PartnerBreak
 from archgen.compare.concerned_owners import find_concerned_owners
-from archgen.compare.figure_changes import LimitChange
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
-from archgen.compare.losses.changed_definitions import find_redefined_messages, find_retyped_outputs
+from archgen.compare.losses.changed_definitions import (
+    find_deprecated_types,
+    find_redefined_messages,
+    find_retyped_outputs,
+)
 from archgen.compare.losses.changed_distro import find_changed_distro
-from archgen.compare.losses.changed_frames import find_changed_frames
-from archgen.compare.losses.changed_meanings import find_changed_meanings
+from archgen.compare.losses.changed_meanings import find_changed_frames, find_changed_meanings
 from archgen.compare.losses.changed_parameters import find_changed_parameters
 from archgen.compare.losses.cut_steps import find_cut_steps
-from archgen.compare.losses.deprecated_types import find_deprecated_types
-from archgen.compare.losses.fallen_limits import find_fallen_limits
+from archgen.compare.losses.fallen_figures import find_fallen_limits, find_overloaded_cores, find_saturated_links
 from archgen.compare.losses.foreign_edits import find_foreign_edits
 from archgen.compare.losses.lost_connections import (
     find_lost_connections,
@@ -26,17 +27,17 @@ from archgen.compare.losses.lost_connections import (
     find_renamed_sources,
     find_unmade_connections,
 )
-from archgen.compare.losses.missed_deadlines import find_chains_made_late
-from archgen.compare.losses.overloaded_resources import find_overloaded_cores, find_saturated_links
+from archgen.compare.losses.missed_deadlines import find_chains_made_late, find_weakened_deadlines
 from archgen.compare.losses.parted_ends import find_parted_ends
 from archgen.compare.losses.renamed_topics import find_renamed_topics
 from archgen.compare.losses.separated_causes import CauseSeparator
 from archgen.compare.losses.timing_causes import TimingCauses
-from archgen.compare.losses.unserved_requirements import find_unserved_requirements
-from archgen.compare.losses.weakened_demands import find_rewritten_requirements, find_weakened_policies
-from archgen.compare.losses.weakened_outputs import find_weakened_outputs
-from archgen.compare.losses.weakened_promises import find_weakened_deadlines
-from archgen.compare.losses.weakened_sizes import find_weakened_sizes
+from archgen.compare.losses.weakened_demands import (
+    find_rewritten_requirements,
+    find_unserved_requirements,
+    find_weakened_policies,
+)
+from archgen.compare.losses.weakened_outputs import find_weakened_outputs, find_weakened_sizes
 from archgen.compare.losses.weakened_words import find_weakened_words
 from archgen.compare.timing_pair import TimingPair
 from archgen.diagnostics.diagnostic import Severity

@@ -1,20 +1,17 @@
-"""Describe renames, changed keys and ports of nodes in words, and whom they concern."""
+"""Describe renames, changed keys and owners, and ports of nodes in words, and whom they concern."""
 
 from __future__ import annotations
 
-from archgen.compare.compared_elements import ComparedElement
 from archgen.compare.comparison import Change
-from archgen.compare.key_phrases import describe_key_change, shorten_text
-from archgen.compare.kinds import ELEMENT_KINDS
-from archgen.compare.meaning_sentences import (
+from archgen.compare.element_sentences import (
     describe_field_changes,
     describe_outer_messages,
     describe_output_timing,
     describe_readers,
 )
-from archgen.compare.owner_sentences import describe_new_owner
-from archgen.compare.sentence_words import tick_names
-from archgen.compare.version_pair import VersionPair
+from archgen.compare.key_phrases import describe_key_change, name_partner, shorten_text, tick_names
+from archgen.compare.kinds import ELEMENT_KINDS
+from archgen.compare.version_pair import ComparedElement, VersionPair
 from archgen.derivation import ros_names
 from archgen.model.quantity import Quantity
 
@@ -116,7 +113,7 @@ def _describe_internal_port(change_kind: str, node_id: str, name: str, topic_nam
 def describe_change(change: Change, versions: VersionPair) -> str:
     """Describe the old and new value of a key, and whom that concerns."""
     sentence = (
-        describe_new_owner(change, versions) or describe_output_timing(change, versions) or describe_key_change(change)
+        _describe_new_owner(change, versions) or describe_output_timing(change, versions) or describe_key_change(change)
     )
     return "; ".join(filter(None, (sentence, _describe_concerned(change, versions))))
 
@@ -126,8 +123,8 @@ def _describe_concerned(change: Change, versions: VersionPair) -> str:
     match change.element_kind, change.key:
         case "output", "description":
             return describe_readers(change.element_id, versions)
-        case "chain", "deadline":
-            return _describe_weaker_promise(change, versions)
+        case "chain", str(key) if key.startswith("deadline"):
+            return _describe_weaker_promise(change, key, versions)
         case "component", "requirements":
             return _describe_unserved(change.element_id, versions)
         case "output" | "type" | "message", _:
@@ -164,16 +161,47 @@ def _describe_unserved(component_id: str, versions: VersionPair) -> str:
     return f"no component serves {tick_names(unserved)} any more" if unserved else ""
 
 
-def _describe_weaker_promise(change: Change, versions: VersionPair) -> str:
+def _describe_weaker_promise(change: Change, key: str, versions: VersionPair) -> str:
     """Describe what a chain no longer promises: its deadline is relaxed, or gone."""
     old_chain, new_chain = (
         elements.get(("chain", change.element_id)) for elements in (versions.elements_before, versions.elements_after)
     )
-    old_deadline, new_deadline = (chain and chain.values.get("deadline") for chain in (old_chain, new_chain))
+    old_deadline, new_deadline = (chain and chain.values.get(key) for chain in (old_chain, new_chain))
     if old_chain is None or not isinstance(old_deadline, Quantity):
         return ""
     requirements = old_chain.values.get("requirements")
     served_note = f" to {tick_names(sorted(requirements))}" if isinstance(requirements, frozenset) else ""
-    if not isinstance(new_deadline, Quantity):
+    if not isinstance(new_deadline, Quantity) and key == "deadline":
         return f"nothing is promised{served_note} any more"
-    return f"a weaker promise{served_note} than before" if new_deadline.value > old_deadline.value else ""
+    is_weaker = not isinstance(new_deadline, Quantity) or new_deadline.value > old_deadline.value
+    return f"a weaker promise{served_note} than before" if is_weaker else ""
+
+
+def _describe_new_owner(change: Change, versions: VersionPair) -> str:
+    """Return the sentence on another owner; empty for any other change."""
+    if change.key != "owner":
+        return ""
+    kind_word = "" if "." in change.element_id else f"{ELEMENT_KINDS[change.element_kind].kind_word} "
+    new_owner, old_owner = (
+        name_partner(str(owner), versions.partner_names) if owner else "nobody"
+        for owner in (change.after, change.before)
+    )
+    sentence = f"{kind_word}{tick_names([change.element_id])} belongs to {new_owner} now, not to {old_owner}"
+    readers = _find_outer_readers(change, versions)
+    return f"{sentence}; read by {tick_names(readers)}" if readers else sentence
+
+
+def _find_outer_readers(change: Change, versions: VersionPair) -> list[str]:
+    """Return the inputs outside of an element that read an output inside of it."""
+    element = versions.elements_after.get((change.element_kind, change.element_id))
+    holders = element.component_refs if element and change.element_kind == "node" else (change.element_id,)
+    prefixes = tuple(f"{holder}." for holder in holders)
+    return sorted(
+        {
+            reader
+            for output, readers in versions.connections_after.readers_by_output.items()
+            if prefixes and output.startswith(prefixes)
+            for reader in readers
+            if not reader.startswith(prefixes)
+        }
+    )

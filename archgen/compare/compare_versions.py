@@ -8,20 +8,17 @@ from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.asked_limits import compare_limits
 from archgen.compare.boundary_changes import find_boundary_changes
 from archgen.compare.breaking_changes import find_idle_acceptances, mark_breaking_changes, stricter_policy
-from archgen.compare.chain_causes import add_chain_causes
-from archgen.compare.chain_changes import compare_chains
 from archgen.compare.change_listing import find_changes
-from archgen.compare.comparison import Comparison
+from archgen.compare.comparison import BoundaryChange, Comparison, LoadChange
 from archgen.compare.concerned_owners import find_concerned_owners
-from archgen.compare.figure_changes import BoundaryChange, LoadChange
 from archgen.compare.finding_changes import judge_findings
-from archgen.compare.load_changes import find_link_users, find_load_changes
 from archgen.compare.losses.change_context import ChangeContext
 from archgen.compare.losses.weakened_demands import list_policy_partners
 from archgen.compare.match_elements import match_elements
 from archgen.compare.review_facts import ReviewFacts
+from archgen.compare.timing_changes import add_chain_causes, compare_chains, find_link_users, find_load_changes
 from archgen.compare.timing_pair import analyse_timing_pair
-from archgen.compare.type_origins import trace_origins
+from archgen.compare.type_edits import trace_origins
 from archgen.diagnostics.diagnostic import Severity
 from archgen.model.review_settings import AcceptedChange
 

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from archgen.compare.compared_elements import ComparedElement, ElementKey
-from archgen.compare.comparison import ChainChange, Change
+from archgen.compare.comparison import BoundaryChange, ChainChange, Change, LimitChange, LoadChange
 from archgen.compare.connection_maps import ConnectionMap
-from archgen.compare.figure_changes import BoundaryChange, LimitChange, LoadChange
+from archgen.compare.element_sentences import find_outer_messages
 from archgen.compare.kinds import Effect, find_effect
-from archgen.compare.meaning_sentences import find_outer_messages
-from archgen.compare.version_pair import VersionPair
+from archgen.compare.version_pair import ComparedElement, ElementKey, VersionPair
 
 _MEANING_KEYS = frozenset({"", "type", "description"})
 _OUTPUT_TIMING = "timing.outputs."

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from archgen.compare.connection_maps import RewiredInput
-from archgen.compare.meaning_sentences import describe_lost_effects
-from archgen.compare.sentence_words import limit_effects, shown_id, tick_names
+from archgen.compare.element_sentences import describe_lost_effects
+from archgen.compare.key_phrases import limit_effects, shown_id, tick_names
 from archgen.compare.version_pair import VersionPair
 
 

@@ -11,11 +11,11 @@ from typing import Literal
 from archgen.compare.change_sentences import SURE_CONFIDENCE, note_confidence
 from archgen.compare.comparison import Change, ChangeKind, Comparison, PartnerBreak
 from archgen.compare.field_changes import compare_field_lines
+from archgen.compare.key_phrases import tick_names
 from archgen.compare.kinds import ELEMENT_KINDS
 from archgen.compare.left_out_files import find_left_out
 from archgen.compare.reshaped_components import find_reshapings
 from archgen.compare.reshaping import Reshaping
-from archgen.compare.sentence_words import tick_names
 from archgen.compare.type_edits import find_type_edits
 from archgen.diagnostics.common_wording import join_words
 from archgen.frozen import dataclass

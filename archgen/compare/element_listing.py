@@ -8,14 +8,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from archgen.compare.architecture_version import ArchitectureVersion
-from archgen.compare.compared_elements import ComparedElement, ElementKey
 from archgen.compare.kinds import ELEMENT_KINDS
 from archgen.compare.kinds.key_spec import ReadContext, key_values
 from archgen.compare.kinds.kind_spec import KindSpec
+from archgen.compare.kinds.ros_kinds import NODE, PORT, NodePort
 from archgen.compare.matched_ids import MatchedIds
-from archgen.compare.node_ports import list_node_ports
-from archgen.compare.normal_values import drop_unset_values
+from archgen.compare.normal_values import drop_unset_values, last_part
+from archgen.compare.version_pair import ComparedElement, ElementKey
 from archgen.diagnostics.source_span import NO_SPAN
+from archgen.model.architecture import Architecture
+from archgen.model.node import Node, PortUse
 
 
 def list_elements(
@@ -39,7 +41,7 @@ def list_elements(
 def _list_version_elements(context: ReadContext) -> dict[ElementKey, ComparedElement]:
     # Values hold no spans: elements that move between files have not changed.
     listed = (element for kind in ELEMENT_KINDS.values() for element in _list_kind(kind, context))
-    return {(element.kind, element.id): element for element in (*listed, *list_node_ports(context))}
+    return {(element.kind, element.id): element for element in (*listed, *_list_node_ports(context))}
 
 
 def _list_kind(kind: KindSpec, context: ReadContext) -> Iterator[ComparedElement]:
@@ -57,3 +59,63 @@ def _list_kind(kind: KindSpec, context: ReadContext) -> Iterator[ComparedElement
             # Chapters and settings have no place in a slice.
             getattr(element, "at", NO_SPAN).file,
         )
+
+
+def _list_node_ports(context: ReadContext) -> Iterator[ComparedElement]:
+    """Yield the ports of which a written node says more than what its component says already."""
+    port_keys = PORT.keys
+    untold_components = context.single_node_components - context.told_components
+    for node in context.architecture.nodes.values():
+        if not node.written:
+            continue
+        name = context.matched_ids.common_id("node", node.id)
+        owner = NODE.owner(node, context)
+        for use in (*node.uses, *_implied_uses(context.architecture, node, untold_components)):
+            is_stated = use.internal or not _is_port_of(use, context.told_components)
+            values = drop_unset_values(key_values(port_keys, NodePort(use, node, is_stated), context))
+            if values:
+                key, own_key = _port_ids(use, node, context.matched_ids)
+                yield ComparedElement(
+                    "port",
+                    f"{name}.{key}",
+                    f"{node.id}.{own_key}",
+                    values,
+                    ("node", name),
+                    owner,
+                    component_refs=_component_port(use, context.matched_ids),
+                )
+
+
+def _implied_uses(architecture: Architecture, node: Node, components: frozenset[str]) -> Iterator[PortUse]:
+    """Yield the ports of some of its components that a node carries without writing them."""
+    written_ports = {use.port for use in node.uses}
+    for endpoint in architecture.endpoints if components.intersection(node.implements) else ():
+        if (
+            endpoint.node == node.id
+            and endpoint.port not in written_ports
+            and endpoint.port
+            and endpoint.port.rpartition(".")[0] in components
+        ):
+            yield PortUse(endpoint.use, endpoint.port.rpartition(".")[2], endpoint.port)
+
+
+def _is_port_of(use: PortUse, components: frozenset[str]) -> bool:
+    return use.port is not None and use.port.rpartition(".")[0] in components
+
+
+def _port_ids(use: PortUse, node: Node, matched_ids: MatchedIds) -> tuple[str, str]:
+    """Return a port's id below its node, with the common name and with the name in this version."""
+    if use.port is None:
+        key = f"{'internal.' if use.internal else ''}{use.use}.{use.key}"
+        return key, key
+    common_port = _component_port(use, matched_ids)[0]
+    # Two components may have ports of one name: with several components the id names the component as well.
+    part_count = 1 if len(node.implements) <= 1 else 2
+    return f"{use.use}.{last_part(common_port, part_count)}", f"{use.use}.{last_part(use.port, part_count)}"
+
+
+def _component_port(use: PortUse, matched_ids: MatchedIds) -> tuple[str, ...]:
+    """Return the common id of the component's port behind a use, nothing for an internal one."""
+    if use.port is None:
+        return ()
+    return (matched_ids.common_id("output" if use.use in {"publishes", "serves"} else "input", use.port),)

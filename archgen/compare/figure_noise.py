@@ -8,8 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from fractions import Fraction
 
-from archgen.compare.comparison import ChainChange, Comparison
-from archgen.compare.figure_changes import BoundaryChange, FigureChange, LoadChange
+from archgen.compare.comparison import BoundaryChange, ChainChange, Comparison, FigureChange, LoadChange
 from archgen.compare.interface_figures import is_close_value
 from archgen.frozen import dataclass
 from archgen.timing.figures.timing_values import TimingValue

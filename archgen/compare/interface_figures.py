@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 
-from archgen.compare.figure_changes import ComparedFigure, FigureChange, FigureKey, TravelPath
+from archgen.compare.comparison import ComparedFigure, FigureChange, FigureKey, TravelPath
 from archgen.compare.matched_ids import MatchedIds
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.model.architecture import Architecture
@@ -93,7 +93,7 @@ class FigureReader:
         if interface.flow != "topic":
             for arc in self._list_arcs(interface):
                 if name := _SIZE_NAMES[interface.flow].get(arc.role):
-                    yield FigureKey(name), _to_value(arc.size)
+                    yield FigureKey(name), (UNKNOWN_VALUE if arc.size is None else TimingValue(Fraction(arc.size)))
             return
         loads = [load for name in interface.topic_names if (load := self._topic_loads.get(name))]
         if len(loads) == 1:
@@ -193,7 +193,3 @@ def _is_unknown(figure: ComparedFigure | None) -> bool:
 def _plain_qos(qos: Qos) -> Qos:
     """Return a QoS as it works: that somebody wrote it, and where, makes no difference."""
     return replace(qos, profile="", written=False, at=NO_SPAN)
-
-
-def _to_value(byte_count: int | None) -> TimingValue:
-    return UNKNOWN_VALUE if byte_count is None else TimingValue(Fraction(byte_count))

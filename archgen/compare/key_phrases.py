@@ -1,16 +1,18 @@
-"""The wording of a changed key."""
+"""The wording of a changed key, and what sentences about changes are made of: names in backticks, titles, lists that are cut."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from archgen.compare.comparison import Change
 from archgen.compare.field_changes import compare_field_lines
 from archgen.compare.kinds import ELEMENT_KINDS, find_key
 from archgen.compare.kinds.promise_keys import NO_DAY
-from archgen.compare.text_differences import cut_text, describe_text_difference
+from archgen.compare.text_meaning import cut_text, describe_text_difference
+from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.common_wording import join_words
+from archgen.model.architecture import Architecture
 from archgen.model.start_up import DEFAULT_PHASE, PHASES
 
 _MAX_LENGTH = 80
@@ -67,7 +69,7 @@ def describe_key_change(change: Change) -> str:
         else _deprecation_phrase(change) or _port_phrase(change, spec.verb)
     ):
         return f"{subject} {port_phrase}"
-    if spec.verb and _has_verb_form(key, before, after):
+    if spec.verb and (key == "container" or (before is not None and after is not None)):
         return f"{subject} {_verb_phrase(spec.verb, before, after)}"
     if key == "topic" and (".serves." in change.element_id or ".calls." in change.element_id):
         # What is called a topic in the files is the name of a service or action here.
@@ -133,10 +135,6 @@ def _deprecation_phrase(change: Change) -> str:
 
 def _until_phrase(last_day: object) -> str:
     return "without a day" if last_day == NO_DAY else f"until {format_value(last_day)}"
-
-
-def _has_verb_form(key: str, before: object, after: object) -> bool:
-    return key == "container" or (before is not None and after is not None)
 
 
 def _verb_phrase(verb: str, before: object, after: object) -> str:
@@ -282,3 +280,51 @@ def shorten_text(text: str) -> str:
     # A backtick inside would end the code span that sentences put the text into, and let a name pose as our own words.
     line = " ".join(text.replace("`", "'").split())
     return line if len(line) <= _MAX_LENGTH else f"{line[: _MAX_LENGTH - 1]}…"
+
+
+_MAX_EFFECTS = 3
+"""Maximal number of effects in one sentence; all of them are in the parts."""
+_MAX_NAMES = 6
+"""Maximal number of names in one list; the rest is counted."""
+
+
+def limit_effects(effects: Sequence[str]) -> Sequence[str]:
+    """Return the first effects, and how many more there are."""
+    surplus = len(effects) - _MAX_EFFECTS
+    return (
+        effects
+        if surplus <= 0
+        else (*effects[:_MAX_EFFECTS], f"and {surplus} more such effect{'s' if surplus > 1 else ''}")
+    )
+
+
+def shown_id(kind: str, name: str, versions: VersionPair) -> str:
+    """Return the id that readers know: that of the second version, of a removed element that of the first."""
+    element = None if (kind, name) in versions.elements_after else versions.elements_before.get((kind, name))
+    return element.own_id if element else name
+
+
+def tick_names(names: Iterable[str], max_names: int = _MAX_NAMES) -> str:
+    """Return element names in backticks, the surplus counted."""
+    ticked_names = [f"`{shorten_text(name)}`" for name in names]
+    return (
+        join_words(ticked_names)
+        if len(ticked_names) <= max_names
+        else join_words([*ticked_names[: max_names - 1], f"{len(ticked_names) - max_names + 1} more"])
+    )
+
+
+def name_partner(partner: str, partner_names: Mapping[str, str]) -> str:
+    """Return what people call a partner; its id where nobody declares it."""
+    return partner_names.get(partner) or shorten_text(partner)
+
+
+def title_partners(before: Architecture, after: Architecture) -> Mapping[str, str]:
+    """Return the name of each partner of either version, by id."""
+    partners = {**before.partners, **after.partners}
+    titles = {partner_id: shorten_text(partner.title) for partner_id, partner in partners.items()}
+    counts = Counter(titles.values())
+    return {
+        partner_id: f"{title} (`{shorten_text(partner_id)}`)" if counts[title] > 1 else title
+        for partner_id, title in titles.items()
+    }

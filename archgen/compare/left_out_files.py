@@ -6,8 +6,8 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 
 from archgen.compare.comparison import Change, Comparison
+from archgen.compare.key_phrases import tick_names
 from archgen.compare.kinds import ELEMENT_KINDS
-from archgen.compare.sentence_words import tick_names
 from archgen.diagnostics.common_wording import join_words
 from archgen.frozen import dataclass
 

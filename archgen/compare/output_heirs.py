@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from archgen.compare.compared_elements import ComparedElement, ElementKey
 from archgen.compare.element_likeness import Feature, FeatureMap, find_likely_pairs
 from archgen.compare.element_relations import ElementRelations
 from archgen.compare.kinds.port_kinds import OUTPUT
 from archgen.compare.match_elements import describe_element
-from archgen.compare.version_pair import VersionPair
+from archgen.compare.version_pair import ComparedElement, ElementKey, VersionPair
 from archgen.frozen import dataclass
 
 _MESSAGE_WEIGHT = 3

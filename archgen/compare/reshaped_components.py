@@ -9,20 +9,13 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 
 from archgen.compare.comparison import Comparison
-from archgen.compare.copied_components import find_copies
-from archgen.compare.element_likeness import MIN_LIKENESS
-from archgen.compare.match_elements import look_up_pair
-from archgen.compare.output_heirs import (
-    OutputHeir,
-    component_of,
-    find_heirs,
-    has_lost_outputs,
-    outputs_of,
-    sources_of,
-)
-from archgen.compare.reshaping import Reshaping, truncate_confidence
-from archgen.compare.reshaping_sentences import describe_merger, describe_split
-from archgen.compare.sentence_words import shown_id
+from archgen.compare.element_likeness import MIN_LIKENESS, FeatureMap, measure_likeness
+from archgen.compare.element_relations import ElementRelations
+from archgen.compare.key_phrases import shown_id
+from archgen.compare.kinds.functional_kinds import COMPONENT
+from archgen.compare.match_elements import describe_element, look_up_pair
+from archgen.compare.output_heirs import OutputHeir, component_of, find_heirs, has_lost_outputs, outputs_of, sources_of
+from archgen.compare.reshaping import Reshaping, describe_merger, describe_split, truncate_confidence
 from archgen.compare.version_pair import VersionPair
 
 
@@ -129,3 +122,55 @@ def _judge_merged(part: str, whole: str, heirs: Sequence[OutputHeir], versions: 
     read_sources = outer_sources & sources_of(whole, versions, side=1)
     source_share = len(read_sources) / len(outer_sources) if outer_sources else 1.0
     return truncate_confidence(0.6 * likeness + 0.4 * source_share)
+
+
+_COPIED_FEATURES = frozenset({"ports", "text", "group", "owner", "requirements", "performance", "timing", "tags"})
+"""The features of a component that are copied with it: not its name, its node, its readers."""
+_MIN_COPY_LIKENESS = 0.7
+_MAX_COPIES = 20
+"""With more new components than this a project is built up, and each would be compared with all."""
+
+
+def find_copies(added_ids: Sequence[str], versions: VersionPair, relations: ElementRelations) -> Iterator[Reshaping]:
+    """Yield the new components that have the ports of one that was there, and are like it in all that is copied."""
+    if not added_ids or len(added_ids) > _MAX_COPIES:
+        return
+    originals_by_ports = _group_by_ports(
+        [name for name in relations.architecture.components if ("component", name) in versions.elements_before],
+        relations,
+    )
+    for added_id in added_ids:
+        features = _copied_features(relations, added_id)
+        rated_originals = [
+            (-measure_likeness(original_features, features), name)
+            for name, original_features in originals_by_ports.get(features["ports"].marks, {}).items()
+        ]
+        likeness, original = min(rated_originals, default=(0.0, ""))
+        if -likeness >= _MIN_COPY_LIKENESS:
+            yield Reshaping(
+                "copied",
+                added_id,
+                (original,),
+                f"a copy of `{original}`",
+                truncate_confidence(-likeness),
+                frozenset([added_id]),
+                (),
+                versions,
+            )
+
+
+def _group_by_ports(
+    component_ids: Sequence[str], relations: ElementRelations
+) -> Mapping[frozenset[str], Mapping[str, FeatureMap]]:
+    """Return the features of components that have ports, by these."""
+    groups: dict[frozenset[str], dict[str, FeatureMap]] = defaultdict(dict)
+    for component_id in component_ids:
+        features = _copied_features(relations, component_id)
+        if features["ports"].marks:
+            groups[features["ports"].marks][component_id] = features
+    return groups
+
+
+def _copied_features(relations: ElementRelations, component_id: str) -> FeatureMap:
+    features = describe_element(COMPONENT, relations, relations.architecture.components[component_id])
+    return {name: feature for name, feature in features.items() if name in _COPIED_FEATURES}

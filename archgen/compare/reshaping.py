@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Literal
 
-from archgen.compare.compared_elements import ComparedElement
 from archgen.compare.comparison import Change
-from archgen.compare.output_heirs import OutputHeir, component_of
-from archgen.compare.version_pair import VersionPair
+from archgen.compare.key_phrases import format_value, name_partner, shown_id, tick_names
+from archgen.compare.normal_values import to_plain_data
+from archgen.compare.output_heirs import OutputHeir, component_of, outputs_of, sources_of
+from archgen.compare.text_meaning import describe_text_difference
+from archgen.compare.version_pair import ComparedElement, VersionPair
+from archgen.diagnostics.common_wording import join_words
 from archgen.frozen import dataclass
 
 _FOLLOWING_KEYS = {
@@ -138,3 +142,129 @@ def _common_id(change: Change, versions: VersionPair) -> str:
 def truncate_confidence(confidence: float) -> float:
     """Return a confidence with two digits, below 1: nothing is certain that was recognised by likeness."""
     return int(min(confidence, 0.99) * 100) / 100
+
+
+_PACE_KEYS = {"timing.behaviour": "behaviour", "timing.rate": "rate"}
+"""Keys that readers of an output notice, with what sentences call them."""
+
+
+def describe_split(old_component: str, heirs_by_part: Mapping[str, Sequence[OutputHeir]], versions: VersionPair) -> str:
+    """Describe which outputs of a component are where now, and what else is not as it was."""
+    heirs = [heir for part_heirs in heirs_by_part.values() for heir in part_heirs]
+    components = [old_component, *sorted(heirs_by_part)]
+    return "; ".join(
+        (_describe_parts(old_component, heirs_by_part, versions), *_describe_rest(components, heirs, versions))
+    )
+
+
+def _describe_parts(
+    old_component: str, heirs_by_part: Mapping[str, Sequence[OutputHeir]], versions: VersionPair
+) -> str:
+    element = versions.elements_before["component", old_component]
+    if ("component", old_component) not in versions.elements_after or element.own_id != old_component:
+        phrases = {part: f"`{part}` ({_name_outputs(part_heirs)})" for part, part_heirs in heirs_by_part.items()}
+        if ("component", old_component) in versions.elements_after:
+            left_outputs = [name.rpartition(".")[2] for name in outputs_of(old_component, versions.elements_after)]
+            phrases[old_component] = f"`{old_component}` ({_count_outputs(left_outputs)})"
+        return f"component `{element.own_id}` is split into {join_words([phrases[part] for part in sorted(phrases)])}"
+    clauses = [
+        f"`{part}` takes over the {_name_outputs(part_heirs)}" for part, part_heirs in sorted(heirs_by_part.items())
+    ]
+    return f"component `{old_component}` is split: {join_words(clauses)}"
+
+
+def _name_outputs(heirs: Sequence[OutputHeir]) -> str:
+    names = []
+    for heir in heirs:
+        old_name, new_name = (output.rpartition(".")[2] for output in (heir.old_id, heir.new_id))
+        names.append(f"`{old_name}`" if old_name == new_name else f"`{old_name}` as `{new_name}`")
+    return f"{'output' if len(names) == 1 else 'outputs'} {join_words(sorted(names))}"
+
+
+def _count_outputs(names: Sequence[str]) -> str:
+    return f"{'output' if len(names) == 1 else 'outputs'} {tick_names(names)}" if names else "no output"
+
+
+def describe_merger(whole: str, heirs_by_part: Mapping[str, Sequence[OutputHeir]], versions: VersionPair) -> str:
+    """Describe which components are one now, and what else is not as it was."""
+    old_ids = [shown_id("component", part, versions) for part in sorted(heirs_by_part)]
+    old_whole = versions.elements_before.get(("component", whole))
+    if old_whole and old_whole.own_id != whole:
+        old_ids = sorted([*old_ids, old_whole.own_id])
+    noun, verb = ("component", "is") if len(old_ids) == 1 else ("components", "are")
+    heirs = [heir for part_heirs in heirs_by_part.values() for heir in part_heirs]
+    rest = _describe_rest([whole, *sorted(heirs_by_part)], heirs, versions)
+    return "; ".join((f"{noun} {tick_names(old_ids)} {verb} merged into `{whole}`", *rest))
+
+
+def _describe_rest(components: Sequence[str], heirs: Sequence[OutputHeir], versions: VersionPair) -> Iterator[str]:
+    """Describe what came and went beside: nothing of it may hide in a sentence about something else."""
+    old_outputs, new_outputs = (
+        [name for component in components for name in outputs_of(component, elements)]
+        for elements in (versions.elements_before, versions.elements_after)
+    )
+    gone = set(old_outputs) - set(new_outputs) - {heir.old_id for heir in heirs}
+    added = set(new_outputs) - set(old_outputs) - {heir.new_id for heir in heirs}
+    if gone:
+        yield f"{tick_names(shown_id('output', name, versions) for name in sorted(gone))} {_is_or_are(gone)} gone"
+    if added:
+        yield f"{tick_names(sorted(added))} {_is_or_are(added)} new"
+    yield from _describe_other_sources(components, {*old_outputs, *new_outputs}, versions)
+    yield from _describe_other_owners(heirs, versions)
+    for heir in heirs:
+        yield from _describe_heir(heir, versions)
+
+
+def _describe_other_owners(heirs: Sequence[OutputHeir], versions: VersionPair) -> Iterator[str]:
+    """Describe which components belong to another partner than those whose outputs they have."""
+    for old_component, new_component in dict.fromkeys((heir.old_component, heir.new_component) for heir in heirs):
+        old_element = versions.elements_before.get(("component", old_component))
+        new_element = versions.elements_after.get(("component", new_component))
+        old_owner, new_owner = (element.owner if element else None for element in (old_element, new_element))
+        if new_owner and old_owner != new_owner:
+            former_note = f" instead of {name_partner(old_owner, versions.partner_names)}" if old_owner else ""
+            yield f"`{new_component}` belongs to {name_partner(new_owner, versions.partner_names)}{former_note}"
+
+
+def _describe_other_sources(components: Sequence[str], own_outputs: set[str], versions: VersionPair) -> Iterator[str]:
+    old_sources, new_sources = (
+        {source for component in components for source in sources_of(component, versions, side=side)} - own_outputs
+        for side in (0, 1)
+    )
+    for verb, sources in (("also read", new_sources - old_sources), ("no longer read", old_sources - new_sources)):
+        if sources:
+            yield f"they {verb} {tick_names(shown_id('output', name, versions) for name in sorted(sources))}"
+
+
+def _describe_heir(heir: OutputHeir, versions: VersionPair) -> Iterator[str]:
+    """Describe in what an output is not what it was."""
+    old_output, new_output = (
+        versions.elements_before["output", heir.old_id],
+        versions.elements_after["output", heir.new_id],
+    )
+    old_type, new_type = old_output.values.get("type"), new_output.values.get("type")
+    if old_type != new_type:
+        yield f"`{heir.new_id}` carries {format_value(new_type)} instead of {format_value(old_type)}"
+    old_text, new_text = (str(each.values.get("description") or "") for each in (old_output, new_output))
+    if old_text != new_text:
+        yield f"the description of `{heir.new_id}` is another: {describe_text_difference(old_text, new_text)}"
+    yield from _describe_pace(
+        versions.elements_before.get(("component", heir.old_component)),
+        versions.elements_after.get(("component", heir.new_component)),
+        heir.new_id,
+    )
+
+
+def _describe_pace(
+    old_component: ComparedElement | None, new_component: ComparedElement | None, output_id: str
+) -> Iterator[str]:
+    for key, noun in _PACE_KEYS.items():
+        old_value, new_value = (each and each.values.get(key) for each in (old_component, new_component))
+        old_plain, new_plain = to_plain_data(old_value), to_plain_data(new_value)
+        if old_plain != new_plain:
+            new_phrase = f"has the {noun} {format_value(new_plain)}" if new_plain else f"has no {noun}"
+            yield f"`{output_id}` {new_phrase}" + (f" instead of {format_value(old_plain)}" if old_plain else "")
+
+
+def _is_or_are(names: set[str]) -> str:
+    return "is" if len(names) == 1 else "are"

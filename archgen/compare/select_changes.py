@@ -6,10 +6,9 @@ import itertools
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 
-from archgen.compare.compared_elements import ComparedElement, ElementKey
-from archgen.compare.comparison import ChainChange, Change, Comparison
+from archgen.compare.comparison import BoundaryChange, ChainChange, Change, Comparison
 from archgen.compare.concerned_owners import find_concerned_owners
-from archgen.compare.figure_changes import BoundaryChange
+from archgen.compare.version_pair import ComparedElement, ElementKey
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.model.selector_evaluation import Selection
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.comparison import Change
 from archgen.compare.kinds import Effect, find_effect
 from archgen.frozen import dataclass
+from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, HostLoad, LinkLoad
 from archgen.timing.run_analysis import analyse_architecture
 
@@ -62,3 +63,15 @@ def is_overloaded(load: HostLoad | LinkLoad) -> bool:
     if isinstance(load, LinkLoad):
         return load.share.value is not None and load.share.value >= 1
     return any(used_cores.value is not None and used_cores.value >= cores for _, cores, used_cores in load.core_loads)
+
+
+def find_activity_owners(names: Iterable[str], architecture: Architecture, analysis: Analysis) -> frozenset[str]:
+    """Return who owns any of the activities: the owners of their components, else of their nodes."""
+    return frozenset(owner for name in names for owner in _owners_of(name, architecture, analysis))
+
+
+def _owners_of(name: str, architecture: Architecture, analysis: Analysis) -> tuple[str, ...]:
+    # A chain of which no way is known names its points as written, and these may be ports.
+    activity = analysis.system.activities.get(name)
+    component = architecture.components.get(activity.component or "" if activity else name)
+    return component.owners if component else architecture.nodes[activity.node].owners if activity else ()

@@ -79,7 +79,7 @@ class InstanceOverlay:
             elif entry.key in _JOINED_LISTS and below and isinstance(below.value, SequenceNode):
                 own = entry.value.items if isinstance(entry.value, SequenceNode) else [entry.value]
                 items = [*below.value.items, *own]
-                entries[entry.key] = MappingEntry(entry.key, entry.key_span, SequenceNode(items, entry.value.span))
+                entries[entry.key] = entry.with_value(SequenceNode(items, entry.value.span))
             else:
                 _lay_entry(entries, entry)
         return MappingNode(entries, base.span if is_open else over.span)
@@ -164,7 +164,7 @@ def _lay_entry(entries: dict[str, MappingEntry], entry: MappingEntry, *, has_ids
         value = lay_mapping(below.value, entry.value, entry.key)
         if entry.key == "timing":
             _drop_period(value, entry.value)
-        entries[entry.key] = MappingEntry(entry.key, entry.key_span, value)
+        entries[entry.key] = entry.with_value(value)
 
 
 def lay_data(base: MappingNode, over: MappingNode) -> MappingNode:
@@ -175,7 +175,7 @@ def lay_data(base: MappingNode, over: MappingNode) -> MappingNode:
         value = entry.value
         if below is not None and isinstance(below.value, MappingNode) and isinstance(value, MappingNode):
             value = lay_data(below.value, value)
-        entries[entry.key] = MappingEntry(entry.key, entry.key_span, value)
+        entries[entry.key] = entry.with_value(value)
     return MappingNode(entries, base.span)
 
 

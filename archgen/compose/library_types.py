@@ -42,7 +42,7 @@ def _qualify_keys(body: MappingNode, keys: tuple[str, ...], library: str) -> Map
         if isinstance(reference, ScalarNode) and reference.value is not None:
             text = f"{library}.{reference.text.strip()}"
             entries[key] = MappingEntry(key, entries[key].key_span, ScalarNode(text, text, reference.span))
-    return MappingNode(entries, body.span, body.declares)
+    return body.with_entries(entries)
 
 
 def _qualify_types(body: YamlNode, library: str) -> YamlNode:
@@ -57,9 +57,7 @@ def _qualify_types(body: YamlNode, library: str) -> YamlNode:
         )
     components = body.get("components")
     if isinstance(components, MappingNode):
-        parts = {
-            part.key: MappingEntry(part.key, part.key_span, _qualify_types(part.value, library)) for part in components
-        }
-        parts_node = MappingNode(parts, components.span, components.declares)
+        parts = {part.key: part.with_value(_qualify_types(part.value, library)) for part in components}
+        parts_node = components.with_entries(parts)
         entries["components"] = MappingEntry("components", entries["components"].key_span, parts_node)
-    return MappingNode(entries, body.span, body.declares)
+    return body.with_entries(entries)

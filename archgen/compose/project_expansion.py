@@ -238,11 +238,7 @@ class _ProjectExpander:
             self._flatten_part(group.key, part, expansion, part.key, None, leaves)
         components = group.value.entries["components"]
         components_entry = MappingEntry("components", components.key_span, MappingNode(leaves, components.value.span))
-        return MappingEntry(
-            group.key,
-            group.key_span,
-            MappingNode({**group.value.entries, "components": components_entry}, group.value.span),
-        )
+        return group.with_value(MappingNode({**group.value.entries, "components": components_entry}, group.value.span))
 
     def _flatten_part(  # noqa: PLR0913, PLR0917 - what the recursion carries
         self,

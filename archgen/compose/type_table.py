@@ -276,7 +276,7 @@ def bind_type_body(node: MappingNode, bindings: Mapping[str, str], *, has_ids: b
     `has_ids`: its keys are ids of ports or components, whatever they are called.
     """
     return MappingNode(
-        {e.key: MappingEntry(e.key, e.key_span, _bind_value(e.key, e.value, bindings, has_ids=has_ids)) for e in node},
+        {e.key: e.with_value(_bind_value(e.key, e.value, bindings, has_ids=has_ids)) for e in node},
         node.span,
     )
 
@@ -285,10 +285,7 @@ def _bind_value(key: str, node: YamlNode, bindings: Mapping[str, str], *, has_id
     if isinstance(node, MappingNode):
         # A port may be called `request` or `type`: where keys are ids, their words mean nothing.
         if not has_ids and key in OPERATION_PARTS:
-            fields = {
-                e.key: MappingEntry(e.key, e.key_span, _bind_value("type", e.value, bindings, has_ids=False))
-                for e in node
-            }
+            fields = {e.key: e.with_value(_bind_value("type", e.value, bindings, has_ids=False)) for e in node}
             return MappingNode(fields, node.span)
         is_data = key in _DATA_KEYS and not has_ids
         return node if is_data else bind_type_body(node, bindings, has_ids=key in _KEYS_OF_IDS and not has_ids)

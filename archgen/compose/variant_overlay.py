@@ -71,7 +71,7 @@ class _ChangeLayer:
             bodies[library_id] = _replace_key(library, "component_types", filled)
         laid_libraries = MappingNode(bodies, libraries.value.span)
         self._entries["libraries"] = MappingEntry("libraries", libraries.key_span, laid_libraries)
-        return MappingEntry(section.key, section.key_span, MappingNode(own_types, types.span))
+        return section.with_value(MappingNode(own_types, types.span))
 
     def _lay_section(self, below: MappingEntry | None, section: MappingEntry) -> MappingEntry:
         if below is None or not isinstance(below.value, MappingNode) or not isinstance(section.value, MappingNode):
@@ -134,7 +134,7 @@ def _replace_key(entry: MappingEntry, key: str, value: MappingNode) -> MappingEn
     if not isinstance(mapping, MappingNode):
         return entry
     inner = MappingEntry(key, mapping.entries[key].key_span, value)
-    return MappingEntry(entry.key, entry.key_span, MappingNode({**mapping.entries, key: inner}, mapping.span))
+    return entry.with_value(MappingNode({**mapping.entries, key: inner}, mapping.span))
 
 
 def _join_lists(laid: MappingNode, base: MappingNode, over: MappingNode) -> MappingNode:
@@ -168,14 +168,14 @@ def _drop_parts(mapping: MappingNode, parts: list[str], keys_before: tuple[str, 
         if entry is None:
             continue
         if not rest:
-            return MappingNode({e.key: e for e in mapping if e.key != key}, mapping.span, mapping.declares)
+            return mapping.with_entries({e.key: e for e in mapping if e.key != key})
         if not isinstance(entry.value, MappingNode):
             return MissingKey(".".join(rest), (), (*keys_before, key))
         inner = _drop_parts(entry.value, rest, (*keys_before, key))
         if isinstance(inner, MissingKey):
             return inner
         kept = MappingEntry(key, entry.key_span, inner)
-        return MappingNode({**mapping.entries, key: kept}, mapping.span, mapping.declares)
+        return mapping.with_entries({**mapping.entries, key: kept})
     return MissingKey(parts[0], tuple(mapping.entries), keys_before)
 
 

@@ -8,8 +8,8 @@ from archgen.derivation.wire.remap_rules import NodeNames
 from archgen.model.architecture import Architecture
 from archgen.model.coordinate_frames import Frame
 from archgen.model.node import Endpoint, Node, Qos
+from archgen.model.runtime_facts import TRANSFORM_MESSAGE
 
-TRANSFORM_MESSAGE = "tf2_msgs/msg/TFMessage"
 # tf2_ros/qos.hpp: DynamicBroadcasterQoS and StaticBroadcasterQoS.
 _QOS_BY_TOPIC = {"/tf": Qos(depth=100), "/tf_static": Qos(durability="transient_local", depth=1)}
 

@@ -1,6 +1,6 @@
 """Prove an insertion: the file says what it said plus the new element, and no other element of the project changed.
 
-Whether an element changed is the comparison's answer: its normal form (`compare.compared_elements`) is equal or not.
+Whether an element changed is the comparison's answer: its normal form (`compare.version_pair`) is equal or not.
 
 The element to be written, as the lines of a block or in braces.
 """
@@ -12,9 +12,9 @@ from dataclasses import dataclass, field
 
 from archgen import pipeline
 from archgen.compare.architecture_version import ArchitectureVersion
-from archgen.compare.compared_elements import MAPPED_KEY, ComparedElement
 from archgen.compare.element_listing import list_elements
 from archgen.compare.matched_ids import MatchedIds
+from archgen.compare.version_pair import MAPPED_KEY, ComparedElement
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node

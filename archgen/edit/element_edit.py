@@ -35,6 +35,9 @@ class EditRefusedError(Exception):
         self.errors = errors
 
 
+_LINE_FEEDS = re.compile(r"[^\n]*\n|[^\n]+")
+
+
 @dataclass(frozen=True, slots=True)
 class FileEdit:
     """One file's bytes before (None: the file is new) and after, and the line at which the element begins.
@@ -49,23 +52,26 @@ class FileEdit:
     renamed_nodes: tuple[tuple[str, str], ...] = ()
 
     def unified_diff(self) -> Iterator[str]:
-        """Yield a unified diff, as git writes it."""
-        old_lines = (self.old_content or b"").decode().splitlines()
-        name = "/dev/null" if self.old_content is None else f"a/{self.file}"
-        return difflib.unified_diff(
-            old_lines, self.new_content.decode().splitlines(), name, f"b/{self.file}", lineterm=""
+        """Yield the lines of a unified diff, with their ends, as `git apply` takes it."""
+        old_lines, new_lines = (
+            _LINE_FEEDS.findall(each.decode()) for each in (self.old_content or b"", self.new_content)
         )
+        name = "/dev/null" if self.old_content is None else f"a/{self.file}"
+        for line in difflib.unified_diff(old_lines, new_lines, name, f"b/{self.file}"):
+            yield line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n"
 
 
 def plan_edit(checked_project: CheckedProject, place: ElementPlace, element: NewElement, element_id: str) -> FileEdit:
     """Return the edit that adds an element; `element_id` is its complete id. Raise EditRefusedError."""
     old_content, text = (
-        (None, _schema_line(checked_project, place)) if place.is_new_file else _read_file(checked_project, place)
+        (None, _schema_line(checked_project, place))
+        if place.is_new_file
+        else read_editable(checked_project, place.file)
     )
     new_text = _insert_element(place, element, text)
     # Two proofs: `adds_only_element` looks at the file alone, this one at the whole project with it.
     consequences = edit_proof.find_consequences(
-        checked_project, place.file, new_text.removeprefix(_BYTE_ORDER_MARK), element_id
+        checked_project, place.file, new_text.removeprefix(BYTE_ORDER_MARK), element_id
     )
     if consequences.errors:
         message = "with it the project would have errors that it does not have now"
@@ -80,19 +86,19 @@ def plan_edit(checked_project: CheckedProject, place: ElementPlace, element: New
     return FileEdit(place.file, old_content, new_text.encode(), line, consequences.renamed_nodes)
 
 
-_BYTE_ORDER_MARK = codecs.BOM_UTF8.decode()
+BYTE_ORDER_MARK = codecs.BOM_UTF8.decode()
 
 
-def _read_file(checked_project: CheckedProject, place: ElementPlace) -> tuple[bytes, str]:
+def read_editable(checked_project: CheckedProject, file: str) -> tuple[bytes, str]:
     """Read a file of the project. Raise EditRefusedError."""
-    data = checked_project.loaded_project.files.fetch_bytes(place.file)
+    data = checked_project.loaded_project.files.fetch_bytes(file)
     if isinstance(data, FileRefusal):
-        message = f"{place.file} cannot be read: {data.message}"
+        message = f"{file} cannot be read: {data.message}"
         raise EditRefusedError(message)
     try:
         return data, data.decode()
     except UnicodeDecodeError:
-        message = f"{place.file} is not UTF-8"
+        message = f"{file} is not UTF-8"
         raise EditRefusedError(message) from None
 
 
@@ -112,8 +118,8 @@ def _schema_line(checked_project: CheckedProject, place: ElementPlace) -> str:
 
 def _insert_element(place: ElementPlace, element: NewElement, text: str) -> str:
     """Return the text with the element inserted, the first proposal that proves right. Raise EditRefusedError."""
-    byte_order_mark = _BYTE_ORDER_MARK if text.startswith(_BYTE_ORDER_MARK) else ""
-    plain_text = text.removeprefix(_BYTE_ORDER_MARK)
+    byte_order_mark = BYTE_ORDER_MARK if text.startswith(BYTE_ORDER_MARK) else ""
+    plain_text = text.removeprefix(BYTE_ORDER_MARK)
     try:
         for candidate in propose_texts(place.file, plain_text, place.path, element):
             if edit_proof.adds_only_element(plain_text, candidate, place.path, element):
@@ -156,7 +162,7 @@ class CannotInsertError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class _ParsedText:
+class ParsedText:
     """A file's text as lines with their line endings, and its tree."""
 
     lines: tuple[str, ...]
@@ -164,10 +170,12 @@ class _ParsedText:
 
     @property
     def line_ending(self) -> str:
+        """Return how the first line ends."""
         first = self.lines[0] if self.lines else "\n"
         return first[len(first.rstrip("\r\n")) :] or "\n"
 
     def offset_of(self, line: int, column: int) -> int:
+        """Return how many characters stand before a place."""
         return sum(len(text) for text in self.lines[: line - 1]) + column - 1
 
     def text_from(self, value: YamlNode) -> str:
@@ -183,31 +191,33 @@ def propose_texts(file: str, text: str, path: tuple[str, ...], element: NewEleme
 
     Raise CannotInsertError.
     """
+    parsed = parse_text(file, text)
+    holder, missing_keys = find_holder(parsed, path)
+    entry = holder.entries.get(missing_keys[0]) if missing_keys else None
+    if entry is not None:
+        yield from _insert_below_empty(parsed, holder, entry, element.nested_below(missing_keys[1:]))
+    elif parsed.text_from(holder).startswith("{") and holder.span != Span.of_file(file):
+        compact_element = element.without_empty_keys().nested_below(missing_keys)
+        position, insertion = find_place_in_braces(parsed, holder, compact_element.to_flow())
+        yield text[:position] + insertion + text[position:]
+    else:
+        yield from _insert_in_block(parsed, holder, element.nested_below(missing_keys))
+
+
+def parse_text(file: str, text: str) -> ParsedText:
+    """Return a text that can be edited by its places. Raise CannotInsertError."""
     document, _ = yaml_parser.parse_yaml(file, text)
     if document is None:
         msg = f"{file} cannot be parsed: `archgen check` says where"
         raise CannotInsertError(msg)
     # YAML takes a lone carriage return for a line break and editors mostly do not: line numbers would not fit.
-    if _has_bare_returns(text):
+    if re.search(r"\r(?!\n)", text):
         msg = f"{file} holds line breaks that editors and parsers see differently"
         raise CannotInsertError(msg)
-    parsed = _ParsedText(tuple(_LINE_PATTERN.findall(text)), document.root)
-    holder, missing_keys = _find_holder(parsed, path)
-    entry = holder.entries.get(missing_keys[0]) if missing_keys else None
-    if entry is not None:
-        yield from _insert_below_empty(parsed, holder, entry, element.nested_below(missing_keys[1:]))
-    elif parsed.text_from(holder).startswith("{") and holder.span != Span.of_file(file):
-        yield _insert_in_braces(parsed, holder, element.without_empty_keys().nested_below(missing_keys))
-    else:
-        yield from _insert_in_block(parsed, holder, element.nested_below(missing_keys))
+    return ParsedText(tuple(_LINE_PATTERN.findall(text)), document.root)
 
 
-def _has_bare_returns(text: str) -> bool:
-    """Return whether a text has line breaks that are a carriage return only."""
-    return re.search(r"\r(?!\n)", text) is not None
-
-
-def _find_holder(parsed: _ParsedText, path: tuple[str, ...]) -> tuple[MappingNode, tuple[str, ...]]:
+def find_holder(parsed: ParsedText, path: tuple[str, ...]) -> tuple[MappingNode, tuple[str, ...]]:
     """Follow a path as far as its mappings are written; return the last of them and the keys that are left."""
     table = parsed.root
     for depth, key in enumerate(path):
@@ -223,7 +233,7 @@ def _find_holder(parsed: _ParsedText, path: tuple[str, ...]) -> tuple[MappingNod
 
 
 def _insert_below_empty(
-    parsed: _ParsedText, holder: MappingNode, entry: MappingEntry, element: NewElement
+    parsed: ParsedText, holder: MappingNode, entry: MappingEntry, element: NewElement
 ) -> Iterator[str]:
     """Insert the element below a key without a value."""
     line = parsed.lines[entry.key_span.end_line - 1].rstrip("\r\n")
@@ -245,7 +255,7 @@ def _insert_below_empty(
     )
 
 
-def _insert_in_block(parsed: _ParsedText, table: MappingNode, element: NewElement) -> Iterator[str]:
+def _insert_in_block(parsed: ParsedText, table: MappingNode, element: NewElement) -> Iterator[str]:
     """Insert the element behind the last one of a block."""
     entries = list(table)
     if not entries:
@@ -273,7 +283,7 @@ def _insert_in_block(parsed: _ParsedText, table: MappingNode, element: NewElemen
         yield _join_lines(parsed, line, lines, is_spaced=is_spaced)
 
 
-def _is_all_braces(parsed: _ParsedText, entries: list[MappingEntry]) -> bool:
+def _is_all_braces(parsed: ParsedText, entries: list[MappingEntry]) -> bool:
     """Return whether everything in a block is written in braces or in short form, each on one line."""
     return all(
         not isinstance(entry.value, MappingNode)
@@ -282,26 +292,23 @@ def _is_all_braces(parsed: _ParsedText, entries: list[MappingEntry]) -> bool:
     )
 
 
-def _insert_in_braces(parsed: _ParsedText, table: MappingNode, element: NewElement) -> str:
-    """Insert the element before a closing brace, on a line of its own where the others have one."""
+def find_place_in_braces(parsed: ParsedText, table: MappingNode, element_text: str) -> tuple[int, str]:
+    """Return where an element goes before a closing brace, and its text, on a line of its own where the others have one."""
     text = "".join(parsed.lines)
-    element_text = element.to_flow()
     entries = list(table)
     if not entries:
-        opening = parsed.offset_of(table.span.line, table.span.column) + text[
-            parsed.offset_of(table.span.line, table.span.column) :
-        ].index("{")
-        return text[: opening + 1] + element_text + text[opening + 1 :]
+        opening = parsed.offset_of(table.span.line, table.span.column)
+        return text.index("{", opening) + 1, element_text
     last_entry = entries[-1]
     end = parsed.offset_of(last_entry.value.span.end_line, last_entry.value.span.end_column)
     comma = _UNTIL_COMMA.match(text, end)
     position = comma.end() if comma else end
     indentation = parsed.lines[last_entry.key_span.line - 1][: last_entry.key_span.column - 1]
     separator = f"{parsed.line_ending}{indentation}" if not indentation.strip() else " "
-    return text[:position] + ("" if comma else ",") + separator + element_text + text[position:]
+    return position, ("" if comma else ",") + separator + element_text
 
 
-def _end_of_comments(parsed: _ParsedText, line: int, column: int) -> int:
+def _end_of_comments(parsed: ParsedText, line: int, column: int) -> int:
     """Return the line behind which to insert: comments that are indented as far belong to what is above them."""
     end = line
     for number in range(line, len(parsed.lines)):
@@ -315,7 +322,7 @@ def _end_of_comments(parsed: _ParsedText, line: int, column: int) -> int:
     return end
 
 
-def _has_blank_lines(parsed: _ParsedText, entries: list[MappingEntry]) -> bool:
+def _has_blank_lines(parsed: ParsedText, entries: list[MappingEntry]) -> bool:
     """Return whether blank lines separate the elements of a block."""
     number = entries[-1].key_span.line - 1
     while number > 0 and parsed.lines[number - 1].lstrip().startswith("#"):
@@ -333,7 +340,7 @@ def _indent_width(table: MappingNode, default_width: int = _DEFAULT_INDENT) -> i
     return default_width
 
 
-def _join_lines(parsed: _ParsedText, line_count: int, lines: list[str], *, is_spaced: bool) -> str:
+def _join_lines(parsed: ParsedText, line_count: int, lines: list[str], *, is_spaced: bool) -> str:
     """Return the text with lines inserted behind a line."""
     ending = parsed.line_ending
     before, after = "".join(parsed.lines[:line_count]), "".join(parsed.lines[line_count:])

@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import fields
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
+from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from archgen.diagnostics.source_span import Span
-    from archgen.model.architecture import Architecture
+from archgen.model.architecture import Architecture
 
 
 class SilencingComment(Protocol):

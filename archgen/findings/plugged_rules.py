@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from fractions import Fraction
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from archgen.analyses import bound_findings
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
@@ -11,12 +13,7 @@ from archgen.diagnostics.rule_options import OptionValues, RuleOption, read_opti
 from archgen.findings.rule_table import FAILED_RULE
 from archgen.frozen import dataclass, replace
 from archgen.installed_plugins import RULES, PluginEntry, PluginRefusedError, list_entries, load_facts
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping
-    from fractions import Fraction
-
-    from archgen.model.architecture import Architecture
+from archgen.model.architecture import Architecture
 
 
 @dataclass(frozen=True, slots=True)

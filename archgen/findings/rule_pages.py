@@ -6,15 +6,12 @@ from __future__ import annotations
 
 import re
 import textwrap
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
 
 from archgen import resources
+from archgen.diagnostics.diagnostic import Rule
 from archgen.diagnostics.text_columns import wrap_line
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
-    from archgen.diagnostics.diagnostic import Rule
 
 _TEXT_WIDTH = 100
 _SECTION_PATTERN = re.compile(

@@ -395,6 +395,7 @@ KEY_FACTS: Mapping[str, Mapping[str, KeyFacts]] = {
         "wcet": {},
         "bcet": {},
         "stored": {"attribute": "stored_at_once"},
+        "memory": {},
     },
     "timing_output": {
         "conditional": {"form": "flag"},
@@ -410,6 +411,7 @@ KEY_FACTS: Mapping[str, Mapping[str, KeyFacts]] = {
             "new_verb": "leads through",
         },
         "deadline": {"worse": "less", "verb": "must end within", "new_verb": "must end within"},
+        "deadline.": {"form": "mapping", "worse": "less"},
         "title": {"form": "title", "effect": "text"},
         "requirements": {
             "form": "set", "names": "requirement", "effect": "system", "verbs": ("now serves", "no longer serves"),

@@ -344,7 +344,7 @@ KEYS: Mapping[str, Mapping[str, str]] = {
         "response": "duration",
     },
     "timing_input": {
-        "wcet": "duration", "bcet": "duration", "stored": "timing_input.stored",
+        "wcet": "duration", "bcet": "duration", "stored": "timing_input.stored", "memory": "timing_input.memory",
     },
     "timing_output": {
         "conditional": "flag", "max_gap": "duration",
@@ -363,18 +363,19 @@ KEYS: Mapping[str, Mapping[str, str]] = {
         "best": "duration", "worst": "duration",
     },
     "chain": {
-        "through": "chain.through", "deadline": "duration", "title": "text", "requirements": "chain.requirements",
+        "through": "chain.through", "deadline": "chain_deadline", "title": "text", "requirements": "chain.requirements",
         "properties": "properties", "hints": "hints",
     },
 }
 """The part that stands at each key of each kind."""
 ENTRIES: Mapping[str, str] = {
     "actors": "actor", "agreements": "agreement", "callback_groups": "group_components", "calls": "call_use",
-    "chains": "chain", "changed_component_types": "component_type", "component_parameters": "parameter",
-    "component_types": "component_type", "components": "component", "constants": "constant", "containers": "container",
-    "definitions": "definitions.*", "fields": "field", "frames": "frame", "glossary": "text", "groups": "group",
-    "hosts": "host", "inputs": "input", "inner_nodes": "inner_nodes.*", "internal_calls": "call_use",
-    "internal_topics": "topic_use", "libraries": "library", "links": "link", "message_part": "field", "nodes": "node",
+    "chain_deadline": "duration", "chains": "chain", "changed_component_types": "component_type",
+    "component_parameters": "parameter", "component_types": "component_type", "components": "component",
+    "constants": "constant", "containers": "container", "definitions": "definitions.*", "fields": "field",
+    "frames": "frame", "glossary": "text", "groups": "group", "hosts": "host", "inputs": "input",
+    "inner_nodes": "inner_nodes.*", "internal_calls": "call_use", "internal_topics": "topic_use",
+    "libraries": "library", "links": "link", "message_part": "field", "nodes": "node",
     "operation_fields": "operation_fields.*", "operations": "operation", "outputs": "output",
     "parameter_commands": "parameter_commands.*", "parameter_set": "parameter", "parameter_texts": "parameter_texts.*",
     "partners": "partner", "policies": "policy", "policy_exceptions": "text", "port_conditions": "port_conditions.*",
@@ -488,7 +489,7 @@ WORDS: Mapping[str, tuple[str, ...]] = {
     "view.colour": ("group", "owner", "role", "status", "host", "package", "tag"),
     "operation.call": ("synchronous", "asynchronous"),
     "parameter_declaration.type": ("boolean", "integer", "float", "string", "boolean[]", "integer[]", "float[]", "string[]"),
-    "timing_input.stored": ("at_once",),
+    "timing_input.stored": ("at_once",), "timing_input.memory": ("each_source",),
 }
 """The words of which one stands at a part."""
 PART_TYPES: Mapping[str, str] = {
@@ -521,7 +522,8 @@ ATTRIBUTES: Mapping[str, tuple[str, ...]] = {
     "policy.forbid": ("forbid_from", "forbid_to", "from_at", "to_at"),
     "policy.accepted": ("accepted", "accepted_places"), "forbid.from": ("forbid_from",), "forbid.to": ("forbid_to",),
     "timing.wcet": ("wcet", "measured_times"), "timing_input.stored": ("stored_at_once",),
-    "chain.through": ("through", "unresolved"), "chain.requirements": ("requirements", "requirement_places"),
+    "chain.through": ("through", "unresolved"), "chain.deadline": ("deadline", "deadline_shares", "deadline_places"),
+    "chain.requirements": ("requirements", "requirement_places"),
 }
 """The fields of the model that hold what stands at a key, or keys of a type, where they are not called as it."""
 PLACED_KEYS: Mapping[str, tuple[str, ...]] = {

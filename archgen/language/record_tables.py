@@ -116,7 +116,7 @@ RECORD_KEYS: Mapping[str, Mapping[str, str]] = {
     },
     "chain": {
         "title": "", "requirements": "", "through": "waypoint[]", "deadline": "ns", "properties": "annotations",
-        "hints": "annotations",
+        "hints": "annotations", "deadline_shares": "ns{}",
     },
     "variant": {
         "title": "", "description": "", "of": "", "without": "", "drop": "", "changes": "",
@@ -189,7 +189,7 @@ RECORD_KEYS: Mapping[str, Mapping[str, str]] = {
         "mode": "", "inputs": "", "within": "ns",
     },
     "timing_input": {
-        "wcet": "ns", "bcet": "ns", "stored": "",
+        "wcet": "ns", "bcet": "ns", "stored": "", "memory": "",
     },
     "timing_output": {
         "conditional": "flag", "max_gap": "ns",

@@ -144,9 +144,8 @@ def _read_definitions(
         name, span = interface_name_of(file), Span.of_file(file)
         if name is None:
             help_line = "a definition's path ends in its package, its kind and its name: `ramcip_msgs/msg/Grasp.msg`"
-            diagnostics.append(
-                Diagnostic(INVALID_INTERFACE, f"`{file}` does not say which interface it defines", span, help=help_line)
-            )
+            message = f"`{file}` does not say which interface it defines"
+            diagnostics.append(Diagnostic(INVALID_INTERFACE, message, span, help=help_line))
         elif _check_name(name, span, diagnostics, ros1=ros1):
             yield name, parse_interface_definition(text, name, file, ros1=ros1), span
     for name, (text, span) in inline_definitions.items():

@@ -32,9 +32,9 @@ def merge_libraries(
             diagnostics += findings
             package = _name_package(library)
             body = MappingNode({**package, **entry.value.entries, **content.entries}, entry.value.span)
-            bodies[library.id] = MappingEntry(entry.key, entry.key_span, body)
+            bodies[library.id] = entry.with_value(body)
     section = root.entries["libraries"]
-    filled_section = MappingEntry(section.key, section.key_span, MappingNode(bodies, section.value.span))
+    filled_section = section.with_value(MappingNode(bodies, section.value.span))
     return MappingNode({**root.entries, "libraries": filled_section}, root.span), tuple(diagnostics)
 
 
@@ -59,7 +59,7 @@ def keep_used_libraries(root: MappingNode, architectures: Sequence[Architecture]
     if "libraries" not in root.entries:
         return root
     libraries = {
-        library.key: MappingEntry(library.key, library.key_span, body)
+        library.key: library.with_value(body)
         for library in list_libraries(root)
         if (body := _keep_used_types(library, architectures)).entries
     }

@@ -21,13 +21,15 @@ from archgen.model.quantity import parse_quantity
 
 _ORDERS = {"nodes": EXECUTOR_ORDERS, "containers": EXECUTOR_ORDERS, "hosts": HOST_ORDERS, "resources": RESOURCE_ORDERS}
 _KEYS: Mapping[str, tuple[str, ...]] = {
-    "nodes": ("threads", "scheduling", "reentrant", "callback_groups", "host"),
+    "nodes": ("threads", "scheduling", "reentrant", "callback_groups", "host", "container"),
     "containers": ("threads", "scheduling", "host"),
     "hosts": ("cores", "scheduling"),
     "resources": ("scheduling",),
 }
 """The keys of each section that can be overridden."""
 _ALL_KEYS = tuple(dict.fromkeys(key for keys in _KEYS.values() for key in keys))
+NO_CONTAINER = "none"
+"""What `container` is set to for a process of its own."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +93,10 @@ def _parse_value(  # noqa: PLR0913, PLR0917 - the parts of one override
     elif key == "host":
         value = text if text in architecture.hosts else None
         expected = "a host" + (f"; {guess}" if (guess := did_you_mean(text, architecture.hosts)) else "")
+    elif key == "container":
+        value = text if text in architecture.containers or text == NO_CONTAINER else None
+        guess = did_you_mean(text, architecture.containers)
+        expected = f"a container, or `{NO_CONTAINER}` for a process of its own" + (f"; {guess}" if guess else "")
     elif key == "reentrant":
         value, expected = {"true": True, "false": False}.get(text), "true or false"
     else:
@@ -141,6 +147,8 @@ def apply_process_override(architecture: Architecture, override: ProcessOverride
             for node in architecture.nodes.values()
         }
         architecture = replace(architecture, nodes=nodes)
+    elif isinstance(element, Node) and override.key == "container":
+        changes = _change_container(architecture, element, override.value)
     elif override.key == "reentrant" and override.value:
         changes["callback_groups"] = {}
     changed_section: dict[str, Any] = {override.section: {**elements, override.element_id: replace(element, **changes)}}
@@ -154,6 +162,12 @@ def _change_orders(host: Host, override: ProcessOverride) -> dict[str, Any]:
         figure = {override.part.removeprefix("fair."): override.value}
         return {"scheduling": "fair", "fair": replace(host.fair or FairScheduling(), **figure)}
     return {"core_scheduling": {**host.core_scheduling, int(override.part): override.value}}
+
+
+def _change_container(architecture: Architecture, node: Node, name: str) -> dict[str, Any]:
+    """Return the container of a node, and the host that it has by it; a process of its own stays where it was."""
+    container = architecture.containers.get(name)
+    return {"container": container.id, "host": container.host or node.host} if container else {"container": None}
 
 
 def _change_groups(node: Node, override: ProcessOverride) -> dict[str, Any]:

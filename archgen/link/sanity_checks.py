@@ -25,8 +25,8 @@ _UNKNOWN_HELP = "leave it out where it is not known"
 def drop_senseless(timing: Timing, element_id: str, diagnostics: list[Diagnostic]) -> Timing:
     """Report what makes no sense in a timing, and return the timing without it."""
     dropped_keys: dict[str, Any] = {}
-    for key, finding in _find_senseless(timing, element_id):
-        diagnostics.append(finding)
+    for key, message, help_line, *labels in _find_senseless(timing):
+        diagnostics.append(_diagnose_senseless(message, timing.places[key], help_line, element_id, *labels))
         dropped_keys[key] = None
     return replace(timing, **dropped_keys) if dropped_keys else timing
 
@@ -38,9 +38,8 @@ def read_positive(
     quantity = mapping_values.get_quantity(mapping, key, dimension)
     if quantity is None or quantity.value:
         return quantity
-    diagnostics.append(
-        _diagnose_senseless(f"`{key}` cannot be zero", mapping_values.get_span(mapping, key), _UNKNOWN_HELP, element_id)
-    )
+    message = f"`{key}` cannot be zero"
+    diagnostics.append(_diagnose_senseless(message, (mapping, key), _UNKNOWN_HELP, element_id))
     return None
 
 
@@ -51,11 +50,8 @@ def report_empty_list(
     node = mapping.get(key)
     # Without a place: what was written there is reported already.
     if isinstance(node, SequenceNode) and not node.items and node.span != NO_SPAN:
-        diagnostics.append(
-            _diagnose_senseless(
-                f"`{key}` names no {kind}", node.span, f"name one or more, or leave `{key}` out", element_id
-            )
-        )
+        message, help_line = f"`{key}` names no {kind}", f"name one or more, or leave `{key}` out"
+        diagnostics.append(_diagnose_senseless(message, node.span, help_line, element_id))
 
 
 def report_exchanged(
@@ -71,9 +67,8 @@ def report_exchanged(
         return False
     label = Label(mapping_values.get_span(mapping, large_key), f"`{large_key}`")
     message = f"`{small_key}` ({small_quantity}) is above `{large_key}` ({large_quantity})"
-    span = mapping_values.get_span(mapping, small_key)
     help_line = f"exchange them, or leave `{small_key}` out"
-    diagnostics.append(_diagnose_senseless(message, span, help_line, element_id, label))
+    diagnostics.append(_diagnose_senseless(message, (mapping, small_key), help_line, element_id, label))
     return True
 
 
@@ -82,10 +77,9 @@ def report_times_of_none(input_body: MappingNode, element_id: str, diagnostics: 
     key = next((key for key in ("wcet", "bcet") if input_body.get(key) is not None), None)
     if key is None:
         return False
-    span = mapping_values.get_span(input_body, key)
     message = f"`{key}` is the time of a callback that stores the input, and `stored: at_once` says that there is none"
     label = Label(mapping_values.get_span(input_body, "stored"), "nothing has to be run")
-    diagnostics.append(_diagnose_senseless(message, span, "leave one of them out", element_id, label))
+    diagnostics.append(_diagnose_senseless(message, (input_body, key), "leave one of them out", element_id, label))
     return True
 
 
@@ -114,8 +108,7 @@ def report_rate_of_static(frame_body: MappingNode, element_id: str, diagnostics:
     """Report how often a frame is written that never moves."""
     label = Label(mapping_values.get_span(frame_body, "static"), "it never moves")
     message, help_line = "`rate` of a static frame: it is written once", "take one of `rate` and `static` out"
-    span = mapping_values.get_span(frame_body, "rate")
-    diagnostics.append(_diagnose_senseless(message, span, help_line, element_id, label))
+    diagnostics.append(_diagnose_senseless(message, (frame_body, "rate"), help_line, element_id, label))
 
 
 def report_mixed_trigger(trigger_body: MappingNode, element_id: str, diagnostics: list[Diagnostic]) -> None:
@@ -127,8 +120,7 @@ def report_mixed_trigger(trigger_body: MappingNode, element_id: str, diagnostics
         if trigger_body.get(key) is not None:
             message = f"`{key}` has no effect beside `all`"
             help_line = "write either `{all: [...]}`, or `{match: [...], within: 30 ms}`"
-            span = mapping_values.get_span(trigger_body, key)
-            diagnostics.append(_diagnose_senseless(message, span, help_line, element_id, label))
+            diagnostics.append(_diagnose_senseless(message, (trigger_body, key), help_line, element_id, label))
 
 
 def report_repetition(mapping: MappingNode, key: str, element_id: str, diagnostics: list[Diagnostic]) -> None:
@@ -148,8 +140,8 @@ def report_lonely_within(trigger_body: MappingNode, element_id: str, diagnostics
     """Report a `within` of a trigger that names no inputs."""
     if trigger_body.get("within") is not None and trigger_body.entries.keys() == {"within"}:
         help_line = "name the inputs that it fires for: `{match: [image, cloud], within: 30 ms}`"
-        span = mapping_values.get_span(trigger_body, "within")
-        diagnostics.append(_diagnose_senseless("`within` needs `match`", span, help_line, element_id))
+        place = (trigger_body, "within")
+        diagnostics.append(_diagnose_senseless("`within` needs `match`", place, help_line, element_id))
 
 
 def check_match(  # noqa: PLR0913 - what a match consists of
@@ -165,19 +157,19 @@ def check_match(  # noqa: PLR0913 - what a match consists of
 
     Of a damaged element `within` may be what could not be read: that is reported already.
     """
-    span = mapping_values.get_span(trigger_body, "match")
+    place = (trigger_body, "match")
     # What could not be resolved is reported, and may be the second one.
     has_unresolved = len(mapping_values.get_texts(trigger_body, "match")) > len(inputs)
     counts = Counter(port.rpartition(".")[0] for port in inputs)
     if min(counts.values()) < 2 and not has_unresolved:  # noqa: PLR2004
         message = "`match` names one input only" if len(inputs) == 1 else "`match` names one input only of a component"
         help_line = "name two or more inputs of one component; one input alone is `trigger: [input]`"
-        diagnostics.append(_diagnose_senseless(message, span, help_line, element_id))
+        diagnostics.append(_diagnose_senseless(message, place, help_line, element_id))
         return False
     if within is None and not is_damaged:
         message = "`match` needs `within`: how far apart the times of matched messages may be"
         help_line = "write `within: 30 ms` beside it; `within: 0 ms` matches the same time only"
-        diagnostics.append(_diagnose_senseless(message, span, help_line, element_id))
+        diagnostics.append(_diagnose_senseless(message, place, help_line, element_id))
     return within is not None and min(counts.values()) > 1
 
 
@@ -194,47 +186,36 @@ def read_latency(
         return best, worst
     label = Label(mapping_values.get_span(mapping, "worst"), "the worst")
     message = f"the best latency ({best}) is above the worst ({worst})"
-    span = mapping_values.get_span(mapping, "best")
-    resolver.diagnostics.append(_diagnose_senseless(message, span, "exchange them", link_id, label))
+    resolver.diagnostics.append(_diagnose_senseless(message, (mapping, "best"), "exchange them", link_id, label))
     return None, worst
 
 
-def _find_senseless(timing: Timing, element_id: str) -> Iterator[tuple[str, Diagnostic]]:
-    """Yield what makes no sense in a timing: the key to leave out, and the diagnostic that says why."""
+def _find_senseless(timing: Timing) -> Iterator[tuple[str, str, str, *tuple[Label, ...]]]:
+    """Yield what makes no sense in a timing: the key to leave out, why, what to do, and labels."""
     spans = timing.places
     for key, quantity in (("period", timing.period), ("rate", timing.rate)):
         if quantity is not None and quantity.value == 0:
-            yield key, _diagnose_senseless(f"a {key} cannot be zero", spans[key], _UNKNOWN_HELP, element_id)
+            yield key, f"a {key} cannot be zero", _UNKNOWN_HELP
     # Of two figures that contradict each other one is dropped: the rate here, the best case below.
     if timing.period is not None and timing.rate is not None:
         label = Label(spans["period"], "the period")
         help_line = "write one of them: each follows from the other"
-        yield (
-            "rate",
-            _diagnose_senseless("`rate` and `period` are both written", spans["rate"], help_line, element_id, label),
-        )
+        yield "rate", "`rate` and `period` are both written", help_line, label
     if timing.bcet is not None and timing.wcet is not None and timing.bcet.value > timing.wcet.value:
         label = Label(spans["wcet"], "the worst case")
         message = f"the best case execution time (`bcet`, {timing.bcet}) is above the worst (`wcet`, {timing.wcet})"
-        yield (
-            "bcet",
-            _diagnose_senseless(message, spans["bcet"], "exchange them, or leave `bcet` out", element_id, label),
-        )
+        yield "bcet", message, "exchange them, or leave `bcet` out", label
     if timing.core is not None and timing.cores is not None:
         label = Label(spans["core"], "one core")
         help_line = "write one of them: `core: 3` is `cores: [3]`"
-        yield (
-            "cores",
-            _diagnose_senseless("`core` and `cores` are both written", spans["cores"], help_line, element_id, label),
-        )
+        yield "cores", "`core` and `cores` are both written", help_line, label
     if timing.every is not None and timing.every < 1:
-        yield (
-            "every",
-            _diagnose_senseless(
-                "`every` is 1 or more", spans["every"], "`every: 3` fires at each third input", element_id
-            ),
-        )
+        yield "every", "`every` is 1 or more", "`every: 3` fires at each third input"
 
 
-def _diagnose_senseless(message: str, span: Span, help_line: str, element_id: str, *labels: Label) -> Diagnostic:
+def _diagnose_senseless(
+    message: str, place: Span | tuple[MappingNode, str], help_line: str, element_id: str, *labels: Label
+) -> Diagnostic:
+    """Return what is wrong at a place, which may be the value of a key."""
+    span = place if isinstance(place, Span) else mapping_values.get_span(*place)
     return Diagnostic("wrong-value", message, span, labels=labels, help=help_line, element=element_id)

@@ -68,7 +68,7 @@ def _merge_entries(same_entries: list[MappingEntry], path: KeyPath, diagnostics:
     if path[:2] == ("review", "accepted") and all(isinstance(entry.value, SequenceNode) for entry in same_entries):
         # Each partner who loses something by a change agrees in a file of its own.
         items = [item for entry in same_entries if isinstance(entry.value, SequenceNode) for item in entry.value.items]
-        return MappingEntry(first_entry.key, first_entry.key_span, SequenceNode(items, first_entry.value.span))
+        return first_entry.with_value(SequenceNode(items, first_entry.value.span))
     # A mapping and a leaf at one path conflict whatever comes first; the mappings among them are merged all the same.
     if isinstance(first_entry.value, MappingNode) and not _is_parameter(path):
         mappings = [entry.value for entry in same_entries if isinstance(entry.value, MappingNode)]
@@ -77,7 +77,7 @@ def _merge_entries(same_entries: list[MappingEntry], path: KeyPath, diagnostics:
             for entry in same_entries
             if not isinstance(entry.value, MappingNode)
         )
-        return MappingEntry(first_entry.key, first_entry.key_span, _merge_mappings(mappings, path, diagnostics))
+        return first_entry.with_value(_merge_mappings(mappings, path, diagnostics))
     diagnostics.extend(_diagnose_conflict(entry, first_entry, path) for entry in same_entries[1:])
     return first_entry
 
@@ -235,8 +235,8 @@ def _remove_components(path: KeyPath, holder: MappingEntry, removed_paths: froze
         return holder
     entry = _entries_of(holder)["components"]
     kept_components = MappingNode({component.key: component for component in kept}, entry.value.span)
-    entries = {**_entries_of(holder), "components": MappingEntry(entry.key, entry.key_span, kept_components)}
-    return MappingEntry(holder.key, holder.key_span, MappingNode(entries, holder.value.span))
+    entries = {**_entries_of(holder), "components": entry.with_value(kept_components)}
+    return holder.with_value(MappingNode(entries, holder.value.span))
 
 
 RULES: tuple[Rule, ...] = (

@@ -98,12 +98,13 @@ def read_override(architecture: Architecture, text: str) -> tuple[TimingOverride
         raise OverrideError(msg)
     parsed_value = _parse_value(key, value.strip())
     overrides = tuple(
-        TimingOverride(node, component, own_key, parsed_value)
+        TimingOverride(node, component, own_key, own_value)
         for node, component in _find_activities(architecture, element)
         if (own_key := _complete_key(architecture, component, key))
+        and (own_value := _complete_value(architecture, component, parsed_value)) is not None
     )
     if not overrides:
-        input_name = key.removeprefix("inputs.").rpartition(".")[0]
+        input_name = key.removeprefix("inputs.").rpartition(".")[0] if key != "trigger" else value.strip(" []")
         names = [port.name for port in architecture.inputs.values()]
         msg = f"`{element}` has no input `{input_name}`; {did_you_mean(input_name, names) or NAMES_HELP}"
         raise OverrideError(msg)
@@ -140,8 +141,23 @@ def _complete_key(architecture: Architecture, component: str, key: str) -> str |
     return f"inputs.{port}.{match['bound']}" if is_meant else None
 
 
+def _complete_value(architecture: Architecture, component: str, value: object) -> object | None:
+    """Return a value with the complete ids of the inputs that it names; None where the component lacks one of them."""
+    if not isinstance(value, Trigger) or value.inputs is None:
+        return value
+    ports = tuple(f"{component}.{name.rpartition('.')[2]}" for name in value.inputs)
+    are_all_meant = all(
+        port in architecture.inputs and f".{port}".endswith(f".{name}")
+        for port, name in zip(ports, value.inputs, strict=True)
+    )
+    return replace(value, inputs=ports) if are_all_meant else None
+
+
 def apply_override(architecture: Architecture, override: TimingOverride | ProcessOverride) -> Architecture:
-    """Return an architecture with one value overridden. A rate removes the period, a set of cores the core, and the reverse."""
+    """Return an architecture with one value overridden.
+
+    A rate removes the period, a set of cores the core, and the reverse; inputs that fire it its own clock.
+    """
     if isinstance(override, ProcessOverride):
         return process_overrides.apply_process_override(architecture, override)
     node = architecture.nodes[override.node]
@@ -150,6 +166,9 @@ def apply_override(architecture: Architecture, override: TimingOverride | Proces
     changes: dict[str, Any] = {key: value}
     if key in _EXCLUSIVE_KEYS:
         changes[_EXCLUSIVE_KEYS[key]] = None
+    if isinstance(value, Trigger) and value.inputs is not None:
+        # What inputs fire has no clock of its own any more.
+        changes |= {"behaviour": "event", "period": None, "rate": None}
     kept_places = {name: span for name, span in timing.places.items() if changes.get(name, name) is not None}
     new_timing = replace(timing, **changes, places={**kept_places, key: timing.places.get(key, timing.at)})
     new_node = replace(node, timing={**node.timing, override.component: new_timing})
@@ -187,8 +206,10 @@ def _parse_value(key: str, text: str) -> object:
     elif key == "cores":
         parsed_value, expected = process_overrides.parse_counts(text), "whole numbers, such as 2, 3"
     elif key == "trigger":
-        parsed_value = Trigger(text) if text in {"any", "all"} else None  # type: ignore[arg-type]
-        expected = "any or all"
+        names = process_overrides.split_list(text) if text.startswith("[") else []
+        plain_trigger = Trigger(text) if text in {"any", "all"} else None  # type: ignore[arg-type]
+        parsed_value = Trigger("any", tuple(names)) if names else plain_trigger
+        expected = "any, all, or inputs, such as [scan]"
     else:
         parsed_value, expected = text if text in _WORD_KEYS[key] else None, ", ".join(_WORD_KEYS[key])
     return process_overrides.require_value(key, text, parsed_value, expected)

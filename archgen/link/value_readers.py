@@ -221,7 +221,7 @@ def _read_placed_mapping(mapping: MappingNode, key: str) -> tuple[Mapping[str, s
 
 VALUE_READERS: Mapping[str, ValueReader | None] = {
     # What takes more than its value.
-    **dict.fromkeys(("chain.deadline", "component_type.abstract", "input.freshness", "frame.rate"), None),
+    **dict.fromkeys(("chain_deadline", "component_type.abstract", "input.freshness", "frame.rate"), None),
     **dict.fromkeys(("property_declaration.required", "start_ready.within", "timing.deadline"), None),
     **dict.fromkeys(("text", "prose", "requirement_word", "topic_name_or_nothing"), mapping_values.get_text),
     **dict.fromkeys(

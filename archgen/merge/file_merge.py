@@ -39,13 +39,9 @@ def merge_contents(base: bytes, ours: bytes, theirs: bytes, marker_size: int = 7
     if merged_slice.rename_conflict:
         return FileMerge(line_merge.content, f"{merged_slice.rename_conflict}, and git takes the lines of both")
     # One id at two places with two contents: lines of both sides merge into a key that is there twice.
-    if merged_slice.conflict_path and not _is_readable(line_merge.content):
+    if merged_slice.conflict_path and not (read_tree(line_merge.content.decode()) is not None):
         return FileMerge(line_merge.content, f"{_describe_conflict(merged_slice)}, and git takes the lines of both")
     return FileMerge(line_merge.content)
-
-
-def _is_readable(content: bytes) -> bool:
-    return read_tree(content.decode()) is not None
 
 
 def _describe_conflict(merged_slice: UnmergedSlice) -> str:

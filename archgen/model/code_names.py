@@ -1,4 +1,4 @@
-"""Names of elements as identifiers of programming languages. Two names may become one: see `name_clashes`.
+"""Names of elements as identifiers of programming languages. Two names may become one: see `architecture_needs`.
 
 Words that no name may be in the languages of generated code.
 """

@@ -24,6 +24,8 @@ RESOURCE_ORDERS: tuple[SchedulingOrder, ...] = ("fifo", "fixed_priority")
 """The orders of a resource's uses."""
 DroppedMessages = Literal["kept", "forgotten"]
 """Whether a message that `every` or `throttle` drops is stored, and read by the next activation."""
+InputMemory = Literal["each_source"]
+"""Whose messages an input keeps, where it is not the last one of each topic."""
 PERCENTILES = ("p50", "p90", "p95", "p99")
 """The percentiles of execution times that can be written, the lowest first."""
 
@@ -81,14 +83,16 @@ class OutputTiming:
 
 @dataclass(frozen=True, slots=True)
 class InputTiming:
-    """How long the callback computes that only stores the messages of an input.
+    """How long the callback computes that only stores the messages of an input, or takes an answer.
 
-    With `stored_at_once` there is none: what has arrived can be read at once, as from a memory that is shared.
+    With `stored_at_once` there is none: what has arrived can be read at once, as from a memory that is shared. `memory`
+    is None where nothing is written: `runtime_facts` say what is kept then.
     """
 
     wcet: Quantity | None = None
     bcet: Quantity | None = None
     stored_at_once: bool = False
+    memory: InputMemory | None = None
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import field
+from decimal import Decimal
 from fractions import Fraction
 from functools import lru_cache
 
@@ -56,3 +57,17 @@ def parse_quantity(text: str, dimension: str) -> Quantity | None:
     number, unit = match.groups()
     factor = UNIT_FACTORS[dimension].get(unit)
     return None if factor is None else Quantity(Fraction(number) * factor, f"{number} {unit}")
+
+
+_SHARE_PATTERN = re.compile(r"([0-9]{1,2}(?:\.[0-9]{1,9})?) ?%\Z", re.ASCII)
+
+
+def parse_share(text: str) -> Fraction | None:
+    """Return a percentage below 100 %, such as `95 %`, as a fraction of 1; None for any other text."""
+    matched = _SHARE_PATTERN.match(text)
+    return Fraction(matched[1]) / 100 if matched else None
+
+
+def write_share(share: Fraction) -> str:
+    """Write a share as a percentage, always alike: `95 %`, `99.9 %`."""
+    return f"{Decimal(100 * share.numerator) / share.denominator:f} %"

@@ -76,7 +76,7 @@ class AcceptedChange:
     """A breaking change that was agreed on: the element as the diff names it, what of it changed, and the reason.
 
     Without a `key` it excuses nothing, since it would excuse whatever happens to the element later. `was` is the hash of
-    the change that was agreed on (`archgen.compare.change_hashes`).
+    the change that was agreed on (`archgen.compare.agreements`).
     """
 
     element: str

@@ -211,17 +211,13 @@ def _find_by_property(architecture: Architecture, text: str) -> SelectorHit:
     condition = parse_property_condition(text)
     if condition is None:
         return SelectorHit(frozenset(), frozenset())
-    components = (
-        c.id
-        for c in architecture.components.values()
-        if condition.is_met(find_component_properties(architecture, c), matches_wildcard)
+    components = {each: find_component_properties(architecture, own) for each, own in architecture.components.items()}
+    nodes = {each: find_node_properties(architecture, own) for each, own in architecture.nodes.items()}
+    met_components, met_nodes = (
+        frozenset(each for each, own in found.items() if condition.is_met(own, matches_wildcard))
+        for found in (components, nodes)
     )
-    nodes = (
-        n.id
-        for n in architecture.nodes.values()
-        if condition.is_met(find_node_properties(architecture, n), matches_wildcard)
-    )
-    return SelectorHit(frozenset(components), frozenset(nodes))
+    return SelectorHit(met_components, met_nodes)
 
 
 def _hit_of_findings(architecture: Architecture, element_ids: Iterable[str]) -> SelectorHit:

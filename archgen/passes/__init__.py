@@ -1,7 +1,6 @@
 """Passes rewrite a project as another one, which is again a valid project: types written out, hierarchy taken away."""
 
-from archgen.passes.pass_registry import PASSES
-from archgen.passes.pass_running import TransformedProject, UnknownPassError, order_passes, run_passes
+from archgen.passes.pass_running import PASSES, TransformedProject, UnknownPassError, order_passes, run_passes
 from archgen.passes.pass_shape import Pass, PassWork
 from archgen.passes.project_tree import ProjectTree
 

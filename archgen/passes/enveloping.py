@@ -10,11 +10,11 @@ from archgen.diagnostics.source_span import Span
 from archgen.link import mapping_values
 from archgen.model.generic_names import read_generic_name
 from archgen.model.port_media import flow_of_port, is_physical, uses_ros
-from archgen.passes.existing_parts import list_existing_components
 from archgen.passes.linked_tree import LinkedTree
 from archgen.passes.pass_shape import Pass, PassWork
 from archgen.passes.project_tree import PlainData, list_paths
 from archgen.passes.type_probes import link_types
+from archgen.passes.written_places import list_existing_components
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, YamlNode
 
 _NAMES = ("Envelope", "Sender envelope")

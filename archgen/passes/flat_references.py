@@ -13,7 +13,7 @@ from archgen.link.element_outline import ElementOutline
 from archgen.model.architecture import Architecture
 from archgen.model.coordinate_frames import Frame
 from archgen.model.path_resolver import ElementRef
-from archgen.passes.flat_steps import FlatSteps
+from archgen.passes.flat_sources import FlatSteps
 from archgen.passes.linked_tree import LinkedTree
 from archgen.passes.selector_rewriting import list_selected, rewrite_selectors
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode

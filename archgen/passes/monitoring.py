@@ -8,10 +8,9 @@ from archgen.diagnostics.element_origins import TreePath
 from archgen.link import mapping_values
 from archgen.model.element_ids import make_unique_id
 from archgen.model.path_resolver import title_from_id
-from archgen.passes.existing_parts import is_existing
 from archgen.passes.pass_shape import Pass, PassWork
-from archgen.passes.written_places import Holder, find_type_of, list_holders
-from archgen.project.shipped_library import SHIPPED_ID
+from archgen.passes.written_places import Holder, find_type_of, is_existing, list_holders
+from archgen.project.library_reading import SHIPPED_ID
 from archgen.syntax.yaml_tree import MappingNode
 
 MONITOR_TAG = "state_monitor"

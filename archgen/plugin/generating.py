@@ -22,8 +22,13 @@ from archgen.model.code_names import (
 )
 from archgen.model.element_ids import make_id, spell_in_ascii
 from archgen.model.path_resolver import title_from_id
-from archgen.views.generation.class_words import find_type_words
-from archgen.views.generation.component_records import SetParameter, list_set_parameters, read_own_hints
+from archgen.views.generation.architecture_needs import find_name_clashes, find_text_fault
+from archgen.views.generation.component_records import (
+    SetParameter,
+    find_type_words,
+    list_set_parameters,
+    read_own_hints,
+)
 from archgen.views.generation.generation_context import (
     NOT_GENERATED,
     GeneratedView,
@@ -31,17 +36,17 @@ from archgen.views.generation.generation_context import (
     tell_left_out,
     write_place,
 )
-from archgen.views.generation.name_clashes import find_name_clashes
-from archgen.views.generation.program_parameters import (
+from archgen.views.generation.program_parts import (
+    PORT_SECTIONS,
     convert_ros_value,
     infer_ros_type,
     list_node_values,
     record_parameters,
+    record_ports,
+    record_qos,
 )
-from archgen.views.generation.program_ports import PORT_SECTIONS, record_ports, record_qos
-from archgen.views.generation.property_needs import find_text_fault
-from archgen.views.records.record_values import to_plain
-from archgen.views.used_messages import collect_messages
+from archgen.views.lookup import collect_messages
+from archgen.views.records.record_sources import to_plain
 
 __all__ = [
     "AADL_KEYWORDS",

@@ -2,7 +2,17 @@
 
 from archgen.diagnostics.source_span import NO_SPAN, SourceTexts, Span
 from archgen.diagnostics.suggestions import find_closest
-from archgen.importers.bounded_files import ARCHIVE_DAMAGE, ZIP_BEGINNING, read_archive_members, read_bounded
+from archgen.importers.foreign_files import (
+    ARCHIVE_DAMAGE,
+    ZIP_BEGINNING,
+    XmlElement,
+    XmlProblem,
+    explain_encoding,
+    explain_syntax,
+    parse_xml,
+    read_archive_members,
+    read_bounded,
+)
 from archgen.importers.foreign_import import (
     MAX_OFFICE_BYTES,
     ForeignFileError,
@@ -14,11 +24,10 @@ from archgen.importers.foreign_import import (
     ReadRecordings,
     RecordingRefusedError,
 )
-from archgen.importers.xml_tree import XmlElement, XmlProblem, explain_encoding, explain_syntax, parse_xml
 from archgen.model.code_names import make_camel_name
 from archgen.model.element_ids import MAX_ID_LENGTH, is_id, make_id, make_unique_id, spell_in_ascii
 from archgen.model.path_resolver import title_from_id
-from archgen.project.shipped_library import find_program_name
+from archgen.project.library_reading import find_program_name
 from archgen.syntax.folder_files import open_named_file
 from archgen.syntax.project_files import MAX_BYTES
 from archgen.syntax.yaml_parser import parse_yaml

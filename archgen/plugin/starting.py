@@ -2,7 +2,7 @@
 
 from archgen.bringup.plan_shapes import DEFAULT_SECONDS, RosLaunch, StartPlan, StartStep, format_seconds
 from archgen.bringup.start_plan import make_start_plan
-from archgen.views.generation.wanted_start_steps import find_wanted_steps
+from archgen.views.generation.generation_context import find_wanted_steps
 from archgen.views.start_phrases import (
     KIND_WORDS,
     describe_dropped,

@@ -19,17 +19,17 @@ from archgen.pipeline import CheckedProject
 from archgen.products import project_views, signed_agreements
 from archgen.products.compared_versions import ProjectVersion
 from archgen.products.output_options import OutputOptions
-from archgen.products.picture_drawing import draw_or_warn
+from archgen.products.product_writing import draw_or_warn
 from archgen.timing.analysis import ChainResult
 from archgen.timing.chains.measured_comparison import Observation
 from archgen.timing.search.chain_budgets import MAX_SHARE_TRIES, SharedBudget, UnknownBudgetError, share_chain_budget
 from archgen.timing.search.change_trials import ChangeTrials
 from archgen.views import inline_text
-from archgen.views.agreement.budget_section import BudgetFinder
+from archgen.views.agreement.general_sections import BudgetFinder
 from archgen.views.agreement.partner_agreement import PartnerAgreement, make_agreement
 from archgen.views.agreement.signature_record import SignedTag
-from archgen.views.graph_shapes import Graph
 from archgen.views.lookup import Lookup
+from archgen.views.picture_shapes import Graph
 from archgen.views.shapes import Paragraph, Section
 from archgen.views.tables.finding_tables import describe_severities
 from archgen.views.timing.timing_lookup import complete_with_chains

@@ -7,7 +7,7 @@ from typing import Literal
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.suggestions import did_you_mean
-from archgen.emit import file_tree
+from archgen.emit import backend_manifests, file_tree
 from archgen.emit.backend_manifests import CALLED_EMITTERS, Backend
 from archgen.pipeline import CheckedProject
 from archgen.products.trusted_backends import TrustedRevision, refuse_untrusted
@@ -40,7 +40,6 @@ def choose_backends(
     """
     if not names:
         return ()
-    from archgen.emit import backend_manifests
 
     backends_by_name, problems = backend_manifests.find_backends(checked_project.root, names)
     if any(name not in backends_by_name or backends_by_name[name].emitter not in CALLED_EMITTERS for name in names):

@@ -12,10 +12,9 @@ from archgen.products.generation_contexts import make_generation_context
 from archgen.products.product_inputs import FinishProduct, MadeProduct, Product, ProductInputs
 from archgen.views.generation import make_generation_views
 from archgen.views.generation.generation_context import GenerationContext
-from archgen.views.graph_shapes import Graph
+from archgen.views.picture_shapes import Graph, SequenceChart
 from archgen.views.records import resolved_record
 from archgen.views.requirement_exchange import make_requirement_exchange
-from archgen.views.sequence_shapes import SequenceChart
 from archgen.views.tables import statistics_tables
 
 

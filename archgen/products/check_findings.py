@@ -6,16 +6,17 @@ What makes two findings the same: docs/decisions/0005-known-findings.md.
 from __future__ import annotations
 
 import os
-from collections.abc import Hashable, Iterable
+from collections import Counter
+from collections.abc import Hashable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from archgen import git, pipeline, project
-from archgen.diagnostics.diagnostic import Diagnostic, Severity, settle_diagnostics
+from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity, settle_diagnostics
 from archgen.diagnostics.finding_identity import BaselineEntry, IdRenamer, identify_finding, match_findings
 from archgen.pipeline import CheckedProject, VersionCache, index_all_rules
-from archgen.products import baseline_entries
 from archgen.project import baseline_reading as reading
+from archgen.syntax import yaml_writer
 
 BASELINE_FILE = "archgen-baseline.yaml"
 """The baseline of a project, unless another file is named."""
@@ -71,7 +72,7 @@ def report_findings(
     Findings about the baseline itself are reported, too.
     """
     known_entries, problems = _read_baseline(checked_project, baseline_file) if baseline_file else ((), ())
-    new_findings, baselined_findings, cured_entries = baseline_entries.divide_by_baseline(
+    new_findings, baselined_findings, cured_entries = divide_by_baseline(
         checked_project.findings, known_entries, index_all_rules()
     )
     caused_findings, healed_findings = (
@@ -167,12 +168,10 @@ def update_baseline(checked_project: CheckedProject, baseline_file: Path) -> Bas
             reason = problems[0].message if problems else "the file is empty"
             msg = f"{baseline_file} stays as it is: {reason}"
             raise file_tree.OutputError(msg, "give another file with `--baseline`")
-    new_findings, known_findings, cured_entries = baseline_entries.divide_by_baseline(
+    new_findings, known_findings, cured_entries = divide_by_baseline(
         checked_project.findings, known_entries, index_all_rules()
     )
-    file_tree.write_file(
-        baseline_file, baseline_entries.format_baseline(checked_project.findings, index_all_rules()).encode()
-    )
+    file_tree.write_file(baseline_file, format_baseline(checked_project.findings, index_all_rules()).encode())
     # Errors of reading and linking are never listed in a baseline, so they are not counted as added.
     added_count = sum(not index_all_rules()[finding.rule].fixed for finding in new_findings)
     return BaselineUpdate(
@@ -193,3 +192,61 @@ def _read_baseline(
 def _path_in_project(checked_project: CheckedProject, baseline_file: Path) -> str:
     """Return the path of the baseline relative to the project's folder, as paths are shown in findings."""
     return Path(os.path.relpath(baseline_file.absolute(), checked_project.root.absolute())).as_posix()
+
+
+_FILE_HEADER = """\
+# Findings that this project knows of: `archgen check --baseline` keeps them quiet, and only new ones count.
+# Written by `archgen check --update-baseline`, which also settles conflicts in it: it writes the file anew.
+"""
+
+
+def divide_by_baseline(
+    findings: Iterable[Diagnostic], baseline_entries: Iterable[BaselineEntry], rules: Mapping[str, Rule]
+) -> tuple[tuple[Diagnostic, ...], tuple[Diagnostic, ...], tuple[BaselineEntry, ...]]:
+    """Return the findings that are new, those that are known, and the entries that are cured, with how many of each.
+
+    Read and link errors are always new: nobody knows what is behind them.
+    """
+    baseline_entries = tuple(baseline_entries)
+    remaining = Counter[object]()
+    for entry in baseline_entries:
+        remaining[entry.identity] += entry.occurrences
+    new_findings, known_findings = [], []
+    for finding in findings:
+        # Identity leaves out lines and parts of the message (docs/decisions/0005-known-findings.md).
+        finding_identity = identify_finding(finding)
+        # Counted, not just looked up: a second finding alike is new.
+        if remaining[finding_identity] > 0 and not rules[finding.rule].fixed:
+            remaining[finding_identity] -= 1
+            known_findings.append(finding)
+        else:
+            new_findings.append(finding)
+    cured_entries = []
+    for entry in reversed(baseline_entries):  # of several alike the last ones go
+        cured_count = min(entry.occurrences, remaining[entry.identity])
+        remaining[entry.identity] -= cured_count
+        if cured_count:
+            cured_entries.append(entry._replace(occurrences=cured_count))
+    return tuple(new_findings), tuple(known_findings), tuple(reversed(cured_entries))
+
+
+def format_baseline(findings: Iterable[Diagnostic], rules: Mapping[str, Rule]) -> str:
+    """Return the text of a baseline that knows these findings, sorted, without those that no baseline may know."""
+    # Sorted by content and not by place: moving lines does not change the file.
+    counts = Counter(
+        (finding.rule, finding.element or "", finding.message) for finding in findings if not rules[finding.rule].fixed
+    )
+    if not counts:
+        return f"{_FILE_HEADER}archgen_baseline: 1\nfindings: []\n"
+    lines = (line for entry_key, count in sorted(counts.items()) for line in _entry_lines(*entry_key, count))
+    return "\n".join((f"{_FILE_HEADER}archgen_baseline: 1\nfindings:", *lines, ""))
+
+
+def _entry_lines(rule: str, element: str, message: str, count: int) -> Iterator[str]:
+    """Yield the lines of one entry; empty keys are left out, so that a diff shows what matters."""
+    yield f"  - rule: {yaml_writer.format_scalar(rule)}"
+    if element:
+        yield f"    element: {yaml_writer.format_scalar(element)}"
+    yield f"    message: {yaml_writer.format_scalar(message)}"
+    if count > 1:
+        yield f"    count: {count}"

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from archgen.pipeline import CheckedProject
     from archgen.products.output_options import OutputOptions
     from archgen.views.changes.site_changes import SiteChanges
-    from archgen.views.graph_shapes import Graph
+    from archgen.views.picture_shapes import Graph
 
 
 def describe_versions(
@@ -107,7 +107,7 @@ def render_comparison_html(
 ) -> bytes:
     """Write a comparison as one self-contained HTML page."""
     from archgen.emit.site import standalone_page
-    from archgen.products.picture_drawing import draw_or_warn
+    from archgen.products.product_writing import draw_or_warn
     from archgen.views.changes.comparison_outline import write_comparison_outline
     from archgen.views.graphs import changes as pictures
 
@@ -123,7 +123,7 @@ def render_comparison_svg(comparison: Comparison, options: OutputOptions) -> byt
     """
     from archgen.emit import file_tree
     from archgen.emit.site import page_pictures as files
-    from archgen.products.picture_drawing import draw_or_warn
+    from archgen.products.product_writing import draw_or_warn
     from archgen.views.graphs import changes as pictures
 
     graphs = pictures.draw_changes(comparison)

@@ -5,13 +5,19 @@ What takes long runs side by side, and what nothing changed of is not made again
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+import contextlib
+import json
+import os
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from archgen.cache.file_store import FileStore, digest_bytes, digest_text
+from archgen.cache.program_stamp import stamp_program
+from archgen.emit import file_tree
 from archgen.emit.file_tree import OutputError
 from archgen.pipeline import CheckedProject
-from archgen.products import build_stamp, project_views, report_cache
+from archgen.products import project_views, report_cache
 from archgen.products.backend_choice import choose_backends
 from archgen.products.backend_products import make_backend_product
 from archgen.products.product_inputs import Product, ProductInputs
@@ -65,7 +71,7 @@ def build_outputs(
         product.name
         for product in products
         if product.name in stamp_keys
-        and build_stamp.is_fresh(
+        and is_fresh(
             report_cache.cache_folder(),
             stamp_keys[product.name],
             target / product.part,
@@ -101,7 +107,7 @@ def _write_and_stamp(
     drawing_warnings = started_products.drawn.warnings if product.picture_formats is not None else ()
     # A product with warnings is made again next time, so that its warnings are repeated, too.
     if stamp_key and not made_product.warnings and not drawing_warnings:
-        build_stamp.store_stamp(report_cache.cache_folder(), stamp_key, place, made_product.asked_files)
+        store_stamp(report_cache.cache_folder(), stamp_key, place, made_product.asked_files)
     return not made_product.is_empty
 
 
@@ -109,10 +115,10 @@ def _make_stamp_keys(inputs: ProductInputs, products: Sequence[Product]) -> Mapp
     """Return the stamp's key of each product that the inputs decide, by its name."""
     if not any(product.follows_inputs for product in products):
         return {}
-    shared_key = build_stamp.make_stamp_key(_list_inputs(inputs))
+    shared_key = make_stamp_key(_list_inputs(inputs))
     template = inputs.template.read_bytes() if inputs.template else None
     return {
-        product.name: build_stamp.make_stamp_key((shared_key, product.name, template if product is REPORT else None))
+        product.name: make_stamp_key((shared_key, product.name, template if product is REPORT else None))
         for product in products
         if product.follows_inputs
     }
@@ -134,3 +140,64 @@ def _list_inputs(inputs: ProductInputs) -> Iterator[object]:
     )
     yield chapters.order, [(name, chapter.text) for name, chapter in chapters.texts.items()], checked_project.findings
     yield project_views.identify_history(checked_project, options)
+
+
+_MAX_STAMPS = 256
+"""Stamps that are kept, four for each build; each takes some hundred bytes."""
+
+
+def make_stamp_key(build_inputs: Iterable[object]) -> str:
+    """Return the name of a stamp: a digest of this program and of values whose `repr` is complete."""
+    return digest_text("\n".join([stamp_program(), *(repr(part) for part in build_inputs)]))
+
+
+def is_fresh(folder: Path | None, stamp_key: str, place: Path, read_file: Callable[[str], bytes | None]) -> bool:
+    """Whether a product stands at its place as it was written from the same inputs.
+
+    `read_file` returns the files that the writer asked for (pictures of chapters), which decide the product as well.
+    """
+    try:
+        stamp = json.loads(_stamp_files(folder).load(stamp_key) or b"{}")
+        asked_digests, product_digest = dict(stamp["asked"]), stamp["made"]
+        # The few inputs first: the product's digest reads every file of a site.
+        return all(
+            digest_bytes(read_file(path)) == stored_digest for path, stored_digest in asked_digests.items()
+        ) and bool(product_digest == _digest_product(place))
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return False
+
+
+def store_stamp(folder: Path | None, stamp_key: str, place: Path, asked_files: Mapping[str, bytes | None]) -> None:
+    """Store the stamp of a product that was written just now; `asked_files` are those that its writer asked for."""
+    if folder is None:
+        return
+    # A full or read-only disk, or somebody who changes files meanwhile, costs only the time that this would have saved.
+    with contextlib.suppress(OSError, ValueError):
+        stamp = {
+            "made": _digest_product(place, just_written=True),
+            "asked": {path: digest_bytes(data) for path, data in asked_files.items()},
+        }
+        _stamp_files(folder).store(stamp_key, json.dumps(stamp).encode())
+
+
+def _stamp_files(folder: Path | None) -> FileStore:
+    return FileStore(folder, ".stamp", _MAX_STAMPS)
+
+
+def _digest_product(place: Path, *, just_written: bool = False) -> str:
+    """Return a digest of a file, or of the manifest of a folder; `absent` where nothing is.
+
+    `just_written` is for folders that were written just now: their files are not read again. Raise ValueError for what
+    archgen has not written so.
+    """
+    if not os.path.lexists(place):
+        return "absent"
+    digest = None
+    if place.is_dir() and not place.is_symlink():
+        digest = file_tree.digest_manifest(place, just_written=just_written)
+    elif not place.is_symlink():
+        digest = file_tree.digest_file(place)
+    if digest is None:
+        msg = f"{place} is not as archgen wrote it"
+        raise ValueError(msg)
+    return digest

@@ -15,13 +15,12 @@ from archgen.products import project_views
 from archgen.products.output_options import OutputOptions
 from archgen.products.project_views import ProjectViews
 from archgen.views import drawing_set
-from archgen.views.chart_shapes import Drawing
-from archgen.views.graph_shapes import Graph, GraphKind
 from archgen.views.lookup import Lookup, add_timing
 from archgen.views.pages import report_outline, site_pages
 from archgen.views.pages.report_outline import DocumentEdition, RosPlace
+from archgen.views.picture_shapes import Drawing, Graph, GraphKind
 from archgen.views.shapes import Figure, Outline, Page
-from archgen.views.timing.timing_lookup import complete_with_chains
+from archgen.views.timing.timing_lookup import add_late_runs, complete_with_chains
 
 
 # Without slots: `cached_property` stores its values in the object's dictionary.
@@ -57,7 +56,7 @@ class ProductInputs:
         """The look-ups with the timing analysis, without drawings."""
         analysis, architecture = self.checked_project.analysis, self.checked_project.architecture
         lookup = project_views.make_scoped_lookup(self.checked_project, self.options)
-        return add_timing(lookup, complete_with_chains(analysis, architecture))
+        return add_timing(lookup, add_late_runs(complete_with_chains(analysis, architecture)))
 
     @cached_property
     def site_drawings(self) -> Mapping[str, Drawing]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from archgen.checking.checked_packing import pack_checked_project
-from archgen.emit import file_tree, picture_files
+from archgen.emit import file_tree, picture_files, site
 from archgen.emit.own_file_marks import PACKED_HEADER
 from archgen.emit.picture import Picture
 from archgen.products import report_cache
@@ -70,8 +70,6 @@ def _start_site(inputs: ProductInputs) -> FinishProduct:
     explorer_map = make_explorer_map(inputs.views.lookup)
 
     def finish(pictures: Mapping[str, Picture]) -> MadeProduct:
-        from archgen.emit import site
-
         reader = _RecordingReader(inputs.checked_project.chapters.read_picture)
         files = site.build_site(
             page_list,

@@ -5,16 +5,68 @@ from __future__ import annotations
 import fnmatch
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from archgen.emit import file_tree
+from archgen.emit.picture import Picture
 from archgen.frozen import dataclass
 from archgen.pipeline import CheckedProject
 from archgen.products import report_cache
 from archgen.products.leaving_links import refuse_leaving_links
-from archgen.products.picture_drawing import DrawnPictures, draw_started_pictures
+from archgen.products.output_options import DrawingProgress, OutputOptions
 from archgen.products.product_inputs import FinishProduct, MadeProduct, Product, ProductInputs
-from archgen.views.chart_shapes import Drawing
+from archgen.views.picture_shapes import Drawing
+
+if TYPE_CHECKING:
+    from archgen.emit.graphviz.worker_pool import DrawingWorker
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnPictures:
+    """Pictures by id, and what could not be drawn as asked."""
+
+    pictures: Mapping[str, Picture] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
+
+
+def _draw_started_pictures(
+    drawings: Sequence[Drawing],
+    formats: Sequence[str] | Mapping[str, Sequence[str]],
+    progress: DrawingProgress | None = None,
+    workers: Sequence[DrawingWorker] = (),
+) -> DrawnPictures:
+    """Draw graphs and charts in formats for all or by their ids, on idle `workers` where there are some; links lead to
+    `#` and an element's anchor.
+
+    Where the machine lacks the drawing libraries there are no pictures, but a warning.
+    """
+    from archgen.emit import graphviz
+
+    try:
+        pictures = graphviz.draw_pictures(
+            drawings,
+            formats,
+            resolve_link=lambda ref: f"#{ref}",
+            cache=report_cache.cache_folder(),
+            progress=progress,
+            ready_workers=workers,
+        )
+    except graphviz.MissingGraphviz as error:
+        return DrawnPictures(warnings=(str(error),))
+    return DrawnPictures(
+        pictures, tuple(f"{picture.id}: {picture.warning}" for picture in pictures.values() if picture.warning)
+    )
+
+
+def draw_or_warn(drawings: Sequence[Drawing], formats: Sequence[str], options: OutputOptions) -> Mapping[str, Picture]:
+    """Draw graphs and charts, and pass on the warnings."""
+    drawn = _draw_started_pictures(drawings, formats, options.progress)
+    for warning in drawn.warnings:
+        options.warn(warning)
+    return drawn.pictures
+
 
 _MAX_NAMED_PICTURES = 8
 """At most this many pictures are named in a message."""
@@ -43,7 +95,7 @@ def start_products(inputs: ProductInputs, products: Sequence[Product]) -> Starte
     with graphviz.start_early_workers(report_cache.cache_folder()) as workers, ThreadPoolExecutor(1) as executor:
         drawings, formats = _choose_drawings(inputs, shown_products)
         # Other processes draw, and the thread waits for them.
-        drawing_future = executor.submit(draw_started_pictures, drawings, formats, inputs.options.progress, workers)
+        drawing_future = executor.submit(_draw_started_pictures, drawings, formats, inputs.options.progress, workers)
         finishers = {product.name: product.start(inputs) for product in products}
         drawn = drawing_future.result()
     for warning in drawn.warnings:

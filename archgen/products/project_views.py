@@ -24,12 +24,12 @@ from archgen.products.output_options import OutputOptions
 from archgen.project import ProjectNotFoundError
 from archgen.views import drawing_set
 from archgen.views.agreement.signature_record import SignedTag
-from archgen.views.chart_shapes import Drawing
 from archgen.views.lookup import DocumentScope, Lookup, add_timing, make_lookup
 from archgen.views.pages.report_outline import DetailLevel, DocumentEdition
 from archgen.views.pages.variant_chapter import VariantDifference
-from archgen.views.tables import project_growth, statistics_tables
-from archgen.views.timing.timing_lookup import complete_with_chains
+from archgen.views.picture_shapes import Drawing
+from archgen.views.tables import statistics_tables
+from archgen.views.timing.timing_lookup import add_late_runs, complete_with_chains
 
 _SHORT_HASH_LENGTH = 10
 """Digits of a commit's hash that are printed: enough to be unique in a repository of this size."""
@@ -82,7 +82,7 @@ def make_views(
 
     There is no drawing of the `undrawn_kinds`.
     """
-    timing_lookup = complete_with_chains(checked_project.analysis, checked_project.architecture)
+    timing_lookup = add_late_runs(complete_with_chains(checked_project.analysis, checked_project.architecture))
     lookup = replace(
         add_timing(make_scoped_lookup(checked_project, options), timing_lookup),
         repository=locate_repository(checked_project),
@@ -91,7 +91,7 @@ def make_views(
     all_drawings = drawing_set.make_drawings(
         lookup, options.selection, options.level or "implementation", undrawn_kinds=undrawn_kinds, depth=options.depth
     )
-    all_drawings |= {chart.id: chart for chart in project_growth.make_growth_charts(project_history)}
+    all_drawings |= {chart.id: chart for chart in statistics_tables.make_growth_charts(project_history)}
     if options.changes:
         from archgen.views.changes.site_changes import mark_drawings
 

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from functools import cache
 
 from archgen import git, pipeline, project
+from archgen.compare.agreements import agreement_key, hash_change
 from archgen.compare.breaking_changes import stricter_policy
-from archgen.compare.change_hashes import agreement_key, hash_change
 from archgen.compare.change_listing import find_changes
 from archgen.compare.match_elements import match_elements
 from archgen.compare.review_facts import Author, ReviewFacts, name_author

@@ -19,13 +19,13 @@ from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.git.project_revision import differs_from_head
 from archgen.git.repository_lookup import look_up_commit
 from archgen.pipeline import CheckedProject, VersionCache
-from archgen.products.break_findings import find_breaks
 from archgen.products.compared_versions import (
     WORKING_TREE_NAME,
     ProjectVersion,
     compare_named_versions,
     read_at_base,
 )
+from archgen.products.merge_breaks import find_breaks
 from archgen.project import PROJECT_FILE
 from archgen.project.project_tracking import TrackedProject, load_at_commit
 

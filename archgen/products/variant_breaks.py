@@ -1,4 +1,4 @@
-"""What a change breaks in the variants of a project, beside what it breaks in the project itself."""
+"""What is different in the variants of a project, and what a change breaks in them beside what it breaks in the project itself."""
 
 from __future__ import annotations
 

@@ -12,8 +12,7 @@ from archgen.diagnostics.suggestions import did_you_mean
 from archgen.emit.backend_manifests import Backend
 from archgen.emit.file_tree import OutputError
 from archgen.emit.workspace import workspace_writing
-from archgen.emit.workspace.disk_files import DiskReader
-from archgen.emit.workspace.generated_file import GeneratedFile, fold_file_path
+from archgen.emit.workspace.disk_files import DiskReader, GeneratedFile, fold_file_path
 from archgen.emit.workspace.run_record import read_other_records, read_run_record
 from archgen.emit.workspace.workspace_plan import UserChoices, WorkspacePlan, plan_workspace
 from archgen.pipeline import CheckedProject

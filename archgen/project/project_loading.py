@@ -15,15 +15,17 @@ from archgen.diagnostics.rule_options import WrittenOption
 from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.frozen import dataclass
 from archgen.project.library_reading import (
+    SHIPPED_ID,
+    SHIPPED_PATH,
     LoadedLibrary,
+    describe_missing_type,
+    is_shipped_type,
     list_inner_folders,
     read_libraries,
     read_shipped_libraries,
 )
 from archgen.project.project_search import PROJECT_FILE, find_project
-from archgen.project.reading_state import ReadingState
-from archgen.project.shipped_library import SHIPPED_ID, SHIPPED_PATH, describe_missing_type, is_shipped_type
-from archgen.project.slice_parsing import ParsedSlices
+from archgen.project.slice_parsing import ParsedSlices, ReadingState
 from archgen.project.source_patterns import expand_source_pattern
 from archgen.project.source_reading import read_slice, read_sources
 from archgen.syntax.folder_files import FolderFiles

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.suggestions import find_closest
-from archgen.project.reading_state import ReadingState, parse_file
-from archgen.project.slice_parsing import find_written_keys
+from archgen.project.slice_parsing import ReadingState, find_written_keys, parse_file
 from archgen.schema import list_sections
 from archgen.syntax import file_patterns
 from archgen.syntax.yaml_tree import ScalarNode

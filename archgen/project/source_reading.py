@@ -15,8 +15,7 @@ from archgen.model.agreed_terms import SIGNATURE_FOLDER
 from archgen.model.review_settings import agreement_file
 from archgen.project import baseline_reading
 from archgen.project.project_search import PROJECT_FILE
-from archgen.project.reading_state import ReadingState, parse_file
-from archgen.project.slice_parsing import Slice
+from archgen.project.slice_parsing import ReadingState, Slice, parse_file
 from archgen.project.source_patterns import (
     SKIPPED_FOLDERS,
     expand_source_pattern,
@@ -240,7 +239,7 @@ def _looks_like_slice(parsed_slice: Slice, known_sections: frozenset[str]) -> bo
     """Whether a file that cannot be parsed was meant as a slice: a line begins a section, or its text is unknown."""
     return (
         not parsed_slice.text
-        or re.search(rf"^[^\w\n]*+(?:{'|'.join(sorted(known_sections))})[^\w\n]*+:", parsed_slice.text, re.MULTILINE)
+        or re.search(rf"^[^\w\n]*+(?:{'|'.join(sorted(known_sections))})[^\w\n:]*+:", parsed_slice.text, re.MULTILINE)
         is not None
     )
 

@@ -60,10 +60,13 @@ def validate_document(document: YamlDocument) -> tuple[Diagnostic, ...]:
 @functools.cache
 def _get_validator() -> jsonschema_rs.Draft202012Validator:
     schema = load_schema()
-    # Numbers of cores are the only keys that begin with a digit: the validator sees them with the mark.
-    core_number = schema["$defs"]["core_number"]
-    marked_number = core_number | {"pattern": core_number["pattern"].replace("^", f"^{_NUMERIC_KEY_MARK}", 1)}
-    return jsonschema_rs.Draft202012Validator({**schema, "$defs": {**schema["$defs"], "core_number": marked_number}})
+    # These are the only keys that begin with a digit: the validator sees them with the mark.
+    marked = {
+        name: schema["$defs"][name]
+        | {"pattern": schema["$defs"][name]["pattern"].replace("^", f"^{_NUMERIC_KEY_MARK}?", 1)}
+        for name in ("core_number", "deadline_share")
+    }
+    return jsonschema_rs.Draft202012Validator({**schema, "$defs": schema["$defs"] | marked})
 
 
 def list_sections() -> frozenset[str]:

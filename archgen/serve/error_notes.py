@@ -2,12 +2,39 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from archgen.diagnostics.diagnostic import Severity, sort_gravest_first
 from archgen.diagnostics.safe_text import make_visible
 from archgen.pipeline import CheckedProject
+
+
+@dataclass(frozen=True, slots=True)
+class LiveStatus:
+    """What readers are told: which version there is to see, and what is wrong in the files."""
+
+    version: str = ""
+    shown_since: str = ""
+    """The time of day (`14:02:11`) of the state that is shown."""
+    errors: tuple[ErrorNote, ...] = ()
+    further_errors: int = 0
+    is_outdated: bool = False
+    """Whether the files as they are cannot be shown, so that an older state is."""
+
+    def to_json(self) -> str:
+        """Return the status as one line."""
+        fields = {
+            "version": self.version,
+            "since": self.shown_since,
+            "errors": self.errors,
+            "further": self.further_errors,
+            "outdated": self.is_outdated,
+        }
+        return json.dumps(fields, ensure_ascii=True)
+
 
 ErrorNote = Mapping[str, Any]
 _MAX_NOTES = 20

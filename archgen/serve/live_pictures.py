@@ -14,7 +14,7 @@ from archgen.emit import graphviz
 from archgen.emit.graphviz.worker_pool import DrawingWorker, create_worker
 from archgen.emit.picture import Picture
 from archgen.products import report_cache
-from archgen.views.chart_shapes import Drawing
+from archgen.views.picture_shapes import Drawing
 
 _DRAWING_THREADS = 2
 _PATIENCE = 0.12

@@ -12,8 +12,8 @@ from pathlib import Path
 from archgen.emit import site
 from archgen.emit.site import page_pictures
 from archgen.emit.site.chapter_html import ChapterWriter
-from archgen.emit.site.explorer_files import EXPLORER_ANCHOR
 from archgen.emit.site.page_links import renew_ids
+from archgen.emit.site.script_files import EXPLORER_ANCHOR
 from archgen.pipeline import CheckedProject, UnknownVariantError, VersionCache
 from archgen.products.compared_versions import ProjectVersion
 from archgen.products.comparison_documents import read_version_before
@@ -21,10 +21,9 @@ from archgen.products.output_options import OutputOptions
 from archgen.project import ProjectNotFoundError
 from archgen.project.project_search import PROJECT_FILE, find_project
 from archgen.resources import resource_path
-from archgen.serve.error_notes import list_error_notes
+from archgen.serve.error_notes import LiveStatus, list_error_notes
 from archgen.serve.file_watch import WatchedPlaces, join_paths
 from archgen.serve.live_pictures import LivePictures
-from archgen.serve.live_status import LiveStatus
 from archgen.serve.project_state import (
     ProjectState,
     SelectionError,

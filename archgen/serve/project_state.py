@@ -18,7 +18,7 @@ from archgen.views.changes.site_changes import SiteChanges
 from archgen.views.drawings_on_demand import DrawingsOnDemand
 from archgen.views.lookup import Lookup
 from archgen.views.pages.report_outline import DocumentEdition
-from archgen.views.tables import project_growth
+from archgen.views.tables import statistics_tables
 from archgen.views.timing.timing_lookup import bound_chains
 
 
@@ -105,7 +105,7 @@ def _renew_edition(
     state: ProjectState, options: OutputOptions, history: History, revision: str, changes: SiteChanges | None
 ) -> ProjectState:
     """Return a state with its documents made anew."""
-    charts = project_growth.make_growth_charts(history)
+    charts = statistics_tables.make_growth_charts(history)
     level = options.level or "implementation"
     drawings = DrawingsOnDemand(state.lookup, level, charts, state.selection, changes)
     edition = project_views.make_edition(state.checked_project, options.level, drawings, history, revision)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import contextlib
+import ipaddress
 import json
 import socket
 import sys
 import threading
+from collections.abc import Collection, Mapping
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import PurePosixPath
@@ -15,7 +17,48 @@ from urllib.parse import parse_qs, unquote, urlsplit
 
 from archgen.serve import what_if
 from archgen.serve.live_site import LiveSite, StoppedError
-from archgen.serve.request_rules import find_refusal, is_ip_address
+
+_LOCAL_NAMES = frozenset({"localhost"})
+
+
+def find_refusal(headers: Mapping[str, str | None], served_names: Collection[str], port: int) -> str:
+    """Return why a request is refused, empty if it is not.
+
+    `headers` are `Host`, `Origin`, `Sec-Fetch-Site` and `Sec-Fetch-Mode` of the request, None where it has none.
+    """
+    host = headers.get("Host") or ""
+    if not _is_own_address(host, served_names, port):
+        return "this address is not the one that is served here"
+    origin = headers.get("Origin")
+    if origin is not None and origin.lower() != f"http://{host.lower()}":
+        return "another site may not ask"
+    # Scripts that are loaded across sites carry no Origin, and the files of the search are scripts.
+    is_foreign = (headers.get("Sec-Fetch-Site") or "none") not in {"none", "same-origin"}
+    if is_foreign and headers.get("Sec-Fetch-Mode") != "navigate":
+        return "another site may not load this"
+    return ""
+
+
+def _is_own_address(host: str, served_names: Collection[str], port: int) -> bool:
+    """Whether a `Host` means this server: its name and its port."""
+    try:
+        address = urlsplit(f"//{host}")
+        name, asked_port = address.hostname or "", address.port
+    except ValueError:
+        return False
+    if address.username is not None or address.path or (asked_port or 80) != port:
+        return False
+    return name in _LOCAL_NAMES or name in {each.lower() for each in served_names} or _is_ip_address(name)
+
+
+def _is_ip_address(name: str) -> bool:
+    """Whether a name is an address of digits."""
+    try:
+        ipaddress.ip_address(name)
+    except ValueError:
+        return False
+    return True
+
 
 _CONTENT_TYPES = {
     ".html": "text/html; charset=utf-8",
@@ -74,7 +117,7 @@ class SiteServer(ThreadingHTTPServer):
     def url(self) -> str:
         """The address of the start page."""
         host = str(self.server_address[0])
-        if is_ip_address(host) and host in {"0.0.0.0", "::"}:  # noqa: S104 - recognised, not chosen
+        if _is_ip_address(host) and host in {"0.0.0.0", "::"}:  # noqa: S104 - recognised, not chosen
             host = "localhost"
         return f"http://{f'[{host}]' if ':' in host else host}:{self.server_port}/"
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from archgen.simulation.simulation_plan import CLIENT, REENTRANT, SERVICE, SUBSCRIPTION, PlannedCallback
 from archgen.simulation.thread_placement import ThreadPlacement
-from archgen.timing.system.timing_system import Activity, Arc, StoringCallback, TimingSystem
+from archgen.timing.system.timing_system import Activity, Arc, StoringCallback, TimingSystem, name_queue
 
 
 class CallbackNumbering:
@@ -25,7 +25,7 @@ class CallbackNumbering:
         """Return the number of the callback that a message on an arc starts; -1 where it is stored at once."""
         if not is_sampled:
             kind = SERVICE if arc.role == "request" else SUBSCRIPTION
-            return self.number_callback(reader, f"{arc.role} {arc.input} {arc.topic}", kind)
+            return self.number_callback(reader, f"{arc.role} {arc.input} {name_queue(reader, arc)}", kind)
         # A request to a periodic server waits for its next job.
         if arc.role == "request" or self.system.activities[arc.source].behaviour == "once":
             return -1
@@ -35,7 +35,9 @@ class CallbackNumbering:
             return self.number_callback(reader, f"answer {arc.topic}", CLIENT, storing or StoringCallback())
         if storing is None:
             return -1
-        return self.number_callback(reader, f"{arc.input} {arc.topic}", SUBSCRIPTION, storing, arc.depth or 0)
+        return self.number_callback(
+            reader, f"{arc.input} {name_queue(reader, arc)}", SUBSCRIPTION, storing, arc.depth or 0
+        )
 
     def number_callback(
         self, activity: Activity, entity: str, kind: int, storing: StoringCallback | None = None, depth: int = 0

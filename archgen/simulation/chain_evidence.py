@@ -1,4 +1,4 @@
-"""What `archgen timing` finds beyond bounds: runs in which a chain is late, and the changes that would prove it."""
+"""What `archgen timing` finds beyond bounds: runs in which a chain is late, and how it would have to be run to be proven."""
 
 from __future__ import annotations
 
@@ -7,18 +7,22 @@ from dataclasses import field, replace
 
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
-from archgen.simulation.chain_witnesses import ChainWitness, find_witnesses
+from archgen.simulation.chain_witnesses import find_witnesses
+from archgen.simulation.seeded_runs import LateRun
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.search.change_trials import ChangeTrials, OverrideLayer
-from archgen.timing.search.proving_changes import MAX_TRIES, ChainRemedy, find_remedies
+from archgen.timing.search.proposals import MAX_TRIES, Proposal, find_proposal
+
+_SMALL_SIZE, _LEAST_TRIES = 150, 12
+"""So many activities make a small project; and so many configurations are tried of the largest one."""
 
 
 @dataclass(frozen=True, slots=True)
 class ChainEvidence:
-    """The witnesses of missed chains, and what would prove those that are not proven, by chain."""
+    """The witnesses of missed chains, by chain, and the configurations that were tried; None where all chains are met."""
 
-    witnesses: Mapping[str, ChainWitness] = field(default_factory=dict)
-    remedies: Mapping[str, ChainRemedy] = field(default_factory=dict)
+    witnesses: Mapping[str, LateRun] = field(default_factory=dict)
+    proposal: Proposal | None = None
 
 
 NO_EVIDENCE = ChainEvidence()
@@ -26,16 +30,22 @@ NO_EVIDENCE = ChainEvidence()
 
 
 def find_evidence(
-    architecture: Architecture, analysis: Analysis, results: Mapping[str, ChainResult], lay_overrides: OverrideLayer
+    architecture: Architecture,
+    analysis: Analysis,
+    results: Mapping[str, ChainResult],
+    lay_overrides: OverrideLayer,
+    asked: str | None = None,
 ) -> ChainEvidence:
-    """Look for witnesses, and for what would prove the chains that are not met: both in so many tries."""
-    trials = ChangeTrials(architecture, analysis, lay_overrides, MAX_TRIES)
-    remedies = find_remedies(trials, results.values())
-    return ChainEvidence(find_witnesses(analysis, results.values()), {remedy.chain: remedy for remedy in remedies})
+    """Look for witnesses, and for a configuration in which the chains are met: of all chains, or for one that is asked for."""
+    asked_results = [result for name, result in results.items() if asked in {None, name}]
+    proposal = None
+    if any(result.deadline and result.verdict in {"missed", "not proven"} for result in asked_results):
+        # Of a large project fewer are tried, since nobody asked for it: `--propose` tries them all.
+        tries = max(_LEAST_TRIES, MAX_TRIES * _SMALL_SIZE // max(_SMALL_SIZE, len(analysis.system.activities)))
+        proposal = find_proposal(ChangeTrials(architecture, analysis, lay_overrides, tries), results)
+    return ChainEvidence(find_witnesses(analysis, asked_results), proposal)
 
 
-def apply_witnesses(
-    results: Mapping[str, ChainResult], witnesses: Mapping[str, ChainWitness]
-) -> dict[str, ChainResult]:
+def apply_witnesses(results: Mapping[str, ChainResult], witnesses: Mapping[str, LateRun]) -> dict[str, ChainResult]:
     """Return the chains, those of which a late run was seen as missed."""
     return {key: replace(result, verdict="missed") if key in witnesses else result for key, result in results.items()}

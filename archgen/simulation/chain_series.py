@@ -13,6 +13,7 @@ from bisect import bisect_left
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from itertools import accumulate, pairwise
+from typing import NamedTuple
 
 TimeRange = tuple[int, int]
 """Values from the first to the second are equally likely, and a range weighs as much as it is long; or one value,
@@ -40,7 +41,7 @@ class ChainTrace:
 
     `samplings` are the activation times of the first activity's jobs. `source_logs` give, for each later activity and
     each of its jobs, the job of the previous activity whose data it read (-1 for none). `job_ends` are the end times of
-    the last activity's jobs. `samples_world` says that the first activity samples the world; otherwise its activation
+    the last activity's jobs (-1 for one that has not ended). `samples_world` says that the first activity samples the world; otherwise its activation
     is the event. `forwarded_jobs` give, for each activity but the last, the jobs that sent something to the next one;
     None where all do.
     """
@@ -52,45 +53,78 @@ class ChainTrace:
     samples_world: bool
 
 
+class Passage(NamedTuple):
+    """Data of a chain from `begin` (the event, or the sampling) to `end` (the reaction, or the next output); in units.
+
+    `sent` is when the last activity sent them: its job `last_job`. `first_job` is the one of the first activity that sampled.
+    """
+
+    begin: int
+    sampled: int
+    sent: int
+    end: int
+    first_job: int
+    last_job: int
+
+    @property
+    def length(self) -> int:
+        """How long it takes."""
+        return self.end - self.begin
+
+
 def measure_chain(trace: ChainTrace, *, forwarded_only: bool = False) -> ChainSeries:
-    """Compute a chain's figures. What is published once is no event, and yields none.
+    """Compute a chain's figures. What is published once is no event, and yields none. See `list_passages`."""
+    reactions, ages = list_passages(trace, forwarded_only=forwarded_only)
+    return ChainSeries(
+        tuple((each.end - each.sampled, each.length) for each in reactions),
+        tuple((each.sent - each.begin, each.length) for each in ages),
+        max((each.end - each.sampled for each in reactions), default=None),
+        max((each.sent - each.begin for each in ages), default=None),
+        len(reactions),
+    )
+
+
+def find_latest_passage(trace: ChainTrace, *, forwarded_only: bool) -> Passage | None:
+    """Return what is held against the deadline: the longest reaction, or the oldest age where the chain samples the world."""
+    reactions, ages = list_passages(trace, forwarded_only=forwarded_only)
+    return max((*reactions, *(ages if trace.samples_world else ())), key=lambda each: each.length, default=None)
+
+
+def list_passages(trace: ChainTrace, *, forwarded_only: bool = False) -> tuple[list[Passage], list[Passage]]:
+    """Return the reactions and the ages of a chain.
 
     With `forwarded_only`, only those inputs count that each activity on the way sent on as soon as it had processed
     them, as the bounds assume where an output is conditional. An age is then that of a sample followed by such an
     input.
     """
-    samplings, job_ends = trace.samplings, trace.job_ends
+    samplings = trace.samplings
     if not samplings:
-        return ChainSeries()
+        return [], []
     # One more than there are: the test for ages below asks for the job after the last source.
     counted_jobs = _find_forwarded_jobs(trace) if forwarded_only else range(len(samplings) + 1)
     # In the order in which they are put out: a job that began earlier may end later where several run at once.
     carried_jobs = sorted(
-        (end, source) for job, end in enumerate(job_ends) if (source := _source_job(job, trace.source_logs)) >= 0
+        (end, source, job)
+        for job, end in enumerate(trace.job_ends)
+        if end >= 0 and (source := list_read_jobs(job, trace.source_logs)[0]) >= 0
     )
     # A job that carries new data is also the first reaction to every input that was overwritten in between. The very
-    # first one is left out: what came before it is not known.
+    # first one is left out: what came before it is not known. The oldest event that a sampling catches happened just
+    # after the sampling before it.
+    event_offset = 1 if trace.samples_world else 0
     reactions = [
-        (job, end)
-        for previous_source, new_source, end in _first_carriers(carried_jobs)
+        Passage(samplings[job - event_offset], samplings[job], end, end, job, last_job)
+        for previous_source, new_source, end, last_job in _first_carriers(carried_jobs)
         if previous_source >= 0
         for job in range(previous_source + 1, new_source + 1)
         if job in counted_jobs
     ]
-    # The oldest event that a sampling catches happened just after the sampling before it.
-    event_offset = 1 if trace.samples_world else 0
-    ages = tuple(
-        (end - samplings[source], next_end - samplings[source])
-        for (end, source), (next_end, _) in pairwise(carried_jobs)
+    ages = [
+        Passage(samplings[source], samplings[source], end, next_end, source, last_job)
+        for (end, source, last_job), (next_end, _, _) in pairwise(carried_jobs)
         if source + 1 in counted_jobs
-    )
-    return ChainSeries(
-        tuple((end - samplings[job], end - samplings[job - event_offset]) for job, end in reactions),
-        ages,
-        max((end - samplings[job] for job, end in reactions), default=None),
-        max((low for low, _ in ages), default=None),
-        len(reactions),
-    )
+    ]
+    return reactions, ages
 
 
 def _find_forwarded_jobs(trace: ChainTrace) -> frozenset[int]:
@@ -108,21 +142,33 @@ def _find_forwarded_jobs(trace: ChainTrace) -> frozenset[int]:
     return frozenset(job_positions)
 
 
-def _source_job(job: int, logs: Sequence[Sequence[int]]) -> int:
-    """Return the job of the first activity whose data a job of the last one carries; -1 for none."""
+def list_read_jobs(job: int, logs: Sequence[Sequence[int]]) -> list[int]:
+    """Return the jobs of all activities whose data a job of the last one carries, first to last; -1 in front for none."""
+    jobs = [job]
     for log in reversed(logs):
-        job = log[job]
-        if job < 0:
-            return -1
-    return job
+        job = log[job] if job >= 0 else -1
+        jobs.append(job)
+    return jobs[::-1]
 
 
-def _first_carriers(carried_jobs: Sequence[tuple[int, int]]) -> Sequence[tuple[int, int, int]]:
-    """Return (newest source before, new source, end) for each job that carries newer data than all before it."""
+def list_passed_jobs(trace: ChainTrace, passage: Passage) -> list[int]:
+    """Return the jobs by which a passage went, first to last: at each activity the first that read data at least as new.
+
+    Where results overtook one another that may lead elsewhere: then those whose data its end carries.
+    """
+    jobs = [passage.first_job]
+    for log in trace.source_logs:
+        newest = list(accumulate(log, max))
+        jobs.append(bisect_left(newest, jobs[-1]))
+    return jobs if jobs[-1] == passage.last_job else list_read_jobs(passage.last_job, trace.source_logs)
+
+
+def _first_carriers(carried_jobs: Sequence[tuple[int, int, int]]) -> Sequence[tuple[int, int, int, int]]:
+    """Return (newest source before, new source, end, job) for each job that carries newer data than all before it."""
     carriers, newest = [], -1
-    for end, source in carried_jobs:
+    for end, source, job in carried_jobs:
         if source > newest:
-            carriers.append((newest, source, end))
+            carriers.append((newest, source, end, job))
             newest = source
     return carriers
 

@@ -8,9 +8,13 @@ from fractions import Fraction
 from itertools import pairwise
 
 from archgen.simulation.chain_series import ChainSeries, ChainTrace, TimeRange, compute_quantiles, measure_chain
+from archgen.simulation.job_activation import list_samplings
 from archgen.simulation.simulation_plan import SimulationPlan
 from archgen.simulation.simulation_result import ChainFigures, DurationDistribution, ObservedChain
 from archgen.simulation.simulation_run import SimulationRun
+
+_REPLACED = 1 << 61
+"""More than the number of any job."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,21 +31,32 @@ class ChainTrack:
 
     def add_run(self, run: SimulationRun) -> None:
         """Add the figures of one run."""
-        trace = ChainTrace(
-            run.activities.job_activations[self.activities[0]],
+        trace = self.trace_run(run)
+        self.all_series.append(measure_chain(trace))
+        if self.is_selective:
+            self.forwarded_series.append(measure_chain(trace, forwarded_only=True))
+
+    def trace_run(self, run: SimulationRun) -> ChainTrace:
+        """Return what one run recorded of the chain."""
+        return ChainTrace(
+            list_samplings(run, self.activities[0]),
             [_stalest_sources(run, wires) for wires in self.wires],
             run.activities.job_ends[self.activities[-1]],
             [_jointly_forwarded(run, wires) for wires in self.wires],
             self.samples_world,
         )
-        self.all_series.append(measure_chain(trace))
-        if self.is_selective:
-            self.forwarded_series.append(measure_chain(trace, forwarded_only=True))
 
-    def to_observed(self, through: Sequence[str], unit: Fraction) -> ObservedChain:
-        """Summarise all runs. `through` are the ids of the activities, `unit` is in ns."""
+    def to_observed(self, through: Sequence[str], unit: Fraction, seeds: Sequence[int]) -> ObservedChain:
+        """Summarise all runs, which had these seeds. `through` are the ids of the activities, `unit` is in ns."""
         forwarded = _summarise_series(self.forwarded_series, unit) if self.is_selective else None
-        return ObservedChain(tuple(through), _summarise_series(self.all_series, unit), forwarded)
+        held_series = self.forwarded_series if self.is_selective else self.all_series
+        lengths = [
+            max((high for _, high in (*each.reactions, *(each.ages if self.samples_world else ()))), default=-1)
+            for each in held_series
+        ]
+        longest = max(lengths, default=-1)
+        latest_seed = seeds[lengths.index(longest)] if longest >= 0 else None
+        return ObservedChain(tuple(through), _summarise_series(self.all_series, unit), forwarded, latest_seed)
 
 
 def unobserved_chain(through: Sequence[str]) -> ObservedChain:
@@ -65,13 +80,17 @@ def track_chain(plan: SimulationPlan, activity_ids: Sequence[str]) -> ChainTrack
 
 def _stalest_sources(run: SimulationRun, wires: Sequence[int]) -> list[int]:
     """Return for each job of an activity the oldest job of the one before it whose data it read on any of several
-    wires.
+    wires. A wire brought nothing where the message of a rival lay in its memory.
     """
-    return (
-        list(map(min, *(run.wires.source_log[wire] for wire in wires)))
-        if len(wires) > 1
-        else run.wires.source_log[wires[0]]
+    if len(wires) == 1:
+        return run.wires.source_log[wires[0]]
+    logs = (
+        [job if job >= 0 else _REPLACED for job in run.wires.source_log[wire]]
+        if run.wires.rivals[wire]
+        else run.wires.source_log[wire]
+        for wire in wires
     )
+    return [-1 if job == _REPLACED else job for job in map(min, *logs)]
 
 
 def _jointly_forwarded(run: SimulationRun, wires: Sequence[int]) -> frozenset[int] | None:
@@ -104,4 +123,6 @@ def _summarise_ranges(ranges: Sequence[TimeRange], unit: Fraction) -> DurationDi
         Fraction(median).limit_denominator(1000) * unit,
         Fraction(percentile_95).limit_denominator(1000) * unit,
         max(high for _, high in ranges) * unit,
+        ranges,
+        unit,
     )

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
 
-from archgen.frozen import dataclass
 from archgen.simulation.analysis_bounds import find_publish_pauses
-from archgen.simulation.seeded_runs import find_late_runs
+from archgen.simulation.seeded_runs import LateRun, find_late_runs
 from archgen.timing.analysis import Analysis, ChainResult
 
 MAX_RUNS = 8
@@ -20,17 +19,7 @@ _LEAST_SECONDS, _DEADLINES_PER_RUN = 2, Fraction(5, 2)
 _NS_PER_SECOND = 10**9
 
 
-@dataclass(frozen=True, slots=True)
-class ChainWitness:
-    """The run of a chain that takes longer than its deadline: `archgen simulate --seed SEED --seconds SECONDS`."""
-
-    seed: int
-    seconds: int
-    longest: Fraction
-    """What the chain took in it, in ns."""
-
-
-def find_witnesses(analysis: Analysis, results: Iterable[ChainResult]) -> dict[str, ChainWitness]:
+def find_witnesses(analysis: Analysis, results: Iterable[ChainResult]) -> dict[str, LateRun]:
     """Return a run for each chain of which one was found; only chains that are not proven are looked at.
 
     The numbers of runs and their lengths follow from the architecture, so that they are the same on each computer.
@@ -51,7 +40,7 @@ def find_witnesses(analysis: Analysis, results: Iterable[ChainResult]) -> dict[s
 
 def _find_group_witnesses(
     analysis: Analysis, group: Mapping[str, ChainResult], seconds: int, max_jobs: int
-) -> dict[str, ChainWitness]:
+) -> dict[str, LateRun]:
     """Look for runs of chains that are simulated for the same time."""
     jobs = seconds * sum((pace.rate.value or Fraction(0) for pace in analysis.paces.values()), Fraction(0))
     runs = 0 if jobs > _MAX_JOBS_PER_RUN else min(MAX_RUNS, max(1, int(max_jobs / jobs))) if jobs else MAX_RUNS
@@ -60,15 +49,4 @@ def _find_group_witnesses(
         for key, result in group.items()
         if result.deadline is not None and result.deadline.value is not None
     }
-    late_runs = find_late_runs(
-        analysis.system, deadlines, seconds=seconds, seeds=runs, pauses=find_publish_pauses(analysis)
-    )
-    activities = analysis.system.activities
-    return {
-        key: ChainWitness(
-            late_run.seed,
-            late_run.seconds,
-            late_run.find_longest(samples_world=activities[group[key].through[0]].behaviour == "periodic"),
-        )
-        for key, late_run in late_runs.items()
-    }
+    return find_late_runs(analysis.system, deadlines, seconds=seconds, seeds=runs, pauses=find_publish_pauses(analysis))

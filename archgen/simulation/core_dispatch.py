@@ -12,7 +12,7 @@ from archgen.simulation.job_activation import read_inputs
 from archgen.simulation.job_completion import complete_callback
 from archgen.simulation.resource_use import grant_resource, plan_steps
 from archgen.simulation.simulation_run import JOB_END, LOAD_ONLY, SimulationRun
-from archgen.simulation.thread_scheduling import feed_threads
+from archgen.simulation.thread_scheduling import feed_threads, let_others_compute
 
 
 def dispatch_threads(run: SimulationRun, now: int) -> None:
@@ -63,15 +63,24 @@ def _apply_assignment(run: SimulationRun, now: int, processor: int, thread_by_co
     running, ready = run.processors.running[processor], run.processors.ready[processor]
     for thread in [t for t in running if t not in thread_by_core.values()]:
         running.remove(thread)
-        # The job's end is already on the heap: the new version makes `end_thread` ignore it.
-        threads.end_version[thread] += 1
-        threads.time_left[thread] = threads.end_time[thread] - now
+        _interrupt_thread(run, now, thread)
         ready.append((threads.urgency[thread], threads.ready_order[thread], thread))
     for core, thread in thread_by_core.items():
         threads.last_core[thread] = core
         if thread not in running:
             ready.remove((threads.urgency[thread], threads.ready_order[thread], thread))
             _start_thread(run, now, thread, running)
+
+
+def _interrupt_thread(run: SimulationRun, now: int, thread: int) -> None:
+    """Let a running thread keep what it has left to do."""
+    threads = run.threads
+    # Its end is already on the heap: the new version makes `end_thread` ignore it.
+    threads.end_version[thread] += 1
+    threads.time_left[thread] = threads.end_time[thread] - now + threads.time_after_slice[thread]
+    threads.time_after_slice[thread] = 0
+    if run.log is not None:
+        run.log.enter_state(run, thread, "ready")
 
 
 def _start_thread(run: SimulationRun, now: int, thread: int, running: list[int]) -> None:
@@ -83,18 +92,23 @@ def _start_thread(run: SimulationRun, now: int, thread: int, running: list[int])
         remaining = _begin_callback(run, now, thread)
         if not remaining and run.callbacks.is_storing[threads.callback[thread]]:
             # Most samples are stored in no time: then the heap, which is the most expensive part, need not know.
+            let_others_compute(run, thread)
             complete_callback(run, now, thread)
             if run.processors.ready[threads.processor[thread]]:
                 run.changed_processors.add(threads.processor[thread])
             return
     if run.processors.has_slices:
         slice_time = run.processors.slice_time[threads.processor[thread]] or remaining
+        if run.executors.is_serial[run.callbacks.executor[threads.callback[thread]]]:
+            slice_time = min(slice_time, run.processors.switch_time)
         threads.time_after_slice[thread] = max(remaining - slice_time, 0)
         remaining = min(remaining, slice_time)
         processor = threads.processor[thread]
         run.processors.least_served[processor] = max(threads.served[thread], run.processors.least_served[processor])
         threads.served[thread] += remaining
     running.append(thread)
+    if run.log is not None:
+        run.log.enter_state(run, thread, "runs")
     threads.end_time[thread] = now + remaining
     heappush(run.heap, (now + remaining << 2 | JOB_END, thread, threads.end_version[thread]))
 
@@ -142,7 +156,6 @@ def _preempt_least_urgent(run: SimulationRun, now: int, ready: list[tuple[int, i
     ):
         return False
     running.remove(least_urgent)
-    threads.end_version[least_urgent] += 1
-    threads.time_left[least_urgent] = threads.end_time[least_urgent] - now
+    _interrupt_thread(run, now, least_urgent)
     heappush(ready, (threads.urgency[least_urgent], threads.ready_order[least_urgent], least_urgent))
     return True

@@ -77,6 +77,7 @@ def process_events(run: SimulationRun, horizon: int) -> None:
             now = key >> 2
             if now > horizon:
                 break
+            run.now = now
             dispatch_rounds = 0
             if len(heap) > MAX_WAITING_EVENTS:
                 raise EventFloodError(now * run.plan.unit)

@@ -12,7 +12,7 @@ from random import Random
 
 from archgen.model.declared_timing import SchedulingOrder
 from archgen.simulation.run_state import Job
-from archgen.simulation.simulation_plan import Processor, SimulationPlan
+from archgen.simulation.simulation_plan import TIMER, Processor, SimulationPlan
 
 (
     WAIT_SET,
@@ -41,6 +41,8 @@ _WRITTEN_ORDERS: dict[SchedulingOrder, int] = {
     "fair": LEAST_SERVED,
 }
 _ORDERS_BY_PRIORITY = (None, "fixed_priority", "non_preemptive")
+_SWITCH_NS = 5_000_000
+"""After so long a thread of CPython lets another one compute (`sys.getswitchinterval`)."""
 _SLICES_NS = (100_000, 1_000_000, 5_000_000, 20_000_000)
 """Time slices of a scheduler that takes turns, of which each run draws one."""
 
@@ -84,6 +86,13 @@ class CallbackStates:
         self.group = [planned.group for planned in callbacks]
         self.is_storing = [planned.is_storing for planned in callbacks]
         self.depth = [planned.depth for planned in callbacks]
+        self.skips_ticks = [
+            planned.kind == TIMER
+            and plan.executors[planned.executor].order == "ros2_executor"
+            and plan.activities[planned.activity].declared_response is None
+            for planned in callbacks
+        ]
+        """Whether a tick that comes while another one waits makes no job: rcl counts it as done."""
         self.shortest_time = [planned.bcet for planned in callbacks]
         self.time_spread = [planned.wcet - planned.bcet for planned in callbacks]
         self.pending: list[deque[Job]] = [deque() for _ in callbacks]
@@ -104,8 +113,13 @@ class ExecutorStates:
         # A wait set lists timers first, then subscriptions, services and clients, each in the order of creation, which
         # nobody writes.
         self.callbacks = [
-            tuple(sorted(dice.sample(callbacks, len(callbacks)), key=lambda callback: plan.callbacks[callback].kind))
-            for callbacks in members
+            tuple(
+                sorted(
+                    dice.sample(callbacks, len(callbacks)),
+                    key=lambda callback: plan.callbacks[callback].kind if executor.serves_by_kind else 0,
+                )
+            )
+            for callbacks, executor in zip(members, plan.executors, strict=True)
         ]
         self.order = _draw_orders([executor.order for executor in plan.executors], _ANY_EXECUTOR, dice, last_turn)
         self.ranks = {callback: dice.random() for callbacks in self.callbacks for callback in callbacks}
@@ -119,6 +133,11 @@ class ExecutorStates:
             for callbacks, executor in zip(self.callbacks, plan.executors, strict=True)
         ]
         """The callback of an executor that has nothing to choose; -1 for all others."""
+        self.is_serial = [executor.is_serial for executor in plan.executors]
+        self.computing_thread = [-1] * count
+        """The thread that computes where one does at a time; -1 for none."""
+        self.held_threads: list[list[int]] = [[] for _ in range(count)]
+        """The threads that would like to compute meanwhile."""
         self.waiting_count = [0] * count
         """Jobs and samples that no thread has begun."""
         self.idle_threads: list[list[int]] = [[] for _ in range(count)]
@@ -195,7 +214,10 @@ class ProcessorStates:
             for index, (processor, scheduler) in enumerate(zip(processors, self.scheduler, strict=True))
         ]
         slice_time = max(1, int(dice.choice(_SLICES_NS) / plan.unit))
-        self.has_slices = TAKE_TURNS in self.scheduler or LEAST_SERVED in self.scheduler
+        self.has_slices = not {TAKE_TURNS, LEAST_SERVED}.isdisjoint(self.scheduler) or any(
+            executor.is_serial for executor in plan.executors
+        )
+        self.switch_time = max(1, int(_SWITCH_NS / plan.unit))
         self.slice_time = [
             max(1, int(processor.turn / plan.unit)) if processor.turn else slice_time if scheduler == TAKE_TURNS else 0
             for processor, scheduler in zip(processors, self.scheduler, strict=True)

@@ -47,8 +47,7 @@ def fire_activity(run: SimulationRun, now: int, activity: int, wire: int, sample
 
     With a declared response the job begins at once and ends on time; only its load is queued.
     """
-    activities = run.activities
-    start_up = run.start_up
+    activities, start_up = run.activities, run.start_up
     if not start_up.awaited_wires[activity]:
         previous = activities.last_activation[activity]
         if previous < 0:
@@ -56,11 +55,13 @@ def fire_activity(run: SimulationRun, now: int, activity: int, wire: int, sample
         elif now - previous > activities.activation_gap[activity]:
             activities.activation_gap[activity] = now - previous
         activities.last_activation[activity] = now
-    start_up.activation_count[activity] += 1
     if wire >= 0:
         callback = run.wires.callback[wire]
     else:
         callback = activities.clock_callback[activity] if wire == NO_WIRE else activities.joint_callback[activity]
+    if wire == NO_WIRE and run.callbacks.skips_ticks[callback] and run.callbacks.pending[callback]:
+        return
+    start_up.activation_count[activity] += 1
     if activities.declared_response[activity] is not None:
         _start_declared_job(run, now, activity, wire, sample)
         wire = LOAD_ONLY
@@ -104,7 +105,7 @@ def read_inputs(run: SimulationRun, now: int, activity: int, job: Job) -> None:
         if wires.newest_job[wire] > job[2]:
             dropped_samples = _take_sample(run, wire, job[2])
         else:
-            wires.newest_job[wire] = job[2]
+            keep_sample(run, wire, job[2])
     elif wire == ALL_WIRES:
         dropped_samples = _take_joint_samples(run, now, activity, job[2])
     for queue in wires.sampled_queues[activity]:
@@ -122,7 +123,7 @@ def read_inputs(run: SimulationRun, now: int, activity: int, job: Job) -> None:
             wires.source_log[wire].append(wires.newest_job[wire])
     activities.started[activity] += 1
     for wire, sample in dropped_samples:
-        wires.newest_job[wire] = sample
+        keep_sample(run, wire, sample)
 
 
 def _record_read_ages(run: SimulationRun, now: int, activity: int) -> None:
@@ -138,8 +139,8 @@ def _take_sample(run: SimulationRun, wire: int, sample: int) -> Sequence[tuple[i
     """Let a job that starts read the sample that fired it. Return the wire and what `every` or `throttle` has dropped there
     since then: that came later, and stays for the next job.
     """
-    newest_job = run.wires.newest_job
-    newest, newest_job[wire] = newest_job[wire], sample
+    newest = run.wires.newest_job[wire]
+    keep_sample(run, wire, sample)
     return ((wire, newest),) if newest > sample and run.wires.keeps_order[wire] else ()
 
 
@@ -159,15 +160,25 @@ def _take_joint_samples(
     ]
 
 
-def keep_dropped(run: SimulationRun, wire: int, sample: int) -> None:
-    """Store a sample that `every` or `throttle` has dropped, for the next job."""
-    run.wires.newest_job[wire] = sample
+def keep_sample(run: SimulationRun, wire: int, sample: int) -> None:
+    """Keep a sample for the jobs to come, in place of what came to the same memory before."""
+    newest_job = run.wires.newest_job
+    newest_job[wire] = sample
+    for rival in run.wires.rivals[wire]:
+        newest_job[rival] = -1
 
 
 def stamp_of(run: SimulationRun, wire: int, sample: int) -> int:
-    """Return the stamp of a sample: when the job that sent it was activated; 0 for what is published once."""
-    activations = run.activities.job_activations[run.wires.source[wire]]
-    return activations[sample] if activations else 0
+    """Return the stamp of a sample: when the job that sent it sampled; 0 for what is published once."""
+    samplings = list_samplings(run, run.wires.source[wire])
+    return samplings[sample] if samplings else 0
+
+
+def list_samplings(run: SimulationRun, activity: int) -> Sequence[int]:
+    """Return when the jobs of an activity sampled the world: as they were activated, where no tick is skipped."""
+    activities, callback = run.activities, run.activities.clock_callback[activity]
+    skips_ticks = callback >= 0 and run.callbacks.skips_ticks[callback]
+    return (activities.job_starts if skips_ticks else activities.job_activations)[activity]
 
 
 def _record_fusion(run: SimulationRun, now: int, activity: int, samples: Sequence[int]) -> None:

@@ -7,7 +7,7 @@ from heapq import heappush
 from archgen.simulation.resource_use import enter_resource
 from archgen.simulation.sample_arrival import deliver_sample, store_sample
 from archgen.simulation.simulation_run import LOAD_ONLY, SAMPLE_ARRIVAL, SimulationRun
-from archgen.simulation.thread_scheduling import queue_thread
+from archgen.simulation.thread_scheduling import let_others_compute, queue_thread
 
 
 def end_thread(run: SimulationRun, now: int, thread: int, version: int) -> None:
@@ -20,6 +20,7 @@ def end_thread(run: SimulationRun, now: int, thread: int, version: int) -> None:
     threads.end_version[thread] += 1
     processor = threads.processor[thread]
     processors.running[processor].remove(thread)
+    let_others_compute(run, thread)
     if processors.ready[processor]:
         run.changed_processors.add(processor)
     if threads.time_after_slice[thread]:
@@ -35,6 +36,8 @@ def complete_callback(run: SimulationRun, now: int, thread: int) -> None:
     """Complete what ran on a thread: publish its results, or store its sample, and let the thread go on."""
     threads, callbacks, executors = run.threads, run.callbacks, run.executors
     callback = threads.callback[thread]
+    if run.log is not None:
+        run.log.leave_state(run, thread)
     activity, wire = callbacks.activity[callback], threads.firing_wire[thread]
     if callbacks.is_storing[callback]:
         store_sample(run, wire, threads.job_number[thread])

@@ -10,6 +10,7 @@ from archgen.simulation.simulation_plan import (
     INACTIVE,
     MAX_UNIT_NS,
     ONCE,
+    OUTSIDE,
     PERIODIC,
     SLOT_ANY,
     SLOT_SAMPLED,
@@ -23,7 +24,7 @@ from archgen.simulation.simulation_plan import (
     SimulationPlan,
 )
 from archgen.simulation.thread_placement import ThreadPlacement
-from archgen.timing.system.timing_system import Activity, Arc, TimingSystem, is_selective_arc
+from archgen.timing.system.timing_system import Activity, Arc, TimingSystem, is_selective_arc, name_queue
 
 _SECOND = 10**9
 _MATCH_DEPTH = 10
@@ -119,7 +120,7 @@ class _PlanBuilder:
             transmission = int(arc.size * _SECOND * self.scale / (bandwidth * self.system.tick))
         queue = -1
         if arc.role == "data":
-            queue = self.queues.setdefault((arc.target, arc.input, arc.topic), len(self.queues))
+            queue = self.queues.setdefault((arc.target, arc.input, name_queue(reader, arc)), len(self.queues))
         return PlannedWire(
             target=self.activity_numbers[arc.target],
             slot=slot,
@@ -176,7 +177,8 @@ class _PlanBuilder:
                 (self.resource_numbers[key], self.ticks_to_units(use.best), self.ticks_to_units(use.worst))
                 for key, use in activity.uses.items()
                 if key in self.resource_numbers
-            ),
+            )
+            + (((OUTSIDE, 0, self.ticks_to_units(activity.wait)),) if activity.wait else ()),
         )
 
     def clock_callback(self, activity: Activity) -> int:

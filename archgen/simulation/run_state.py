@@ -112,6 +112,8 @@ class WireStates:
         """Whether samples of a source never overtake one another."""
         self.newest_job = [-1] * len(wires)
         """The producer's job whose sample the reader has, or had when it last started."""
+        self.rivals = _find_rivals(plan)
+        """The wires of which samples are kept in the same memory, by wire: the last sample of any of them is there."""
         self.arrived_job = [-1] * len(wires)
         """The same for a sample that waits until the other inputs have arrived."""
         self.last_arrival = [0] * len(wires)
@@ -153,6 +155,17 @@ def recorded_sources(plan: SimulationPlan) -> frozenset[int]:
         for wire_index, wire in enumerate(plan.wires)
         if (wire.slot == SLOT_SAMPLED and wire.queue >= 0) or plan.activities[wire.target].within is not None
     )
+
+
+def _find_rivals(plan: SimulationPlan) -> list[tuple[int, ...]]:
+    """Return the wires that share the queue, and so the memory, of each wire."""
+    members: dict[int, list[int]] = {}
+    for index, wire in enumerate(plan.wires):
+        members.setdefault(wire.queue, []).append(index)
+    return [
+        tuple(other for other in members[wire.queue] if other != index) if wire.queue >= 0 else ()
+        for index, wire in enumerate(plan.wires)
+    ]
 
 
 def _may_overtake(plan: SimulationPlan, source: int) -> bool:

@@ -77,7 +77,7 @@ class RunTotals:
                 for index, planned in enumerate(plan.activities)
             },
             {
-                key: self.tracks[key].to_observed(activity_ids, unit)
+                key: self.tracks[key].to_observed(activity_ids, unit, seeds)
                 if key in self.tracks
                 else unobserved_chain(activity_ids)
                 for key, activity_ids in requested_chains.items()

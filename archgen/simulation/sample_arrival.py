@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from archgen.simulation.job_activation import (
     fire_activity,
     hold_firing,
-    keep_dropped,
+    keep_sample,
     passes_gate,
     queue_callback,
     stamp_of,
@@ -50,7 +50,7 @@ def _fire_by_any(run: SimulationRun, now: int, wire: int, sample: int) -> None:
     # released it.
     elif activities.is_gated[activity] and not passes_gate(run, now, activity):
         if run.plan.activities[activity].keeps_dropped:
-            keep_dropped(run, wire, sample)
+            keep_sample(run, wire, sample)
     elif activities.jitter[activity]:
         hold_firing(run, now, activity, wire, sample)
     else:
@@ -60,7 +60,7 @@ def _fire_by_any(run: SimulationRun, now: int, wire: int, sample: int) -> None:
 def store_sample(run: SimulationRun, wire: int, sample: int) -> None:
     """Store a sample that fires nobody: from now on it is what the reader's next job reads."""
     wires = run.wires
-    wires.newest_job[wire] = sample
+    keep_sample(run, wire, sample)
     queue = wires.queue[wire]
     if queue >= 0:
         wires.waiting_count[queue] += 1
@@ -110,6 +110,8 @@ def _fill_slot(run: SimulationRun, now: int, wire: int, slot: int, sample: int) 
     activity = wires.target[wire]
     planned = run.plan.activities[activity]
     wires.arrived_job[wire] = sample
+    for rival in wires.rivals[wire]:
+        wires.arrived_job[rival] = -1
     # A filled slot whose sample is replaced loses that sample. Slots of inputs published once are always filled.
     if activities.filled_slots[activity] >> slot & 1 and slot not in planned.constant_slots:
         wires.drop_count[wires.queue[wire]] += 1
@@ -146,4 +148,4 @@ def _fire_jointly(run: SimulationRun, now: int, activity: int, samples: Sequence
         # A rejected activation still makes its samples the newest: a later call of the same reader reads them.
         for wire, sample in zip(planned.captured_wires, samples, strict=True):
             if sample >= 0:
-                keep_dropped(run, wire, sample)
+                keep_sample(run, wire, sample)

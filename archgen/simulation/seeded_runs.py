@@ -10,12 +10,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
+from archgen.simulation.chain_series import find_latest_passage
 from archgen.simulation.chain_tracking import ChainTrack, track_chain
+from archgen.simulation.drawn_orders import DrawnOrder, list_drawn_orders
 from archgen.simulation.event_loop import EventFloodError, run_plan
 from archgen.simulation.plan_builder import PublishPauses, build_plan
 from archgen.simulation.run_totals import RunTotals
 from archgen.simulation.simulation_plan import SimulationPlan
-from archgen.simulation.simulation_result import DurationDistribution, SimulationResult
+from archgen.simulation.simulation_result import SimulationResult
 from archgen.simulation.simulation_run import SimulationRun
 from archgen.timing.system.timing_system import TimingSystem
 
@@ -50,18 +52,14 @@ def simulate_system(
 
 @dataclass(frozen=True, slots=True)
 class LateRun:
-    """A run in which a chain took longer than its deadline: `seconds` from this seed show it again. Times are in ns."""
+    """A run in which a chain took longer than its deadline: `archgen simulate --seed SEED --seconds SECONDS`."""
 
     seed: int
     seconds: int
-    reaction: Fraction | None
-    """The longest reaction time in this run; None if nothing passed along the whole chain."""
-    age: Fraction | None
-    """The largest data age in this run."""
-
-    def find_longest(self, *, samples_world: bool = False) -> Fraction:
-        """Return what is to be held against the deadline: the age as well, where the chain samples the world."""
-        return max(self.reaction or Fraction(0), (self.age or Fraction(0)) if samples_world else Fraction(0))
+    longest: Fraction
+    """What the chain took in it, in ns: its longest reaction, or its oldest data where it samples the world."""
+    orders: tuple[DrawnOrder, ...] = ()
+    """The orders of what the chain comes to, where nobody wrote one."""
 
 
 def find_late_runs(
@@ -80,32 +78,24 @@ def find_late_runs(
     and all of them if the events multiply without end.
     """
     plan = build_plan(system, pauses)
+    tracks = {
+        key: track for key, (through, _) in deadlines.items() if (track := track_chain(plan, through)) is not None
+    }
     late_runs: dict[str, LateRun] = {}
     for seed in range(seeds):
-        # Each run has tracks of its own, so that its figures are its own.
-        tracks = {
-            key: track
-            for key, (through, _) in deadlines.items()
-            if key not in late_runs and (track := track_chain(plan, through)) is not None
-        }
-        if not tracks:
+        waiting = {key: track for key, track in tracks.items() if key not in late_runs}
+        if not waiting:
             break
         try:
-            run = _run_recorded(plan, seed, int(seconds * _SECOND / plan.unit), tuple(tracks.values()))
+            run = _run_recorded(plan, seed, int(seconds * _SECOND / plan.unit), tuple(waiting.values()))
         except EventFloodError:
             break
-        for key, track in tracks.items():
-            track.add_run(run)
-            through, deadline = deadlines[key]
-            figures = track.to_observed(through, plan.unit).bounded_figures
-            late_run = LateRun(seed, seconds, _find_largest(figures.reaction), _find_largest(figures.age))
-            if late_run.find_longest(samples_world=track.samples_world) > deadline:
-                late_runs[key] = late_run
+        for key, track in waiting.items():
+            passage = find_latest_passage(track.trace_run(run), forwarded_only=track.is_selective)
+            longest = passage.length * plan.unit if passage else Fraction(0)
+            if longest > deadlines[key][1]:
+                late_runs[key] = LateRun(seed, seconds, longest, list_drawn_orders(run, track.activities))
     return late_runs
-
-
-def _find_largest(distribution: DurationDistribution | None) -> Fraction | None:
-    return distribution.largest if distribution else None
 
 
 def _run_recorded(plan: SimulationPlan, seed: int, horizon: int, tracks: Sequence[ChainTrack]) -> SimulationRun:

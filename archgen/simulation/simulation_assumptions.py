@@ -55,10 +55,14 @@ def list_random_choices(system: TimingSystem) -> tuple[str, ...]:
         key for activity in activities for key in (activity.executor, *(activity.executor for _ in activity.storing))
     )
     is_order_open = any(
-        executor.order is None and callback_counts[key] > 1 for key, executor in executors.items()
-    ) or any(threads == 1 for name, threads in system.threads.items() if f"container {name}" not in executors)
+        (executor.order or executor.usual_order) is None and callback_counts[key] > 1
+        for key, executor in executors.items()
+    )
     # In the wait set of rclcpp the order of creation counts, and nobody writes that.
-    is_creation_open = any(executor.order == "ros2_executor" for executor in executors.values())
+    is_creation_open = any(
+        "ros2_executor" in {executor.order, executor.order or executor.usual_order} and callback_counts[key] > 1
+        for key, executor in executors.items()
+    )
     used_resources = {key for activity in activities for key in activity.uses}
     choices = (
         (

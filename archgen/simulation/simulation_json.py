@@ -7,7 +7,13 @@ from fractions import Fraction
 
 from archgen.simulation import simulation_assumptions
 from archgen.simulation.analysis_bounds import bound_data_ages, bound_utilisation, upper_bound
-from archgen.simulation.simulation_result import ChainFigures, DurationDistribution, ObservedChain, SimulationResult
+from archgen.simulation.simulation_result import (
+    ChainFigures,
+    DurationDistribution,
+    ObservedChain,
+    SimulationResult,
+    list_seen_shares,
+)
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.figures.timing_values import TimingValue
 
@@ -95,6 +101,10 @@ def _chain_to_json(
         "assumptions": list(dict.fromkeys((*chain_result.bound.assumptions, *age_bound.assumptions))),
         "conditional": _conditional_to_json(observed, analysis),
         "deadline": _bound_in_ms(chain_result.deadline) if chain_result.deadline else None,
+        "deadline_shares": [
+            {"share": seen.share, "limit": _ns_to_ms(seen.limit), "seen": _ns_to_ms(seen.seen), "verdict": seen.verdict}
+            for seen in list_seen_shares(observed, chain_result)
+        ],
     }
 
 

@@ -22,6 +22,8 @@ SLOT_SAMPLED, SLOT_ANY = -2, -1
 """Slots of wires that fire nobody, and of those that fire by themselves."""
 TIMER, SUBSCRIPTION, SERVICE, CLIENT = range(4)
 """Kinds of callbacks, in the order in which a wait set of rclcpp lists them."""
+OUTSIDE = -1
+"""In the place of a resource: the world outside, which lets nobody wait for another one."""
 REENTRANT = -1
 """The group of callbacks that exclude nobody, not even themselves."""
 MAX_UNIT_NS = 1000
@@ -109,7 +111,7 @@ class PlannedActivity:
     """How many samples wait for their partners, by slot."""
     keeps_dropped: bool = True
     uses: tuple[tuple[int, int, int], ...] = ()
-    """The resources it uses: number, shortest and longest time."""
+    """The resources it uses, each by its number, and last OUTSIDE, where it waits: with the shortest and longest time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,6 +137,10 @@ class PlannedExecutor:
     id: str
     threads: int
     order: SchedulingOrder | None
+    is_serial: bool = False
+    """Whether its threads compute one at a time, as those of CPython do."""
+    serves_by_kind: bool = True
+    """Whether a wait set lists timers first, then subscriptions, services and clients."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import NamedTuple
+
+from archgen.simulation.chain_series import TimeRange, compute_quantiles
+from archgen.timing.analysis import ChainResult
+from archgen.timing.chains.chain_verdicts import SeenVerdict, judge_seen_share
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,6 +21,14 @@ class DurationDistribution:
     percentile_95: Fraction
     """The 95th percentile."""
     largest: Fraction
+    ranges: Sequence[TimeRange] = field(default=(), repr=False, compare=False)
+    """All that was seen, in units of so many ns."""
+    unit: Fraction = Fraction(1)
+
+    def find_quantile(self, share: Fraction) -> Fraction:
+        """Return how long the share takes at most that is over first."""
+        # `compute_quantiles` works in floats; the rounded fraction keeps the result exact from here on.
+        return Fraction(*compute_quantiles(self.ranges, (float(share),))).limit_denominator(1000) * self.unit
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,11 +54,31 @@ class ObservedChain:
     through: tuple[str, ...]
     all_inputs: ChainFigures
     forwarded_inputs: ChainFigures | None
+    latest_seed: int | None = None
+    """The run in which it took longest; None where nothing passed along it."""
 
     @property
     def bounded_figures(self) -> ChainFigures:
         """The figures that the bounds hold for."""
         return self.all_inputs if self.forwarded_inputs is None else self.forwarded_inputs
+
+
+class SeenShare(NamedTuple):
+    """The deadline of a share (`95 %`) of a chain's reactions, in ns, beside what that share took; None if none was seen."""
+
+    share: str
+    limit: Fraction
+    seen: Fraction | None
+    verdict: SeenVerdict
+
+
+def list_seen_shares(observed: ObservedChain, result: ChainResult) -> Iterator[SeenShare]:
+    """Yield the deadlines of shares of a chain, judged by what was seen, over the inputs that its bound holds for."""
+    figures = observed.bounded_figures
+    for asked in result.shares:
+        seen = figures.reaction.find_quantile(asked.share) if figures.reaction else None
+        verdict = judge_seen_share(asked.share, asked.limit, seen, figures.input_count)
+        yield SeenShare(asked.name, asked.limit, seen, verdict)
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from random import Random
+from typing import TYPE_CHECKING, Literal
 
 from archgen.model.graph_search import find_strong_components
 from archgen.simulation.executor_state import (
@@ -23,6 +24,11 @@ from archgen.simulation.executor_state import (
 from archgen.simulation.run_state import CRITICAL_INTERVAL, ActivityStates, WireStates
 from archgen.simulation.simulation_plan import ONCE, PERIODIC, SLOT_SAMPLED, SimulationPlan
 
+if TYPE_CHECKING:
+    from archgen.simulation.schedule_log import ScheduleLog
+
+ThreadState = Literal["ready", "runs", "awaits", "uses"]
+"""What a thread with something to do is at: it waits for a core or has one, it waits for a resource or uses it."""
 JOB_END, SAMPLE_ARRIVAL, ACTIVITY_RELEASE = range(3)
 """The order of events at one moment; two bits of the heap's keys."""
 CLOCK_TICK, LATE_TICK, HELD_FIRING = range(3)
@@ -47,6 +53,8 @@ class SimulationRun:
         "executors",
         "heap",
         "is_critical",
+        "log",
+        "now",
         "outputs",
         "plan",
         "priority",
@@ -108,6 +116,9 @@ class SimulationRun:
         self.changed_resources: set[int] = set()
         """Resources that somebody left at this moment, or waits for."""
         self.sequence = 0
+        self.log: ScheduleLog | None = None
+        """Notes what threads do, where somebody wants to see it; `now` is the time then."""
+        self.now = 0
         self.answer_wires = [plan.answers.get(wire_index, -1) for wire_index in range(len(plan.wires))]
         self.event_count = 0
 

@@ -8,14 +8,16 @@ from textwrap import wrap
 
 from archgen.simulation import simulation_assumptions
 from archgen.simulation.analysis_bounds import bound_data_ages, bound_utilisation, upper_bound
-from archgen.simulation.simulation_result import ObservedChain, SimulationResult
+from archgen.simulation.simulation_result import ObservedChain, SimulationResult, list_seen_shares
 from archgen.timing.analysis import Analysis, ChainResult
+from archgen.timing.chains.chain_verdicts import SeenVerdict
 from archgen.timing.figures.timing_values import TimingValue
 
 _MS = 10**6
 _WIDTH = 110
 _MAX_NAMES = 3
 """The most elements that a line names; `--format json` lists all."""
+_SEEN_WORDS: Mapping[SeenVerdict, str] = {"kept": "kept", "late": "LATE", "too few": "too few"}
 _NOTHING_RAN = (
     "Nothing ran: no element has a period or a rate, and so nothing begins. Write what is known, at the sources first:",
     "    timing: {period: 20 ms, wcet: 3 ms}",
@@ -85,6 +87,7 @@ def _chain_lines(result: SimulationResult, analysis: Analysis, chains: Mapping[s
             )
             bound_cells = (_format_bound(bound, cells[-1]) + "*" * is_marked, _format_ms(deadline))
             yield _format_row(f"{key} {quantity}", *map(_format_ms, cells), *bound_cells)
+    yield from _share_lines(result, chains)
     marked_chains = {
         key: observed for key, observed in result.chains.items() if _is_conditional_bound(observed, chains[key])
     }
@@ -96,6 +99,18 @@ def _chain_lines(result: SimulationResult, analysis: Analysis, chains: Mapping[s
         )
         for key, observed in marked_chains.items():
             yield from _all_inputs_lines(key, observed, analysis)
+
+
+def _share_lines(result: SimulationResult, chains: Mapping[str, ChainResult]) -> Iterator[str]:
+    """Yield the deadlines of shares of the reactions beside what these took."""
+    rows = [
+        _format_row(f"{key}, {seen.share}", _format_ms(seen.limit), _format_ms(seen.seen), _SEEN_WORDS[seen.verdict])
+        for key, observed in result.chains.items()
+        for seen in list_seen_shares(observed, chains[key])
+    ]
+    if rows:
+        yield from ("", _format_row("Shares of reactions (ms)", "deadline", "seen", "here"), *rows)
+        yield "  Kept or late in these runs: how often what happens nobody knows of the robot, and nothing is proven."
 
 
 def _is_conditional_bound(observed: ObservedChain, chain_result: ChainResult) -> bool:

@@ -7,9 +7,6 @@ from archgen.model.declared_timing import SchedulingOrder
 from archgen.simulation.simulation_plan import PlannedExecutor, Processor
 from archgen.timing.system.timing_system import Activity, TimingSystem
 
-_ORDERS_BY_THREADS: dict[int | None, SchedulingOrder] = {None: "fifo", 1: "ros2_executor"}
-"""The order of an executor of which only the number of threads is known, or nothing."""
-
 
 class ThreadPlacement:
     """Executors and processors, numbered as activities ask for them."""
@@ -35,8 +32,7 @@ class ThreadPlacement:
         key = _executor_key(self.system, activity)
         if key not in self.executor_numbers:
             self.executor_numbers[key] = len(self.executors)
-            threads, order = self._threads_and_order(key, activity)
-            self.executors.append(PlannedExecutor(key, threads, order))
+            self.executors.append(self._find_executor(key, activity))
         return self.executor_numbers[key]
 
     def processor_of(self, activity: Activity) -> tuple[int, tuple[int, ...]]:
@@ -88,8 +84,8 @@ class ThreadPlacement:
         pinned member is.
         """
         key = _executor_key(self.system, activity)
-        threads, _ = self._threads_and_order(key, activity)
-        candidates = self.members[key] if threads == 1 else [activity]
+        executor = self._find_executor(key, activity)
+        candidates = self.members[key] if executor.threads == 1 or executor.is_serial else [activity]
         pins = (
             tuple(core for core in member.cores if member.host is not None and core < self._core_count(member.host))
             for member in candidates
@@ -108,19 +104,17 @@ class ThreadPlacement:
         is_crowded = not free_cores and any(not cores for cores in placements)
         return free_cores or all_cores, len(all_cores) > 1 and (has_sets or is_crowded)
 
-    def _threads_and_order(self, key: str, activity: Activity) -> tuple[int, SchedulingOrder | None]:
-        """Return an executor's number of threads and order."""
+    def _find_executor(self, key: str, activity: Activity) -> PlannedExecutor:
+        """Return the executor of an activity; where none is known, a thread of its own."""
         executor = self.system.executors.get(activity.executor)
-        if executor is not None:
-            # Where nobody wrote how many threads a container has, there is one for each member.
-            return executor.threads or len(self.members[key]), executor.order
-        threads = self.system.threads.get(activity.container or "")
-        return threads or 1, _ORDERS_BY_THREADS.get(threads)
+        if executor is None:
+            return PlannedExecutor(key, 1, "fifo")
+        threads = executor.threads or len(self.members[key])
+        return PlannedExecutor(
+            key, threads, executor.order or executor.usual_order, executor.is_serial, executor.library.serves_by_kind
+        )
 
 
 def _executor_key(system: TimingSystem, activity: Activity) -> str:
-    """Return the executor's key; without one, that of its container if its threads are known, else of the activity."""
-    if activity.executor in system.executors:
-        return activity.executor
-    is_shared = activity.container is not None and system.threads.get(activity.container) is not None
-    return f"container {activity.container}" if is_shared else f"activity {activity.id}"
+    """Return the executor's key; without one, that of the activity."""
+    return activity.executor if activity.executor in system.executors else f"activity {activity.id}"

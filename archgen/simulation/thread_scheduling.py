@@ -48,6 +48,12 @@ def feed_threads(run: SimulationRun, executor: int) -> None:
 def queue_thread(run: SimulationRun, thread: int) -> None:
     """Let a thread wait for a core."""
     threads, processors = run.threads, run.processors
+    executors, executor = run.executors, run.callbacks.executor[threads.callback[thread]]
+    if executors.is_serial[executor]:
+        if executors.computing_thread[executor] not in (-1, thread):
+            executors.held_threads[executor].append(thread)
+            return
+        executors.computing_thread[executor] = thread
     processor = threads.processor[thread]
     activity = run.callbacks.activity[threads.callback[thread]]
     run.sequence += 1
@@ -71,7 +77,20 @@ def queue_thread(run: SimulationRun, thread: int) -> None:
         order += LARGEST_KEY
     threads.urgency[thread], threads.ready_order[thread] = urgency, order
     heappush(processors.ready[processor], (urgency, order, thread))
+    if run.log is not None:
+        run.log.enter_state(run, thread, "ready")
     run.changed_processors.add(processor)
+
+
+def let_others_compute(run: SimulationRun, thread: int) -> None:
+    """Let another thread of a process compute, where one does at a time and this one has stopped."""
+    executors, executor = run.executors, run.callbacks.executor[run.threads.callback[thread]]
+    if not executors.is_serial[executor]:
+        return
+    executors.computing_thread[executor] = -1
+    held_threads = executors.held_threads[executor]
+    if held_threads:
+        queue_thread(run, held_threads.pop(int(run.draw_share() * len(held_threads))))
 
 
 def draw_urgency(run: SimulationRun, order: int, activity: int, since: int, victim: int) -> int:

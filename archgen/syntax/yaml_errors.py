@@ -181,6 +181,7 @@ def _choose_error_text(line: str, column: int, problem: ParserProblem) -> _Error
 
 
 _TAB_TEXT = _ErrorText("a tab cannot stand in the indentation", "indent with blanks")
+_ESCAPE_TEXT = _ErrorText("an unknown escape in double quotes", "write `\\\\` for a backslash, or use single quotes")
 
 
 def _explain_second_colon(line: str, column: int) -> _ErrorText:
@@ -239,18 +240,9 @@ _FIXED_TEXTS: tuple[tuple[str, _ErrorText], ...] = (
     ),
     ("unexpected end of stream", _ErrorText("this quote is never closed", "close it, or take it out", at_start=True)),
     ("unexpected document", _ErrorText("this quote is never closed", "close it, or take it out", at_start=True)),
-    (
-        "escape c",
-        _ErrorText("an unknown escape in double quotes", "write `\\\\` for a backslash, or use single quotes"),
-    ),
-    (
-        "hexdecimal",
-        _ErrorText("an unknown escape in double quotes", "write `\\\\` for a backslash, or use single quotes"),
-    ),
-    (
-        "hexadecimal",
-        _ErrorText("an unknown escape in double quotes", "write `\\\\` for a backslash, or use single quotes"),
-    ),
+    ("escape c", _ESCAPE_TEXT),
+    ("hexdecimal", _ESCAPE_TEXT),
+    ("hexadecimal", _ESCAPE_TEXT),
     (
         "scanning a block scalar",
         _ErrorText("text cannot begin with `>` or `|`: these open a block of lines", QUOTE_HELP, at_start=True),

@@ -49,6 +49,10 @@ class MappingEntry:
     key_span: Span
     value: YamlNode
 
+    def with_value(self, value: YamlNode) -> MappingEntry:
+        """Return the key, where it is written, with another value."""
+        return MappingEntry(self.key, self.key_span, value)
+
 
 @dataclass(slots=True)
 class MappingNode:
@@ -63,6 +67,10 @@ class MappingNode:
         """Return the value at a key, or None."""
         entry = self.entries.get(key)
         return entry.value if entry else None
+
+    def with_entries(self, entries: dict[str, MappingEntry]) -> MappingNode:
+        """Return the mapping, where it is written, with other entries."""
+        return MappingNode(entries, self.span, self.declares)
 
     def __iter__(self) -> Iterator[MappingEntry]:
         """Iterate over the entries (not the keys), in order."""

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
 from archgen.model.declared_timing import ActivityBehaviour, SchedulingOrder
+from archgen.model.quantity import write_share
 from archgen.timing.figures.figure_wording import describe_timing_value, format_duration
 from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
@@ -98,7 +99,8 @@ class MatchFigures:
 class RunResponse:
     """How long a run takes at most, in ns: from the event that enters a core until an activity there has ended.
 
-    `arcs` are the arcs by which a run comes to the activity: it starts at the end of the one before, on the same core.
+    `arcs` are the arcs by which a run comes to the activity: it starts at the end of the one before, on the same core, or
+    behind a link.
     """
 
     worst: TimingValue
@@ -122,6 +124,8 @@ class HostLoad:
     Cores that nobody wrote the number of are left out.
     """
     earliest_deadline_bound: TimingValue = UNKNOWN_VALUE
+    unproven: tuple[str, ...] = ()
+    """The activities that nothing proves to be done by their deadline, or before they are activated again."""
 
     @property
     def share_of_cores(self) -> TimingValue | None:
@@ -221,6 +225,8 @@ class Analysis:
     services: Mapping[str, ServiceLoad] = field(default_factory=dict)
     runs: Mapping[str, RunResponse] = field(default_factory=dict)
     """The runs that end at each activity that something on its own core fires."""
+    host_runs: Mapping[str, RunResponse] = field(default_factory=dict)
+    """The same over hosts that fire one another in turn, pinned cores and links."""
     matches: Mapping[str, MatchFigures] = field(default_factory=dict)
     """What is sure of those whose inputs are matched by time."""
     resources: Mapping[str, ResourceLoad] = field(default_factory=dict)
@@ -247,6 +253,20 @@ class ChainTerm:
 
 
 @dataclass(frozen=True, slots=True)
+class ShareDeadline:
+    """How long a share of a chain's reactions may take, in ns. Only what holds for all of them is proven: else it is open."""
+
+    share: Fraction
+    limit: Fraction
+    verdict: Literal["met", "missed", "open"]
+
+    @property
+    def name(self) -> str:
+        """Return the share as it is written: `95 %`."""
+        return write_share(self.share)
+
+
+@dataclass(frozen=True, slots=True)
 class ChainResult:
     """A chain: its safe bound (reaction time = data age), best case, the reduced figures and the verdict; in ns."""
 
@@ -259,6 +279,13 @@ class ChainResult:
     reduced_age: TimingValue
     deadline: TimingValue | None
     verdict: ChainVerdict
+    shares: tuple[ShareDeadline, ...] = ()
+    """What is asked of shares of its reactions, the smallest first."""
+
+    def find_limit(self, share: Fraction) -> Fraction | None:
+        """Return how long a share of the reactions may take at most, as is asked of it or of more of them; None for any time."""
+        always = [self.deadline.value] if self.deadline and self.deadline.value is not None else []
+        return min((*always, *(each.limit for each in self.shares if each.share >= share)), default=None)
 
     @property
     def spread(self) -> Fraction | None:

@@ -124,7 +124,8 @@ def analyse_system(system: TimingSystem, notes: tuple[Reason, ...] = (), *, judg
             for key in activity.outputs
         },
         responses=responses,
-        runs=build_run_responses(state, responses),
+        runs=build_run_responses(state, responses, state.ways_to, state.run_arcs),
+        host_runs=build_run_responses(state, responses, state.transaction_ways, state.transaction_arcs),
         hosts=find_host_loads(system, resource_list, rates.paces, rates.outputs, responses),
         links=find_link_loads(state, rates),
         topics={} if judging else find_topic_loads(system, rates.outputs),
@@ -156,7 +157,7 @@ def _add_wait_reasons(
             response,
             reasons=(*response.reasons, *explain_waits(resource_loads, system.activities[name], system.tick)),
         )
-        if system.activities[name].uses
+        if system.activities[name].suspends
         else response
         for name, response in responses.items()
     }

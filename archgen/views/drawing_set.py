@@ -1,4 +1,4 @@
-"""All drawings of an architecture, graphs and charts alike, by id."""
+"""All drawings of an architecture by id, graphs and charts alike: all at once, or each when somebody asks for it."""
 
 from __future__ import annotations
 
@@ -7,9 +7,8 @@ from typing import Literal
 
 from archgen.model.selector_evaluation import Selection
 from archgen.views import graphs
-from archgen.views.chart_shapes import Drawing
-from archgen.views.graph_shapes import Graph, GraphKind
 from archgen.views.lookup import Lookup
+from archgen.views.picture_shapes import Drawing, Graph, GraphKind
 from archgen.views.sequences.sequence_charts import make_sequence_charts
 from archgen.views.timing import chain_charts
 

@@ -11,11 +11,10 @@ from typing import Literal
 from archgen.model.selector_evaluation import Selection, SelectorEvaluator
 from archgen.views import drawing_set, graphs
 from archgen.views.changes.site_changes import SiteChanges, mark_drawing
-from archgen.views.chart_shapes import Drawing
-from archgen.views.graph_shapes import Graph
 from archgen.views.graphs import selection_graphs, timing_graphs
 from archgen.views.graphs.graph_folding import fold_graph
 from archgen.views.lookup import Lookup, make_lookup
+from archgen.views.picture_shapes import Drawing, Graph
 from archgen.views.sequences.sequence_charts import CHART_PREFIX, make_sequence_chart
 from archgen.views.timing import chain_charts
 

@@ -83,13 +83,8 @@ def join_lines(items: Iterable[Inlines]) -> Inlines:
     for index, run in enumerate(items):
         # A break belongs to the run that follows it, so each item needs at least one run of text.
         first, *other_parts = run
-        result += [_with_line_break(first) if index else first, *other_parts]
+        result += [replace(first, line_break=True) if index else first, *other_parts]
     return tuple(result)
-
-
-def _with_line_break(part: Text) -> Text:
-    """Return the run with a line break before it."""
-    return replace(part, line_break=True)
 
 
 def group_link(architecture: Architecture, group_id: str) -> Text:
@@ -229,3 +224,44 @@ def count_noun(count: int, noun: str) -> str:
     if count == 1:
         return f"1 {noun}"
     return f"{count} {noun[:-1]}ies" if noun.endswith("y") and noun[-2] not in "aeiou" else f"{count} {noun}s"
+
+
+# Marks stand around words, never inside of one: `2*3*4` and `*` alone are no emphasis.
+_MARK = re.compile(r"(?<![\w*`])(?:\*\*(?=\S)([^*`]+?)(?<=\S)\*\*|\*(?=\S)([^*`]+?)(?<=\S)\*|`([^`]+)`)(?![\w*`])")
+
+
+def render_marks(inlines: Inlines) -> Inlines:
+    """Return runs of text with marked words set in bold, in italics or as code."""
+    return tuple(run for part in inlines for run in _split_marks(part))
+
+
+def read_marks(markdown: str) -> Inlines:
+    """Return a line of Markdown as runs of text."""
+    return render_marks((share_text(markdown),))
+
+
+def strip_marks(markdown: str) -> str:
+    """Return a line of Markdown as text alone, for where nothing can be set in italics."""
+    return "".join([run.text for run in read_marks(markdown)])
+
+
+def _split_marks(part: Text) -> list[Text]:
+    if part.code or not ("*" in part.text or "`" in part.text):
+        return [part]
+    runs, end = [], 0
+    for found in _MARK.finditer(part.text):
+        strong, emphasis, code = found.groups()
+        runs.append(replace(part, text=part.text[end : found.start()]))
+        runs.append(
+            replace(
+                part,
+                text=strong or emphasis or code,
+                strong=part.strong or strong is not None,
+                emphasis=part.emphasis or emphasis is not None,
+                code=code is not None,
+                line_break=False,
+            )
+        )
+        end = found.end()
+    runs.append(replace(part, text=part.text[end:], line_break=part.line_break and not runs))
+    return [run for run in runs if run.text or run.line_break]

@@ -11,13 +11,9 @@ from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture, Chain
 from archgen.model.component import Component, Connection, Input, Output
-from archgen.model.component_nesting import (
-    find_component,
-    list_members,
-    list_surrounding,
-    list_written_connections,
-)
+from archgen.model.component_nesting import find_component, list_members, list_surrounding, list_written_connections
 from archgen.model.coordinate_frames import Frame
+from archgen.model.known_interfaces import InterfaceField
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.port_media import ROS
@@ -26,7 +22,7 @@ from archgen.model.step_connections import UseCaseSteps
 from archgen.timing.system import message_sizes
 from archgen.views.requirement_trace import RequirementTrace, trace_requirements
 from archgen.views.timing.timing_lookup import TimingLookup
-from archgen.views.type_texts import TypeTexts
+from archgen.views.type_names import TypeTexts
 
 T = TypeVar("T")
 
@@ -256,3 +252,30 @@ def group_values(pairs: Iterable[tuple[str, T]]) -> dict[str, tuple[T, ...]]:
     for key, item in pairs:
         lists_by_key[key].append(item)
     return {key: tuple(items) for key, items in lists_by_key.items()}
+
+
+def collect_messages(
+    architecture: Architecture, types: Iterable[ConceptualType], topics: Iterable[Topic]
+) -> dict[str, tuple[str, ...]]:
+    """Return the messages that these types and topics use, and those inside of them, with the anchors of who uses each."""
+    users: defaultdict[str, list[str]] = defaultdict(list)
+    for conceptual_type in types:
+        if conceptual_type.message:
+            users[conceptual_type.message].append(f"type:{conceptual_type.name}")
+    for topic in topics:
+        for message in topic.messages:
+            users[message].append(f"topic:{topic.name}")
+    # A message that another one contains is used where that one is. The list grows while it is walked.
+    pending = list(users)
+    for message in pending:
+        for part in list_fields(architecture, message):
+            if "/" in part.type and part.type not in users:
+                users[part.type] = list(users[message])
+                pending.append(part.type)
+    return {message: tuple(anchors) for message, anchors in users.items()}
+
+
+def list_fields(architecture: Architecture, message: str) -> tuple[InterfaceField, ...]:
+    """Return the fields of all parts of a message; none where its definition is not at hand."""
+    definition = architecture.interfaces.definitions.get(message)
+    return tuple(each for part in definition.parts for each in part) if definition else ()

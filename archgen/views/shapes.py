@@ -1,4 +1,4 @@
-"""The plain shapes that emitters draw: Table, Outline and Record here, Graph in `graph_shapes`, Chart in `chart_shapes`.
+"""The plain shapes that emitters draw: Table, Outline and Record here, pictures in `picture_shapes`.
 
 Views make them from the model and its analyses. Emitters know nothing else, so a new format costs one template.
 Everything here is plain data (tuples, strings, numbers), and `shape_to_plain` turns it into dicts and lists. Class and

@@ -86,10 +86,11 @@ def _format_stored_inputs(timing: Timing) -> list[str]:
 
 
 def _format_storing(input_timing: InputTiming) -> str:
-    if input_timing.stored_at_once:
-        return "at once"
     is_range = input_timing.bcet and input_timing.wcet
-    return f"{f'{input_timing.bcet} to ' if is_range else ''}{input_timing.wcet or '?'}"
+    time = f"{f'{input_timing.bcet} to ' if is_range else ''}{input_timing.wcet or '?'}"
+    is_plain = input_timing.memory and not input_timing.wcet
+    said = ("at once",) if input_timing.stored_at_once else () if is_plain else (time,)
+    return ", ".join((*said, *(("the last of each source",) if input_timing.memory else ())))
 
 
 def _format_uses(timing: Timing) -> list[str]:

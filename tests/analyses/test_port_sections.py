@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from archgen.analyses.port_sections import wrong_section
+from archgen.analyses.topic_sources import wrong_section
 
 Found = Callable[..., list[str]]
 

@@ -7,9 +7,7 @@ from typing import Literal
 
 import pytest
 
-from archgen.analyses import topic_messages
-from archgen.analyses.ros_messages import RULES, unchecked_message, unknown_message
-from archgen.analyses.topic_messages import topic_type_conflict
+from archgen.analyses.ros_facts import RULES, topic_type_conflict, unchecked_message, unknown_message
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.findings.rule_pages import read_rule_page
@@ -276,8 +274,10 @@ def test_a_topic_with_one_message_is_no_conflict() -> None:
 
 
 def test_rules_have_pages() -> None:
-    rules = [Rule.from_function(*rule) for rule in (*RULES, *topic_messages.RULES)]
+    rules = [Rule.from_function(*rule) for rule in RULES]
     assert {rule.name: rule.severity for rule in rules} == {
+        "unknown-distro": Severity.ERROR,
+        "other-ros-generation": Severity.WARNING,
         "unknown-message": Severity.ERROR,
         "unchecked-message": Severity.NOTE,
         "action-as-message": Severity.WARNING,

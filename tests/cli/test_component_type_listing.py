@@ -8,7 +8,7 @@ from pathlib import Path
 
 from archgen.cli import component_type_listing
 from archgen.model.known_interfaces import KNOWN_DISTROS
-from archgen.project.shipped_library import load_shipped_component_types
+from archgen.project.library_reading import load_shipped_component_types
 from tests.cli.conftest import Run
 
 HEAD = "archgen: 1\nproject: {id: robot, title: Robot}\nros: {distro: jazzy}\n"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -64,8 +65,8 @@ def test_a_chain_in_json(run: Run, project: Path) -> None:
     assert chain["bound"]["value"] == 50 + 5 + 0 + 20 + 20 + 2
     assert (chain["deadline"], chain["slack"], chain["verdict"]) == (90, -7, "missed")
     assert chain["witness"]["longest"] > 90
-    assert chain["remedy"]["set"] == ["scan.timing.period=43ms"]
-    assert chain["remedy"]["bound"]["value"] == 90
+    assert chain["remedy"] == {"set": [], "bound": None, "tried": {}, "cut": False}
+    assert chain["floor"] == 97
     assert [term["sampling"]["value"] for term in chain["terms"]] == [50, 0, 20]
     assert data["chains"]["ends"]["bound"] == chain["bound"]
     assert (data["elements"]["plan"]["behaviour"], data["elements"]["plan"]["rate"]["value"]) == ("event", 20)
@@ -77,7 +78,10 @@ def test_the_summary_names_the_chain_that_is_late(run: Run, project: Path) -> No
     assert "  avoid  97 ms  deadline 90 ms  MISSED  7 ms above it  seen in `archgen simulate --seed" in ran.out
     assert "7 ms longer than its deadline of 90 ms allows; a simulated run was late." in " ".join(ran.out.split())
     assert "nothing shows that it ever does" not in " ".join(ran.out.split())
-    assert "  avoid  --set scan.timing.period=43ms  then at most 90 ms\n" in ran.out
+    assert (
+        "  avoid  with nobody in its way it takes 97 ms: nothing but other rates, triggers or execution times can prove it "
+        "(`archgen timing --budget avoid`)\n"
+    ) in ran.out
     assert "  ends   97 ms  no deadline" in ran.out
 
 
@@ -90,10 +94,55 @@ def test_the_run_that_shows_the_chain_late_can_be_seen_again(run: Run, project: 
     assert run("timing", project, "--chain", "avoid").out.count(f"`archgen {command}`: {longest} ms") == 1
 
 
-def test_what_would_prove_the_chain_does(run: Run, project: Path) -> None:
-    (change,) = set(re.findall(r"--set ([^\s`]+)", run("timing", project).out))
-    assert "(missed > met)" not in change
-    assert re.search(r"avoid +97 ms.* 90 ms.*not proven.*met", run("timing", project, "--set", change).out)
+ROBOT = Path(__file__).parents[1] / "timing" / "search" / "nav_robot.yaml"
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Path:
+    return Path(shutil.copy(ROBOT, tmp_path / "robot.yaml"))
+
+
+def test_a_robot_that_is_late_is_proven_in_three_commands(run: Run, robot: Path) -> None:
+    shown = run("timing", robot).out
+    assert (
+        "scan_and_stop  with nobody in its way it takes 424.8 ms: nothing but other rates, triggers or execution"
+        in shown
+    )
+    assert "costmap fired by one message in 2 of its input scan (`archgen timing --propose`)" in shown
+    proposed = run("timing", robot, "--propose")
+    assert "  All 3 chains are proven.\n" in proposed.out
+    assert "--- a/robot.yaml\n+++ b/robot.yaml\n@@ " in proposed.out
+    assert robot.read_bytes() == ROBOT.read_bytes()
+    assert run("timing", robot, "--propose", "--apply").out.endswith("robot.yaml (as proposed)\n")
+    assert "MISSED" not in run("timing", robot).out
+    assert "not proven" not in run("timing", robot).out
+    again = run("timing", robot, "--propose", "--apply")
+    assert again.out == "Each chain with a deadline is met, or lacks figures: there is nothing to do.\n"
+
+
+def test_a_proposal_in_json(run: Run, robot: Path) -> None:
+    found = _json(run, robot, "--propose")["propose"]
+    best = found["tried"][found["best"]]
+    assert (found["floors"], best["late"], best["lateness"]) == ({"scan_and_stop": 424.8}, [], 0)
+    assert best["bounds"]["scan_and_stop"] == 338.85
+    assert found["tried"][found["kept_triggers"]]["late"] == ["scan_and_stop"]
+    assert found["patch"].startswith("--- a/robot.yaml\n")
+    options = [word for change in best["set"] for word in ("--set", change)]
+    assert re.search(r"scan_and_stop +1866\.95 ms -> 338\.85 ms", run("timing", robot, *options).out)
+    kept = _json(run, robot, "--propose", "settings")["propose"]
+    assert not any("trigger" in change for tried in kept["tried"] for change in tried["set"])
+
+
+def test_what_has_no_place_is_to_be_written_by_hand(run: Run, robot: Path) -> None:
+    text = robot.read_text(encoding="utf-8").replace(
+        "    container: navbox\n    timing: {rate: 5", "    container: &box navbox\n    timing: {rate: 5"
+    )
+    robot.write_text(text.replace("    container: navbox\n", "    container: *box\n"), encoding="utf-8")
+    ran = run("timing", robot, "--propose", "--apply")
+    assert ran.status == 2
+    assert "no patch: `container` is not written as a plain value on one line" in ran.err
+    assert "to be written by hand: --set planner.container=none --set" in ran.err
+    assert _json(run, robot, "--propose")["propose"]["refused"].startswith("`container` is not written")
 
 
 def test_check_does_not_simulate(run: Run, project: Path) -> None:
@@ -200,6 +249,12 @@ def test_measured_names_outliers(run: Run, project: Path, tmp_path: Path) -> Non
     ("words", "said"),
     [
         (("--from", "scan"), "--from and --to belong together"),
+        (("--propose", "--chain", "avoid"), "are questions of their own: ask one at a time"),
+        (
+            ("--propose", "--set", "plan.timing.wcet=1ms"),
+            "--propose is about what the files say, and goes with no --set",
+        ),
+        (("--apply",), "--apply writes what it proposes"),
         (("--chain", "avoidd"), "there is no chain `avoidd`; did you mean `avoid`?"),
         (("--why", "plam"), "nothing is called `plam`; did you mean `plan`?"),
         (("--set", "plan.timing.wcet=10"), "`wcet` takes a duration"),

@@ -6,9 +6,8 @@ from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import replace
 
-from archgen.compare.compared_elements import ComparedElement, ElementKey
 from archgen.compare.connection_maps import ConnectionMap
-from archgen.compare.version_pair import VersionPair
+from archgen.compare.version_pair import ComparedElement, ElementKey, VersionPair
 
 
 def element(

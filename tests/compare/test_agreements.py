@@ -8,8 +8,7 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline
-from archgen.compare.agreements import AgreementJudge, names_change
-from archgen.compare.change_hashes import hash_change
+from archgen.compare.agreements import AgreementJudge, hash_change, names_change
 from archgen.compare.comparison import Change, PartnerBreak
 from archgen.compare.connection_maps import ConnectionMap
 from archgen.compare.matched_ids import MatchedIds

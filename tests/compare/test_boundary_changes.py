@@ -16,7 +16,7 @@ from archgen.compare.boundary_changes import _follow_topics as follow_topics
 from archgen.compare.boundary_changes import _InterfaceVersion as InterfaceVersion
 from archgen.compare.boundary_changes import _merge_pairs as merge_pairs
 from archgen.compare.boundary_changes import find_boundary_changes
-from archgen.compare.figure_changes import BoundaryChange, ComparedFigure, FigureKey, WireNames
+from archgen.compare.comparison import BoundaryChange, ComparedFigure, FigureKey, WireNames
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.timing_pair import TimingPair
 from archgen.model.node import Qos

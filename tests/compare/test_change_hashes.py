@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from archgen.compare.change_hashes import hash_change, hash_fallen_limit, hash_values
+from archgen.compare.agreements import hash_change, hash_fallen_limit, hash_values
 from archgen.compare.comparison import Comparison
 from tests.compare.conftest import Compared
 

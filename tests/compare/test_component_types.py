@@ -14,8 +14,7 @@ from archgen.compare.edits import list_edits
 from archgen.compare.kinds.component_type_kind import COMPONENT_TYPE
 from archgen.compare.kinds.key_spec import ReadContext
 from archgen.compare.matched_ids import MatchedIds
-from archgen.compare.type_edits import find_type_edits
-from archgen.compare.type_origins import TypeKey, trace_origins
+from archgen.compare.type_edits import TypeKey, find_type_edits, trace_origins
 from archgen.emit.data.comparison_json import write_comparison_json
 from archgen.views.changes.reading_errors import ReadingErrors
 from tests.compare.conftest import Compared

@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 
 from archgen.compare import Change, PartnerBreak
-from archgen.compare.compared_elements import ComparedElement
 from archgen.compare.concerned_owners import find_concerned_owners
+from archgen.compare.version_pair import ComparedElement
 from tests.compare.elements import by_key, element, pair
 
 WORLD = by_key(

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.compare.compared_elements import ComparedElement
-from archgen.compare.consequent_keys import is_consequence
+from archgen.compare.changed_keys import is_consequence
 from archgen.compare.normal_values import ElementTitle
+from archgen.compare.version_pair import ComparedElement
 from tests.compare.elements import by_key, element, with_values
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.compare.copied_components import find_copies
 from archgen.compare.element_relations import ElementRelations
 from archgen.compare.matched_ids import MatchedIds
+from archgen.compare.reshaped_components import find_copies
 from tests.compare.conftest import Compared
 
 HEAD = "groups:\n  g:\n    components:\n"

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from archgen.compare.change_listing import DifferenceFinder, change_order
 from archgen.compare.comparison import Change
-from archgen.compare.difference_finder import DifferenceFinder, change_order
 from archgen.compare.matched_ids import MatchedIds
 from tests.compare.conftest import Compared, Told
 from tests.compare.elements import pair, some

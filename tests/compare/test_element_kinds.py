@@ -28,7 +28,7 @@ from archgen.model.declared_timing import Timing
 from archgen.views.elements.element_card import make_card
 from archgen.views.elements.element_names import kinds_by_id
 from archgen.views.lookup import Lookup, make_lookup
-from archgen.views.records import element_record
+from archgen.views.records import resolved_record
 from archgen.views.records.record_sources import SOURCES
 from archgen.views.records.resolved_record import make_record
 from archgen.views.search import make_search_entries
@@ -367,7 +367,7 @@ def test_every_source_of_the_record_is_needed(lookup: Lookup, monkeypatch: pytes
     needless = []
     for place in list(SOURCES):
         with monkeypatch.context() as without, contextlib.suppress(AttributeError, TypeError):
-            without.setattr(element_record, "SOURCES", {each: SOURCES[each] for each in SOURCES if each != place})
+            without.setattr(resolved_record, "SOURCES", {each: SOURCES[each] for each in SOURCES if each != place})
             if [make_record(each) for each in lookups] == whole:
                 needless.append(place)
     assert needless == []

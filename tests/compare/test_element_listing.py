@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline
-from archgen.compare.compared_elements import ComparedElement, ElementKey
 from archgen.compare.element_listing import list_elements
 from archgen.compare.match_elements import match_elements
 from archgen.compare.normal_values import ElementTitle, to_plain_data
+from archgen.compare.version_pair import ComparedElement, ElementKey
 from archgen.products.comparison_input import make_comparison_input
 
 Elements = dict[ElementKey, ComparedElement]

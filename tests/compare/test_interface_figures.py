@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import pytest
 
-from archgen.compare.figure_changes import FigureChange, FigureKey, TravelPath, WireNames
+from archgen.compare.comparison import FigureChange, FigureKey, TravelPath, WireNames
 from archgen.compare.interface_figures import FigureReader, concerns_nobody, is_close_value, is_same_figure, is_smaller
 from archgen.diagnostics.source_span import Span
 from archgen.model.node import Qos

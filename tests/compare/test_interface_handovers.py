@@ -8,8 +8,8 @@ from typing import cast
 
 import pytest
 
-from archgen.compare.figure_changes import BoundaryChange, BoundaryKind, FigureChange, FigureKey
-from archgen.compare.interface_handovers import join_handovers
+from archgen.compare.boundary_changes import join_handovers
+from archgen.compare.comparison import BoundaryChange, BoundaryKind, FigureChange, FigureKey
 from archgen.timing.figures.timing_values import TimingValue
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.compare.meaning_sentences import is_read_by_others
+from archgen.compare.element_sentences import is_read_by_others
 from tests.compare.conftest import Compared, Told
 
 ROBOT = """\
@@ -66,6 +66,11 @@ requirements: {R-1: Stops}
             "deadline: 200 ms, ",
             "",
             "chain `see`: deadline no longer given (it was `200 ms`); nothing is promised to `R-1` any more",
+        ),
+        (
+            "deadline: 200 ms",
+            "deadline: {always: 200 ms, 95 %: 100 ms}",
+            "chain `see`: deadline 95 % set to `100 ms`",
         ),
         ("deadline: 200 ms", "deadline: 100 ms", "chain `see` now must end within `100 ms` instead of `200 ms`"),
         (

@@ -12,8 +12,8 @@ from archgen.compare.change_sentences import describe_change, describe_port_chan
 from archgen.compare.connection_maps import RewiredInput, find_rewired_inputs
 from archgen.compare.connection_sentences import describe_connection
 from archgen.compare.element_sentences import describe_element_change
+from archgen.compare.key_phrases import limit_effects, shown_id, tick_names
 from archgen.compare.normal_values import ElementTitle
-from archgen.compare.sentence_words import limit_effects, shown_id, tick_names
 from archgen.compare.version_pair import VersionPair
 from tests.compare.elements import by_key, element, pair, some, with_values
 

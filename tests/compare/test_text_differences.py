@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.compare.text_differences import cut_text, describe_text_difference
+from archgen.compare.text_meaning import cut_text, describe_text_difference
 
 LONG = "one two three four five six seven eight nine ten"
 

@@ -16,7 +16,7 @@ from archgen.compare.change_spans import find_change_span, find_old_file
 from archgen.compare.comparison import ChainChange
 from archgen.views.changes.boundary_lines import write_boundary_lines
 from archgen.views.changes.figure_lines import write_load_lines
-from archgen.views.changes.partner_names import name_partners
+from archgen.views.changes.named_elements import name_partners
 from tests.compare.conftest import Compared
 from tests.timing.printed import show_ms
 

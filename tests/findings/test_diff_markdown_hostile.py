@@ -10,8 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from archgen.compare import Change, Comparison
-from archgen.compare.comparison import PartnerBreak
-from archgen.compare.figure_changes import BoundaryChange, FigureChange, FigureKey, LoadChange, TravelPath
+from archgen.compare.comparison import BoundaryChange, FigureChange, FigureKey, LoadChange, PartnerBreak, TravelPath
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.emit.markdown import comparison_markdown

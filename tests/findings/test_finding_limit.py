@@ -6,7 +6,7 @@ from archgen import pipeline
 from archgen.analyses import MAX_LOOKED_FOR
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import Span
-from archgen.findings.finding_limit import MAX_FINDINGS_PER_RULE, limit_findings
+from archgen.findings.instance_findings import MAX_FINDINGS_PER_RULE, limit_findings
 
 
 def _findings(rule: str, count: int) -> list[Diagnostic]:

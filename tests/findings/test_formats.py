@@ -9,7 +9,7 @@ import jsonschema_rs
 from archgen import resources
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.emit.data import findings_json, github_commands
+from archgen.emit.data import findings_data
 
 _FINDING = Diagnostic(
     "unknown-reference",
@@ -24,7 +24,7 @@ _FINDING = Diagnostic(
 
 def test_json_says_everything_by_its_schema() -> None:
     nowhere = Diagnostic("missing-detail", "m", NO_SPAN, Severity.NOTE, (Label(NO_SPAN, "left out"),))
-    document = json.loads(findings_json.format_findings_json([_FINDING, nowhere]))
+    document = json.loads(findings_data.format_findings_json([_FINDING, nowhere]))
     schema = json.loads(resources.resource_path("schemas", "diagnostics.schema.json").read_text(encoding="utf-8"))
     jsonschema_rs.meta.validate(schema)
     jsonschema_rs.validate(schema, document)
@@ -57,7 +57,7 @@ def test_json_says_everything_by_its_schema() -> None:
 
 
 def test_workflow_commands_escape_what_they_carry() -> None:
-    assert list(github_commands.format_github_commands([_FINDING], folder="robots/one/")) == [
+    assert list(findings_data.format_github_commands([_FINDING], folder="robots/one/")) == [
         (
             "::error file=robots/one/groups/a%2C b.yaml,line=41,endLine=41,col=11,endColumn=36,title=unknown-reference"
             "::no output named `x`: 100 %25,␊said ::error::"
@@ -71,7 +71,7 @@ def test_columns_stand_only_in_spans_of_one_line() -> None:
         Diagnostic("r", "m", Span("a.yaml", 1, 4, 3, 2), Severity.NOTE),
         Diagnostic("r", "m", NO_SPAN, Severity.WARNING),
     ]
-    assert list(github_commands.format_github_commands(findings)) == [
+    assert list(findings_data.format_github_commands(findings)) == [
         "::notice file=a.yaml,line=1,endLine=3,title=r::m",
         "::warning title=r::m",
     ]

@@ -11,8 +11,7 @@ from click.testing import CliRunner
 
 from archgen.cli import main
 from archgen.forge import ForgeError, post_comment
-from archgen.forge.forge_api import ForgeApi
-from archgen.forge.time_limit import run_within
+from archgen.forge.forge_api import ForgeApi, run_within
 from tests.forge.conftest import Forge, github, gitlab
 
 

@@ -15,7 +15,7 @@ from click.testing import CliRunner
 
 from archgen.cli import main
 from archgen.forge import ForgeError
-from archgen.forge.open_requests import OpenRequest, find_target_branch, list_open_requests
+from archgen.forge.pull_request import OpenRequest, find_target_branch, list_open_requests
 from archgen.forge.request_comments import (
     RequestComment,
     format_request_comments,

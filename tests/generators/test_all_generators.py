@@ -13,7 +13,7 @@ import yaml
 
 from archgen.emit.backend_manifests import find_backends
 from archgen.emit.file_tree import OutputError
-from archgen.emit.workspace.generated_file import GeneratedFile, find_path_problems
+from archgen.emit.workspace.disk_files import GeneratedFile, find_path_problems
 from archgen.pipeline import CheckedProject, check_project
 from archgen.products.output_options import OutputOptions
 from archgen.products.workspace_product import write_workspace

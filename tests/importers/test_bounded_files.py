@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from archgen.importers import bounded_files
-from archgen.importers.bounded_files import read_archive_members, read_bounded
+from archgen.importers import foreign_files
+from archgen.importers.foreign_files import read_archive_members, read_bounded
 from archgen.importers.foreign_import import ForeignFileError
 
 
@@ -34,7 +34,7 @@ def test_members_of_an_archive_are_read_by_their_ending(tmp_path: Path) -> None:
 
 
 def test_a_bomb_stops_at_the_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(bounded_files, "MAX_MODEL_BYTES", 1000)
+    monkeypatch.setattr(foreign_files, "MAX_MODEL_BYTES", 1000)
     with zipfile.ZipFile(tmp_path / "bomb.zip", "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("a.xmi", b"0" * 600)
         archive.writestr("b.xmi", b"0" * 600)

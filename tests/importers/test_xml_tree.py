@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.importers import xml_tree
+from archgen.importers import foreign_files
+from archgen.importers.foreign_files import MAX_DEPTH, parse_xml
 from archgen.importers.foreign_import import ForeignFileError
-from archgen.importers.xml_tree import MAX_DEPTH, parse_xml
 
 MODEL = b"""<?xml version="1.0" encoding="UTF-8"?>
 <xmi:XMI xmlns:xmi="http://www.omg.org/spec/XMI/20131001" xmlns="urn:none">
@@ -54,7 +54,7 @@ def test_what_cannot_be_read_is_told_with_its_place(data: bytes, message: str, p
 
 
 def test_a_file_of_too_many_elements_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(xml_tree, "MAX_ELEMENTS", 3)
+    monkeypatch.setattr(foreign_files, "MAX_ELEMENTS", 3)
     assert parse_xml("model.xmi", b"<a><b/><b/></a>").tag == "a"
     with pytest.raises(ForeignFileError, match="it has more than 3 elements"):
         parse_xml("model.xmi", b"<a><b/><b/><b/></a>")

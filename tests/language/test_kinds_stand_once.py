@@ -26,7 +26,7 @@ REASONS = {
     "views/elements/element_names.py": "the order in which an id that several kinds share is found, and what is named otherwise",
     "views/explorer/explorer_map.py": "tables of the explorer",
     "views/explorer/map_shapes.py": "tables of the explorer",
-    "views/graph_shapes.py": "kinds of pictures, some of which are called like kinds of elements",
+    "views/picture_shapes.py": "kinds of pictures, some of which are called like kinds of elements",
     "views/offered_names.py": "sections of which something else than each title is offered",
     "views/pages/report_outline.py": "chapters, some of which are called like sections",
     "views/records/record_sources.py": "what the record takes from elsewhere than from a field, by part",

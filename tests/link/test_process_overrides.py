@@ -7,7 +7,7 @@ import pytest
 from archgen.link.process_overrides import OverrideError
 from archgen.link.timing_overrides import apply_overrides
 from archgen.model.architecture import Architecture
-from archgen.model.declared_timing import Timing
+from archgen.model.declared_timing import Timing, Trigger
 from tests.timing.random_systems import architecture
 
 TEXT = """
@@ -63,6 +63,30 @@ def test_a_node_or_a_container_moves_to_another_host() -> None:
         with pytest.raises(OverrideError) as caught:
             moved(override)
         assert str(caught.value).startswith(words)
+
+
+def test_a_node_leaves_its_container_and_stays_on_its_host() -> None:
+    alone = changed("eye.container=none", "eye.threads=2").nodes["eye"]
+    assert (alone.container, alone.host, alone.threads) == (None, "pc", 2)
+    joined = changed("mind.container=box").nodes["mind"]
+    assert (joined.container, joined.host) == ("box", "pc")
+    with pytest.raises(OverrideError) as caught:
+        changed("mind.container=boxx")
+    assert str(caught.value) == (
+        "`container` takes a container, or `none` for a process of its own; did you mean `box`?, not `boxx`"
+    )
+
+
+def test_inputs_that_fire_an_element_take_the_place_of_its_clock() -> None:
+    text = TEXT.replace("timing: {core: 1,", "timing: {rate: 5 Hz, behaviour: periodic, core: 1,")
+    for words in ("[image]", "[mind.image]", "[g.mind.image]"):
+        (timing,) = apply_overrides(architecture(text), (f"mind.timing.trigger={words}",)).nodes["mind"].timing.values()
+        assert timing.trigger == Trigger("any", ("g.mind.image",))
+        assert (timing.rate, timing.period, timing.behaviour) == (None, None, "event")
+    for words in ("[told]", "[mine.image]", "[image, told]"):
+        with pytest.raises(OverrideError) as caught:
+            apply_overrides(architecture(text), (f"mind.timing.trigger={words}",))
+        assert str(caught.value).startswith(f"`mind` has no input `{words.strip('[]')}`")
 
 
 def test_orders_are_those_of_processes_hosts_cores_and_resources() -> None:

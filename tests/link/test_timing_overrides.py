@@ -97,7 +97,7 @@ def test_what_makes_no_sense_is_refused(architecture: Architecture, text: str, s
         ),
         ("cam.timing.wcet=3", "`wcet` takes a duration such as 120 ms (units: ns us ms s min h), not `3`"),
         ("cam.timing.rate=3 ms", "`rate` takes a frequency such as 10 Hz (units: Hz kHz), not `3 ms`"),
-        ("cam.timing.trigger=some", "`trigger` takes any or all, not `some`"),
+        ("cam.timing.trigger=some", "`trigger` takes any, all, or inputs, such as [scan], not `some`"),
         ("cam.timing.every=-1", "`every` takes a whole number, not `-1`"),
         ("cam.timing.every=\u0663", "`every` takes a whole number, not `\u0663`"),
         ("cam.timing.every=1234567890", "`every` takes a whole number, not `1234567890`; that has too many digits"),

@@ -7,7 +7,7 @@ from pathlib import Path
 import yaml
 
 from archgen.passes.flat_references import FlatFrames
-from archgen.passes.flat_steps import FlatSteps
+from archgen.passes.flat_sources import FlatSteps
 from archgen.passes.linked_tree import LinkedTree
 from archgen.pipeline import CheckedProject, transform_project
 from archgen.syntax.yaml_tree import node_to_data

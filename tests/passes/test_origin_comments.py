@@ -11,7 +11,7 @@ from archgen.passes.patterns.pattern_registry import find_known_passes
 from archgen.pipeline import check_project, transform_project
 from archgen.views.elements.element_card import make_card
 from archgen.views.lookup import make_lookup
-from archgen.views.pages.page_places import place_pages
+from archgen.views.pages.page_parts import place_pages
 from archgen.views.shapes import Page, Section
 from tests.judged_projects import judge_shipped
 from tests.passes.same_meaning import EXAMPLES, pack, write_project

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from archgen.products.break_findings import find_breaks
 from archgen.products.compared_versions import compare_named_versions, read_versions
+from archgen.products.merge_breaks import find_breaks
 from tests.cli.conftest import Run, run  # noqa: F401 - the fixture
 from tests.cli.test_signed_agreements import ROBOT
 from tests.repositories import git, repository

@@ -14,7 +14,7 @@ from archgen import resources
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.pipeline import index_all_rules
-from archgen.products import baseline_entries
+from archgen.products import check_findings
 from archgen.project import baseline_reading as reading
 from tests.findings.hostile_findings import HOSTILE, hostile_findings
 
@@ -31,10 +31,10 @@ _BROKEN = _finding("syntax-error", None, "this `[` is not closed")
 def _divide(now: list[Diagnostic], then: list[Diagnostic], folder: Path) -> tuple[list[int], int, list[str]]:
     """Give the lines of what is new, how much is known, what is cured, by a baseline that was written and read again."""
     file = folder / "b.yaml"
-    file.write_text(baseline_entries.format_baseline(then, index_all_rules()), encoding="utf-8")
+    file.write_text(check_findings.format_baseline(then, index_all_rules()), encoding="utf-8")
     _, known, problems = reading.read_baseline(file, "b.yaml", index_all_rules())
     assert problems == ()
-    new, old, cured = baseline_entries.divide_by_baseline(now, known, index_all_rules())
+    new, old, cured = check_findings.divide_by_baseline(now, known, index_all_rules())
     return (
         [finding.span.line for finding in new],
         len(old),
@@ -43,7 +43,7 @@ def _divide(now: list[Diagnostic], then: list[Diagnostic], folder: Path) -> tupl
 
 
 def test_it_is_sorted_and_says_no_more_than_it_must() -> None:
-    text = baseline_entries.format_baseline([_READ, _FED, replace(_READ, span=_FED.span), _BROKEN], index_all_rules())
+    text = check_findings.format_baseline([_READ, _FED, replace(_READ, span=_FED.span), _BROKEN], index_all_rules())
     assert (
         text.partition("archgen_baseline")[2]
         == """\
@@ -64,7 +64,7 @@ def test_it_follows_its_schema() -> None:
     schema = json.loads(resources.resource_path("schemas", "baseline.schema.json").read_text(encoding="utf-8"))
     jsonschema_rs.meta.validate(schema)
     for findings in ([], [_READ, _READ, _FED, replace(_FED, element=None)]):
-        jsonschema_rs.validate(schema, yaml.safe_load(baseline_entries.format_baseline(findings, index_all_rules())))
+        jsonschema_rs.validate(schema, yaml.safe_load(check_findings.format_baseline(findings, index_all_rules())))
     wrong = {"archgen_baseline": 1, "findings": [{"rule": "unread-output", "message": "m", "line": 3}]}
     assert not jsonschema_rs.is_valid(schema, wrong)
 
@@ -92,7 +92,7 @@ def test_entries_that_a_merge_doubled_count_together(tmp_path: Path) -> None:
     entry = "  - {rule: unread-output, element: g.c, message: nobody reads `x`}\n"
     file.write_text(f"archgen_baseline: 1\nfindings:\n{entry}{entry}", encoding="utf-8")
     _, known, _ = reading.read_baseline(file, "b.yaml", index_all_rules())
-    new, old, cured = baseline_entries.divide_by_baseline([_READ, _READ, _READ], known, index_all_rules())
+    new, old, cured = check_findings.divide_by_baseline([_READ, _READ, _READ], known, index_all_rules())
     assert (len(new), len(old), cured) == (1, 2, ())
 
 

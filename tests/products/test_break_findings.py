@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from archgen.pipeline import check_project
-from archgen.products.break_findings import find_breaks
 from archgen.products.compared_versions import ProjectVersion, compare_named_versions
+from archgen.products.merge_breaks import find_breaks
 
 FILES = {
     "archgen.yaml": """\

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from archgen.emit import file_tree
-from archgen.products import build_stamp
+from archgen.products import full_build
 
-KEY = build_stamp.make_stamp_key(["a"])
+KEY = full_build.make_stamp_key(["a"])
 
 
 def _photo(path: str) -> bytes | None:
@@ -25,13 +25,13 @@ def built(tmp_path: Path) -> Path:
     file_tree.write_tree(file_tree.make_file_tree([("index.html", b"page")]), target / "site")
     for name in ("report.docx", "site"):
         asked_files = {"photo.png": b"photo", "gone": None}
-        build_stamp.store_stamp(tmp_path / "cache", f"{KEY}-{name}", target / name, asked_files)
+        full_build.store_stamp(tmp_path / "cache", f"{KEY}-{name}", target / name, asked_files)
     return target
 
 
 def _fresh_products(folder: Path | None, target: Path, read_file: Callable[[str], bytes | None]) -> tuple[str, ...]:
     names = ("report.docx", "site")
-    return tuple(name for name in names if build_stamp.is_fresh(folder, f"{KEY}-{name}", target / name, read_file))
+    return tuple(name for name in names if full_build.is_fresh(folder, f"{KEY}-{name}", target / name, read_file))
 
 
 def test_a_build_that_nobody_touched_is_fresh(built: Path) -> None:
@@ -73,14 +73,14 @@ def test_a_picture_that_changed_came_or_went_is_a_change(built: Path, read_file:
 
 
 def test_other_inputs_and_another_program_have_another_name(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert build_stamp.make_stamp_key(["a"]) == KEY
-    assert build_stamp.make_stamp_key(["b"]) != KEY
-    assert build_stamp.make_stamp_key(["a", "b"]) != build_stamp.make_stamp_key(["b", "a"])
-    monkeypatch.setattr(build_stamp, "stamp_program", lambda: "another")
-    assert build_stamp.make_stamp_key(["a"]) != KEY
+    assert full_build.make_stamp_key(["a"]) == KEY
+    assert full_build.make_stamp_key(["b"]) != KEY
+    assert full_build.make_stamp_key(["a", "b"]) != full_build.make_stamp_key(["b", "a"])
+    monkeypatch.setattr(full_build, "stamp_program", lambda: "another")
+    assert full_build.make_stamp_key(["a"]) != KEY
 
 
 def test_without_a_folder_or_with_one_that_cannot_be_nothing_is_kept(built: Path, tmp_path: Path) -> None:
     for folder in (None, tmp_path / "out" / "report.docx"):
-        build_stamp.store_stamp(folder, f"{KEY}-site", built / "site", {})
+        full_build.store_stamp(folder, f"{KEY}-site", built / "site", {})
         assert _fresh_products(folder, built, _photo) == ()

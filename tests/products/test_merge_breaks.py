@@ -10,8 +10,7 @@ import pytest
 
 from archgen import resources
 from archgen.merge.branch_merge import BranchMerge, preview_merges
-from archgen.merge.branch_merge_json import format_merges_json
-from archgen.merge.merge_sentences import describe_conflict, describe_merge
+from archgen.merge.merge_sentences import describe_conflict, describe_merge, format_merges_json
 from archgen.products.merge_breaks import find_joint_breaks
 from tests import repositories
 

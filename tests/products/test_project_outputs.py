@@ -12,10 +12,10 @@ from archgen.emit.file_tree import OutputError
 from archgen.pipeline import CheckedProject, check_project
 from archgen.products import full_build, product_inputs, product_writing, project_outputs, workspace_product
 from archgen.products.output_options import OutputOptions
-from archgen.products.picture_drawing import DrawnPictures
 from archgen.products.product_table import PRODUCTS
+from archgen.products.product_writing import DrawnPictures
 from archgen.views import drawing_set
-from archgen.views.chart_shapes import Drawing
+from archgen.views.picture_shapes import Drawing
 
 
 @pytest.fixture

@@ -8,8 +8,8 @@ from pathlib import Path
 from archgen import pipeline
 from archgen.compare import Comparison
 from archgen.emit.data.comparison_json import change_record
-from archgen.products.break_findings import find_breaks
 from archgen.products.compared_versions import ProjectVersion, compare_named_versions
+from archgen.products.merge_breaks import find_breaks
 
 ROBOT = """\
 archgen: 1

@@ -11,7 +11,7 @@ from archgen import pipeline
 from archgen.link import mapping_values
 from archgen.model.architecture import Architecture
 from archgen.model.known_interfaces import KNOWN_DISTROS
-from archgen.project.shipped_library import load_shipped_component_types
+from archgen.project.library_reading import load_shipped_component_types
 from archgen.syntax.yaml_tree import MappingNode
 
 NAMELESS = {

@@ -15,8 +15,8 @@ from archgen.link import mapping_values
 from archgen.link.shipped_interfaces import load_shipped_interfaces
 from archgen.model.known_interfaces import KNOWN_DISTROS
 from archgen.model.message_types import full_message_name
-from archgen.project import shipped_library
-from archgen.project.shipped_library import load_shipped_component_types, read_shipped_document
+from archgen.project import library_reading
+from archgen.project.library_reading import load_shipped_component_types, read_shipped_document
 from archgen.syntax.yaml_tree import MappingNode, SequenceNode, YamlNode
 from tests.repositories import repository
 from tests.running import ROOT
@@ -103,13 +103,13 @@ def test_each_type_says_what_it_is_and_where_what_it_sends_goes(distro: str) -> 
 
 
 def test_the_table_of_distributions_names_what_there_is() -> None:
-    table = shipped_library.read_distribution_table()
+    table = library_reading.read_distribution_table()
     files = {path.name for path in resources.resource_path("ros_library").iterdir()}
     assert files == {*table.files, "distributions.yaml", "sources"}
     packages = {
         mapping_values.get_text(mapping_values.get_mapping(mapping_values.get_body(entry), "node"), "package")
         for file in table.files
-        for entry in shipped_library.parse_shipped_file(file)
+        for entry in library_reading.parse_shipped_file(file)
     }
     assert packages == set(table.packages)
     for distro in KNOWN_DISTROS:
@@ -117,7 +117,7 @@ def test_the_table_of_distributions_names_what_there_is() -> None:
             entry.key
             for file, distros in table.files.items()
             if distro in distros
-            for entry in shipped_library.parse_shipped_file(file)
+            for entry in library_reading.parse_shipped_file(file)
         ]
         assert len(names) == len(set(names)), distro
 
@@ -260,8 +260,8 @@ def test_a_project_without_it_reads_nothing_of_it(tmp_path: Path, monkeypatch: p
     def refuse(*_: object) -> None:
         raise AssertionError
 
-    monkeypatch.setattr(shipped_library, "read_distribution_table", refuse)
-    monkeypatch.setattr(shipped_library, "parse_shipped_file", refuse)
+    monkeypatch.setattr(library_reading, "read_distribution_table", refuse)
+    monkeypatch.setattr(library_reading, "parse_shipped_file", refuse)
     assert check(tmp_path, "groups: {g: {components: {it: {is: that}}}}\ncomponent_types: {that: {title: That}}\n")
 
 
@@ -305,10 +305,10 @@ def test_the_pages_of_the_library_are_fresh() -> None:
 
 
 def test_programs_are_known_by_what_they_call_their_nodes() -> None:
-    assert shipped_library.find_program_name("ros_gz_bridge", "parameter_bridge") == "ros_gz_bridge"
-    assert shipped_library.find_program_name("image_proc", "image_proc::RectifyNode") == "RectifyNode"
+    assert library_reading.find_program_name("ros_gz_bridge", "parameter_bridge") == "ros_gz_bridge"
+    assert library_reading.find_program_name("image_proc", "image_proc::RectifyNode") == "RectifyNode"
     for program in ("static_transform_publisher", "unheard_of", ""):
-        assert not shipped_library.find_program_name("tf2_ros", program)
+        assert not library_reading.find_program_name("tf2_ros", program)
 
 
 def test_it_may_have_any_name_and_more_than_one(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from archgen.diagnostics.source_span import NO_SPAN
-from archgen.project.reading_state import ReadingState
+from archgen.project.slice_parsing import ReadingState
 from archgen.project.source_patterns import expand_source_pattern, report_missing_sources
 from archgen.syntax.folder_files import FolderFiles
 from archgen.syntax.yaml_tree import ScalarNode

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.serve.request_rules import find_refusal
+from archgen.serve.site_server import find_refusal
 
 
 def ask(host: str | None, names: tuple[str, ...] = ("127.0.0.1",), **others: str) -> str:

@@ -52,6 +52,7 @@ class _State:
     fired: int | None = None
     seen: int = 0
     started: int = 0
+    is_running: bool = False
     jobs: list[Job] = field(default_factory=list)
     bell: Any = None
 
@@ -61,6 +62,7 @@ class Model:
 
     def __init__(self, tasks: Sequence[Task], cores: dict[str, str]) -> None:
         self.env = simpy.Environment()
+        self.executors = {name for name, kind in cores.items() if kind == "executor"}
         self.states = {task.name: _State(task, holds=[-1] * len(task.wires)) for task in tasks}
         for state in self.states.values():
             state.bell = self.env.event()
@@ -105,6 +107,9 @@ class Model:
             yield self.env.timeout(task.period)
 
     def _fire(self, state: _State, wire: int, came: Reads) -> None:
+        # rcl counts a tick as done that comes while another one waits.
+        if wire == -1 and state.task.core in self.executors and len(state.waiting) > state.is_running:
+            return
         state.waiting.append((self.now, wire, came))
         core = state.task.core
         if core is not None:
@@ -199,5 +204,7 @@ class Model:
                 if place is not None:
                     one.waiting.insert(0, one.waiting.pop(place))
                     started, reads = self.now, self._start(one)
+                    one.is_running = True
                     yield self.env.timeout(one.task.cost)
+                    one.is_running = False
                     self._end(one, started, reads)

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
+from archgen.model.declared_timing import SchedulingOrder
 from archgen.simulation.event_loop import run_plan
 from archgen.simulation.plan_builder import build_plan
 from archgen.timing.system.timing_system import Activity, Arc, Executor, StoringCallback, TimingSystem
@@ -39,7 +40,20 @@ def event(name: str, wcet: int, *triggers: str, **rest: object) -> Activity:
 def system(
     activities: Sequence[Activity], arcs: Sequence[Arc] = (), cores: Mapping[str, int] | None = None, **rest: object
 ) -> TimingSystem:
-    """Put a system together."""
+    """Put a system together. `threads` are those of containers, in which each activity has a callback group of its own."""
+    boxes: Mapping[str, int | None] = rest.pop("threads", {})  # type: ignore[assignment]
+    activities = [
+        replace(one, executor=one.executor or f"container {one.container}", callback_group=one.callback_group or one.id)
+        if one.container in boxes
+        else one
+        for one in activities
+    ]
+    orders: Mapping[int | None, SchedulingOrder] = {1: "ros2_executor"}
+    made = {
+        f"container {name}": Executor(f"container {name}", count, None, orders.get(count))
+        for name, count in boxes.items()
+    }
+    rest["executors"] = {**made, **rest.get("executors", {})}  # type: ignore[dict-item]
     names = [activity.id for activity in activities]
     return replace(
         TimingSystem(

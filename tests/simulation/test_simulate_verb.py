@@ -18,7 +18,7 @@ groups:
       eye: {outputs: {seen: {type: Seen}}, timing: {period: 10 ms, wcet: 2 ms, bcet: 1 ms}}
       hand: {inputs: {seen: eye.seen}, outputs: {moved: {medium: physical}}, timing: {wcet: 3 ms}}
 types: {Seen: {message: std_msgs/msg/Empty}}
-chains: {reach: {through: [eye, hand], deadline: 20 ms}}
+chains: {reach: {through: [eye, hand], deadline: {always: 20 ms, 50 %: 5 ms}}}
 """
 
 
@@ -33,6 +33,9 @@ def test_json_is_as_the_schema_says(tmp_path: Path) -> None:
     data = json.loads(told(tmp_path, "--format", "json"))
     jsonschema_rs.validator_for(schema).validate(data)
     chain = data["chains"]["reach"]
+    assert chain["deadline_shares"] == [
+        {"share": "50 %", "limit": 5.0, "seen": chain["reaction"]["median"], "verdict": "late"}
+    ]
     assert chain["bound"] == 15
     assert 14 < chain["reaction"]["max"] <= 15
 
@@ -140,3 +143,42 @@ def test_it_shows_how_old_and_how_far_apart_what_was_matched_is(tmp_path: Path) 
     elements = json.loads(data)["elements"]
     assert (elements["fusion"]["fused"]["largest_age"], elements["camera"]["fused"]) == (oldest, None)
     assert list(elements["guard"]["read_ages"].values()) == [float(read.split()[-2])]
+
+
+def _trace(tmp_path: Path, *words: str) -> tuple[int, str]:
+    file = tmp_path / "robot.yaml"
+    file.write_text(PROJECT, encoding="utf-8")
+    ran = CliRunner().invoke(main, ["simulate", str(file), "--seconds", "2", "--seeds", "3", *words])
+    return ran.exit_code, ran.stderr
+
+
+def test_the_latest_run_of_a_chain_is_written(tmp_path: Path) -> None:
+    target = tmp_path / "late.json"
+    code, said = _trace(tmp_path, "--chain", "reach", "--trace", str(target))
+    assert (code, "wrote" in said) == (0, True)
+    about = json.loads(target.read_text(encoding="utf-8"))["otherData"]
+    data = json.loads(told(tmp_path, "--format", "json", "--chain", "reach"))
+    assert about["longest_ms"] == max(data["chains"]["reach"][each]["max"] for each in ("reaction", "age"))
+    # JSON on standard output stays JSON, and the run named in it is the same one.
+    again = json.loads(told(tmp_path, "--format", "json", "--chain", "reach", "--trace", str(target)))
+    assert again == data
+    assert told(tmp_path, "--seed", str(about["seed"]), "--chain", "reach").count("14.") > 0
+
+
+def test_a_trace_is_of_one_chain_on_which_something_passes(tmp_path: Path) -> None:
+    target = tmp_path / "late.json"
+    assert _trace(tmp_path, "--trace", str(target))[0] == 2
+    file = tmp_path / "robot.yaml"
+    file.write_text(PROJECT.replace("period: 10 ms, ", ""), encoding="utf-8")
+    ran = CliRunner().invoke(main, ["simulate", str(file), "--chain", "reach", "--trace", str(target)])
+    assert ran.exit_code == 1
+    assert "nothing passed along the chain reach" in ran.stderr
+    assert not target.exists()
+
+
+def test_a_trace_replaces_no_file_of_the_project(tmp_path: Path) -> None:
+    code, said = _trace(tmp_path, "--chain", "reach", "--trace", str(tmp_path / "robot.yaml"))
+    assert code != 0
+    assert "is a file of the project itself" in said
+    assert (tmp_path / "robot.yaml").read_text(encoding="utf-8") == PROJECT
+    assert _trace(tmp_path, "--chain", "reach", "--trace", str(tmp_path / "no" / "\0late.json"))[0] != 0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import random
+from typing import Any
 
 PERIODS = (20, 25, 40, 50, 100, 100, 200)
 """In ms."""
@@ -15,17 +16,19 @@ Tree = dict[str, object]
 
 def random_threads_text(seed: int) -> str:
     """Return a project by a seed."""
-    return json.dumps(_ThreadsMaker(random.Random(seed)).project(), indent=1)  # noqa: S311 - a test's dice
+    return json.dumps(ThreadsMaker(random.Random(seed)).project(), indent=1)  # noqa: S311 - a test's dice
 
 
-class _ThreadsMaker:
-    def __init__(self, dice: random.Random) -> None:
+class ThreadsMaker:
+    """Makes a project; a plain one has no order of a whole thread or core, and no pins."""
+
+    def __init__(self, dice: random.Random, *, is_plain: bool = False) -> None:
         self.dice = dice
-        self.queue = dice.choice(("", "", "", "thread", "core"))
+        self.queue = "" if is_plain else dice.choice(("", "", "", "thread", "core"))
         """What works off all there is in one order: the thread of a container, or the only core."""
         self.cores = 1 if self.queue else dice.choice((1, 1, 2, 2, 3, 4))
         self.ranked = self.chance(0.7 if self.queue else 0.4)
-        self.pinned = self.cores > 1 and self.chance(0.4)
+        self.pinned = not is_plain and self.cores > 1 and self.chance(0.4)
         self.periods: dict[str, float] = {}
         self.fed_by: dict[str, list[str]] = {}
         self.timings: dict[str, Tree] = {}
@@ -34,7 +37,7 @@ class _ThreadsMaker:
         """Say yes so often."""
         return self.dice.random() < share
 
-    def project(self) -> Tree:
+    def project(self) -> dict[str, Any]:
         """Return the whole project."""
         names = [f"c{at}" for at in range(self.dice.randint(3, 10))]
         for name in names:

@@ -24,50 +24,6 @@ def random_use_system(seed: int) -> TimingSystem:
     return _Maker(random.Random(seed)).make()  # noqa: S311 - a test's dice
 
 
-def random_crowded_system(seed: int) -> TimingSystem:
-    """Make a system by a seed in which a container with fewer threads than members, one of which uses the GPU, shares its
-    cores with nodes of their own.
-    """
-    dice = random.Random(seed)  # noqa: S311
-    threads = dice.choice((1, 2, 2, 3))
-    cores = {"pc": dice.randint(2, 3)}
-    executors = {"box": Executor("box", threads, "pc")}
-    activities = []
-    for number in range(threads + dice.randint(1, 3)):
-        uses = {"gpu": ResourceUse(dice.randint(1, 4), 1)} if number == 0 or dice.random() < 0.2 else {}
-        activities.append(_draw_periodic(dice, f"m{number}", container="box", executor="box", uses=uses))
-    for number in range(dice.randint(1, 3)):
-        executors[f"n{number}"] = Executor(f"n{number}", 1, "pc")
-        uses = {"gpu": ResourceUse(dice.randint(1, 4), 1)} if dice.random() < 0.2 else {}
-        activities.append(_draw_periodic(dice, f"n{number}", executor=f"n{number}", uses=uses))
-    resources = {"gpu": SharedResource("gpu", "pc", dice.choice((None, "fifo")))}
-    return system(
-        activities,
-        [],
-        cores,
-        resources=resources,
-        executors=executors,
-        threads={"box": threads},
-        bandwidths={"l": None},
-    )
-
-
-def _draw_periodic(dice: random.Random, name: str, **values: Any) -> Activity:  # noqa: ANN401 - what an activity has
-    wcet = dice.randint(1, 20)
-    return Activity(
-        name,
-        name,
-        None,
-        "periodic",
-        period=dice.choice((100, 100, 200)),
-        wcet=wcet,
-        bcet=wcet,
-        host="pc",
-        callback_group=None if dice.random() < 0.1 else name,
-        **values,
-    )
-
-
 def random_walks(of: TimingSystem, seed: int) -> dict[str, tuple[str, ...]]:
     """Return up to three chains along the arcs of a system."""
     dice = random.Random(seed)  # noqa: S311
@@ -106,7 +62,6 @@ class _Maker:
             self.cores,
             resources=self.resources,
             executors=self.executors,
-            threads=self.threads,
             bandwidths={"l": None},
         )
 

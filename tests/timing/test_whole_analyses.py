@@ -15,8 +15,8 @@ from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.chain_advice import advise_on_chain
 from archgen.timing.chains.chain_bounds import bound_all_chains
+from archgen.timing.chains.element_index import MeasuredBasis
 from archgen.timing.chains.fused_inputs import find_fused_inputs
-from archgen.timing.chains.measured_basis import describe_measured_basis
 from archgen.timing.chains.read_ages import find_read_ages
 from archgen.timing.figures.figure_wording import format_duration
 from archgen.timing.run_analysis import analyse_architecture
@@ -88,8 +88,8 @@ def _list_ages(analysis: Analysis) -> Iterator[str]:
 
 def _list_advice(analysis: Analysis, chains: Mapping[str, ChainResult]) -> Iterator[str]:
     for result in chains.values():
-        if basis := describe_measured_basis(analysis, [term.activity for term in result.terms]):
+        if basis := MeasuredBasis(analysis).describe([term.activity for term in result.terms]):
             yield f"{result.id}: {basis}"
         if result.spread is not None:
             yield f"{result.id}: its end may jitter by {format_duration(result.spread)}"
-        yield from (f"{result.id}: {sentence}" for sentence in advise_on_chain(analysis, result) or ())
+        yield from (f"{result.id}: {sentence}" for sentence in advise_on_chain(analysis, result) or () if sentence)

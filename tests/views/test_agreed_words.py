@@ -7,11 +7,10 @@ from pathlib import Path
 import pytest
 
 from archgen.pipeline import CheckedProject
-from archgen.views.agreement.agreed_words import list_word_rows
+from archgen.views.agreement.general_sections import describe_standing, list_start_steps, list_variant_differences
+from archgen.views.agreement.interface_sections import list_word_rows
 from archgen.views.agreement.partner_agreement import make_agreement, record_interfaces
-from archgen.views.agreement.start_section import list_start_steps
 from archgen.views.agreement.term_changes import AgreementChanges
-from archgen.views.agreement.terms_section import describe_standing, list_variant_differences
 from tests.agreeing import checked, lines, section, text, view
 
 ROBOT = """\

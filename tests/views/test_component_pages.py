@@ -16,7 +16,7 @@ from archgen.views.lookup import make_lookup
 from archgen.views.pages.report_outline import DocumentEdition
 from archgen.views.pages.single_page import make_page_at
 from archgen.views.pages.site_pages import make_pages
-from archgen.views.report.ros_blocks import make_ros_blocks
+from archgen.views.report.condensed_blocks import make_ros_blocks
 from archgen.views.search import make_search_entries
 from archgen.views.shapes import Facts, Inlines, Page, Table
 from archgen.views.timing.timing_lookup import bound_chains

@@ -91,7 +91,7 @@ def test_the_figures_say_how_much_and_why_not_more(tmp_path: Path) -> None:
         ("Chains proven in time", "2", "5", "1 missed, 1 not proven and 1 open", "missed", "page:chains"),
         ("Requirements served", "2", "3", "R-3 has no component", "uncovered", "page:requirements"),
         ("Components traced", "1", "4", "3 components without a requirement", "uncovered", "page:progress"),
-        ("Hosts proven schedulable", "1", "2", "1 unknown", "open", "page:hosts"),
+        ("Hosts proven in time", "1", "2", "1 unknown", "open", "page:hosts"),
     ]
 
 

@@ -12,7 +12,7 @@ import pytest
 from archgen.pipeline import CheckedProject, check_project
 from archgen.products import project_views
 from archgen.products.output_options import OutputOptions
-from archgen.views.agreement.partner_exchanges import gather_exchanges
+from archgen.views.agreement.exchange_tables import gather_exchanges
 from archgen.views.drawings_on_demand import DrawingsOnDemand
 from archgen.views.pages import partner_pages, site_pages
 from archgen.views.pages.report_outline import DetailLevel

@@ -7,9 +7,14 @@ from pathlib import Path
 import pytest
 
 from archgen.pipeline import check_project
-from archgen.views.elements.card_parts import ElementCard, drop_empty_lists, format_fact, known_facts
-from archgen.views.elements.component_cards import make_component_card, make_group_card, make_port_card
-from archgen.views.elements.node_cards import make_node_card, make_topic_card
+from archgen.views.elements.annotation_facts import ElementCard, drop_empty_lists, format_fact, known_facts
+from archgen.views.elements.level_cards import (
+    make_component_card,
+    make_group_card,
+    make_node_card,
+    make_port_card,
+    make_topic_card,
+)
 from archgen.views.elements.plain_cards import make_generic_card, make_use_case_card
 from archgen.views.lookup import Lookup, make_lookup
 

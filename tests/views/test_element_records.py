@@ -6,8 +6,7 @@ import pytest
 
 from archgen import pipeline
 from archgen.views.lookup import Lookup, make_lookup
-from archgen.views.records.element_record import write_record
-from archgen.views.records.resolved_record import make_record, write_section
+from archgen.views.records.resolved_record import make_record, write_record, write_section
 
 ROBOT = """\
 archgen: 1

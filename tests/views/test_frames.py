@@ -19,7 +19,7 @@ from archgen.views.lookup import Lookup
 from archgen.views.pages import report_outline, site_pages
 from archgen.views.search import make_search_entries
 from archgen.views.tables.element_rows import list_element_rows
-from archgen.views.tables.frame_table import make_frame_table
+from archgen.views.tables.functional_tables import make_frame_table
 
 ROBOT = """\
 archgen: 1

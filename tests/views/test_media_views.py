@@ -11,8 +11,7 @@ from archgen.pipeline import check_project
 from archgen.views.elements.element_card import make_card
 from archgen.views.elements.element_names import find_elements
 from archgen.views.explorer.map_flows import make_flow_tables
-from archgen.views.graphs.implementation_graph import draw_implementation
-from archgen.views.graphs.ros_graph import draw_ros_graph
+from archgen.views.graphs.implementation_graph import draw_implementation, draw_ros_graph
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.pages.context_pages import make_topic_pages, make_topic_tables
 from archgen.views.pages.host_pages import make_host_pages

@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 
 from archgen.pipeline import check_project
-from archgen.views import used_messages
-from archgen.views.lookup import Lookup, make_lookup
+from archgen.views.lookup import Lookup, collect_messages, make_lookup
 from archgen.views.pages import message_pages
 from archgen.views.pages.message_pages import MessagePages
 from archgen.views.shapes import Facts, Inlines, Page, Paragraph, Table
@@ -112,7 +111,7 @@ def test_the_list_names_each_message_once_with_its_users(lookup: Lookup) -> None
 
 def test_messages_inside_of_messages_are_used_where_these_are(lookup: Lookup) -> None:
     architecture = lookup.architecture
-    users = used_messages.collect_messages(architecture, [architecture.types["Fall"]], ())
+    users = collect_messages(architecture, [architecture.types["Fall"]], ())
     assert users["builtin_interfaces/msg/Time"] == ("type:Fall",)
     assert set(users) == {
         "my_msgs/msg/Fall",

@@ -11,7 +11,7 @@ from archgen.views.elements.functional_level import make_component_blocks
 from archgen.views.elements.implementation_level import make_node_blocks
 from archgen.views.elements.parameter_blocks import make_parameter_blocks
 from archgen.views.lookup import Lookup, make_lookup
-from archgen.views.records.element_record import write_record
+from archgen.views.records.resolved_record import write_record
 from archgen.views.report.condensed_blocks import condense_component
 from archgen.views.shapes import Inlines, Table
 from archgen.views.tables.element_rows import list_element_rows

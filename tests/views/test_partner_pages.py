@@ -10,7 +10,7 @@ from archgen.model.selector_evaluation import Selection
 from archgen.pipeline import check_project
 from archgen.products.project_views import list_signed_tags
 from archgen.views.agreement import exchange_tables
-from archgen.views.agreement.partner_exchanges import gather_exchanges
+from archgen.views.agreement.exchange_tables import gather_exchanges
 from archgen.views.agreement.signature_record import SignedTag
 from archgen.views.lookup import DocumentScope, Lookup, make_lookup
 from archgen.views.pages import partner_pages

@@ -10,7 +10,7 @@ from archgen.model.source_repository import Forge, SourceRepository
 from archgen.pipeline import check_project
 from archgen.products import project_views
 from archgen.products.output_options import OutputOptions
-from archgen.views.pages import page_places, site_pages
+from archgen.views.pages import page_parts, site_pages
 from tests.repositories import git
 
 ROBOT = """\
@@ -55,7 +55,7 @@ def make_pages(folder: Path, text: str) -> dict[str, str | None]:
     views = project_views.make_views(
         check_project(folder / "robot.yaml"), OutputOptions(revision="", show_history=False)
     )
-    pages = page_places.place_pages(views.lookup, site_pages.make_pages(views.lookup, views.edition))
+    pages = page_parts.place_pages(views.lookup, site_pages.make_pages(views.lookup, views.edition))
     assert all(page.place.is_place for page in pages if page.place)
     return {page.anchor: page.place.url for page in pages if page.place}
 

@@ -8,8 +8,8 @@ import pytest
 
 from archgen.pipeline import check_project
 from archgen.views.elements.component_type_blocks import make_type_blocks
-from archgen.views.elements.composed_blocks import make_composed_blocks
 from archgen.views.elements.element_card import make_card
+from archgen.views.elements.functional_level import make_composed_blocks
 from archgen.views.elements.port_tables import make_port_blocks
 from archgen.views.elements.promise_words import describe_promise
 from archgen.views.lookup import Lookup, make_lookup

@@ -14,10 +14,10 @@ from archgen.views.drawings_on_demand import DrawingsOnDemand
 from archgen.views.elements.functional_level import list_component_facts
 from archgen.views.lookup import Lookup
 from archgen.views.pages import report_outline, site_pages
+from archgen.views.picture_shapes import Lifeline, SequenceChart
 from archgen.views.report.front_pages import make_use_case_table
 from archgen.views.report.printed_report import make_printed_report
 from archgen.views.report.report_drawings import is_piece_of, make_report_drawings
-from archgen.views.sequence_shapes import Lifeline, SequenceChart
 from archgen.views.sequences import sequence_blocks, sequence_charts
 from archgen.views.shapes import Facts, Figure, Paragraph, Table
 

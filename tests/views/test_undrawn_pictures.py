@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from archgen.views.drawing_set import COMPONENT_KINDS, GROUP_KINDS
+from archgen.views.pages.page_parts import keep_drawn, make_timing_note
 from archgen.views.pages.report_outline import DocumentEdition
-from archgen.views.pages.undrawn_pictures import keep_drawn, make_timing_note
 from archgen.views.shapes import Figure, Paragraph, Text
 
 

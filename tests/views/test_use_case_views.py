@@ -15,7 +15,7 @@ from archgen.views.elements.element_names import find_elements
 from archgen.views.lookup import Lookup
 from archgen.views.records.resolved_record import make_record
 from archgen.views.search.functional_entries import make_requirement_entries
-from archgen.views.sequences import step_words
+from archgen.views.sequences import sequence_charts
 from archgen.views.tables.element_rows import list_element_rows
 from archgen.views.tables.statistics_tables import format_figures
 from archgen.views.timing.timing_lookup import analyse_with_chains
@@ -88,13 +88,13 @@ def test_the_card_tells_how_long_they_take(tmp_path: Path) -> None:
     from archgen.views.lookup import make_lookup
 
     timed = make_lookup(architecture, timing_lookup=analyse_with_chains(architecture))
-    assert step_words.describe_step_time(timed, "UC-4", 2) == "105 ms"
-    assert step_words.describe_step_time(timed, "UC-4", 3) == ""
-    assert step_words.describe_step_time(timed, "UC-4", 4) == step_words.NOT_PROVEN
-    assert step_words.describe_total(timed, "UC-4").startswith("not proven (>= ")
-    assert step_words.describe_total(timed, "UC-1") == ""
+    assert sequence_charts.describe_step_time(timed, "UC-4", 2) == "105 ms"
+    assert sequence_charts.describe_step_time(timed, "UC-4", 3) == ""
+    assert sequence_charts.describe_step_time(timed, "UC-4", 4) == sequence_charts.NOT_PROVEN
+    assert sequence_charts.describe_total(timed, "UC-4").startswith("not proven (>= ")
+    assert sequence_charts.describe_total(timed, "UC-1") == ""
     facts = dict(make_card(timed, "use case", "UC-4").facts)
-    assert facts["time"] == step_words.describe_total(timed, "UC-4")
+    assert facts["time"] == sequence_charts.describe_total(timed, "UC-4")
 
 
 def test_lists(lookup: Lookup) -> None:

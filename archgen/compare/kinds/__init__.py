@@ -8,10 +8,9 @@ table with the description, the model, the resolved record and the cards.
 from archgen.compare.kinds.component_type_kind import COMPONENT_TYPE
 from archgen.compare.kinds.functional_kinds import FUNCTIONAL_KINDS
 from archgen.compare.kinds.key_spec import Effect, KeySpec, Worsening
-from archgen.compare.kinds.kind_spec import KindSpec
+from archgen.compare.kinds.kind_spec import NAME_FEATURES, KindSpec, values_feature
 from archgen.compare.kinds.project_kinds import PROJECT_KINDS
 from archgen.compare.kinds.ros_kinds import ROS_KINDS
-from archgen.compare.kinds.shared_features import NAME_FEATURES, values_feature
 from archgen.compare.kinds.system_kinds import SYSTEM_KINDS
 from archgen.language.comparison_tables import KEY_FACTS, KIND_EFFECTS
 from archgen.language.language_tables import SECTION_KINDS

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from archgen.compare.compared_elements import SOME_PORTS
 from archgen.compare.kinds.key_spec import ReadContext
 from archgen.compare.normal_values import ElementTitle, freeze_value, normalize_text, normalize_title
+from archgen.compare.version_pair import SOME_PORTS
 from archgen.model.component import Component, ComponentType, Input, Output, PerformanceIndicator
 from archgen.model.declared_timing import Timing
 from archgen.model.generic_names import read_generic_name

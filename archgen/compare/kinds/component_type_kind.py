@@ -13,10 +13,9 @@ from typing import Any
 from archgen.compare.kinds.element_owners import find_type_owner
 from archgen.compare.kinds.functional_kinds import COMPONENT
 from archgen.compare.kinds.key_spec import Effect, KeySpec, ReadContext, Worsening, key_values
-from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec
+from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec, name_features, text_feature
 from archgen.compare.kinds.port_kinds import INPUT, OUTPUT
 from archgen.compare.kinds.ros_kinds import NODE
-from archgen.compare.kinds.shared_features import name_features, text_feature
 from archgen.compare.normal_values import drop_unset_values
 from archgen.model.component import Component, ComponentType, Input, Output
 

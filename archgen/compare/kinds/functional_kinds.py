@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from operator import attrgetter
 
-from archgen.compare.compared_elements import MAPPED_KEY
 from archgen.compare.kinds.component_keys import is_mapped
 from archgen.compare.kinds.element_owners import CO_OWNERS, read_owner
 from archgen.compare.kinds.key_spec import Effect, KeySpec
-from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec
-from archgen.compare.kinds.port_kinds import INPUT, OUTPUT, read_own_output_words
-from archgen.compare.kinds.shared_features import (
+from archgen.compare.kinds.kind_spec import (
     NAME_FEATURES,
+    FeatureSpec,
+    KindSpec,
     list_last_names,
     mark_neighbours,
     mark_performance,
@@ -23,6 +22,8 @@ from archgen.compare.kinds.shared_features import (
     reference_feature,
     text_feature,
 )
+from archgen.compare.kinds.port_kinds import INPUT, OUTPUT, read_own_output_words
+from archgen.compare.version_pair import MAPPED_KEY
 
 GROUP = KindSpec(
     "group",

@@ -8,8 +8,7 @@ from typing import Any
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.element_likeness import letter_pairs
 from archgen.compare.kinds.key_spec import ReadContext, key_values
-from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec
-from archgen.compare.kinds.shared_features import list_port_holders, mark_values, text_feature
+from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec, list_port_holders, mark_values, text_feature
 from archgen.compare.normal_values import drop_unset_values
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Input, Output

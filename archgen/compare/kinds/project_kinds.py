@@ -6,8 +6,7 @@ from collections.abc import Mapping
 
 from archgen.compare.element_likeness import letter_pairs, word_set
 from archgen.compare.kinds.key_spec import Effect, KeySpec, ReadContext
-from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec
-from archgen.compare.kinds.shared_features import NAME_FEATURES, text_feature, users_feature
+from archgen.compare.kinds.kind_spec import NAME_FEATURES, FeatureSpec, KindSpec, text_feature, users_feature
 from archgen.compare.normal_values import freeze_value, normalize_text, unordered_values
 from archgen.model.architecture import ProjectInfo
 from archgen.model.element_annotations import describe_range

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from archgen.compare.compared_elements import ElementKey
 from archgen.compare.element_likeness import word_set
 from archgen.compare.element_relations import ElementRelations
 from archgen.compare.kinds.key_spec import KeySpec, ReadContext, Worsening
-from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec
-from archgen.compare.kinds.shared_features import (
+from archgen.compare.kinds.kind_spec import (
     NAME_FEATURES,
+    FeatureSpec,
+    KindSpec,
     mark_values,
     nodes_feature,
     reference_feature,
     text_feature,
     value_feature,
 )
+from archgen.compare.version_pair import ElementKey
 from archgen.model.architecture import Chain
 from archgen.model.coordinate_frames import Frame
 from archgen.model.deployment import Host, Resource

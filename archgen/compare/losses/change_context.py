@@ -8,19 +8,38 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
 
-from archgen.compare.compared_elements import ElementKey
 from archgen.compare.comparison import Change
-from archgen.compare.losses.loss_wording import decline_verb, tick_sorted_names
+from archgen.compare.key_phrases import name_partner, shorten_text, tick_names
 from archgen.compare.losses.wire_heirs import find_wire_heirs
 from archgen.compare.matched_ids import MatchedIds
-from archgen.compare.partner_titles import name_partner
 from archgen.compare.review_facts import ReviewFacts
-from archgen.compare.version_pair import VersionPair
+from archgen.compare.version_pair import ElementKey, VersionPair
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Severity
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint
 from archgen.model.review_settings import BreakCategory
+
+_MAX_NAMES = 4
+"""Maximal number of elements named in one sentence; the rest is counted."""
+
+
+def tick_name(name: object) -> str:
+    """Return a name in backticks, whatever it contains."""
+    return f"`{shorten_text(str(name))}`"
+
+
+def tick_sorted_names(names: Iterable[str]) -> str:
+    """Return sorted names in backticks, joined for a sentence: `a`, `b` and `c`; the surplus is counted."""
+    return tick_names(sorted(names), _MAX_NAMES)
+
+
+def _decline_verb(verb: str, *, plural: bool) -> str:
+    """Return a verb for one or for several."""
+    if not plural:
+        return verb
+    return "are" if verb == "is" else verb.removesuffix("s")
+
 
 WRITING_USES = frozenset({"publishes", "serves"})
 
@@ -148,7 +167,7 @@ class ChangeContext:
                 for partner in partners
             ]
             has_many = sum(len(parts_by_partner[partner]) for partner in partners) != 1
-            return f"{lead}{join_words(phrases)} {decline_verb(verb, plural=has_many)}{rest}"
+            return f"{lead}{join_words(phrases)} {_decline_verb(verb, plural=has_many)}{rest}"
 
         yield from self._losses_of_others(indices, parts_by_partner, write_reason, category)
 
@@ -182,7 +201,7 @@ class ChangeContext:
 
         def write_reason(users: Sequence[str]) -> str:
             names = join_words([self.name_partner(user) for user in users])
-            return f"{lead}{f'{names} {decline_verb(verb, plural=len(users) != 1)}'.rstrip()}{rest}"
+            return f"{lead}{f'{names} {_decline_verb(verb, plural=len(users) != 1)}'.rstrip()}{rest}"
 
         yield from self._losses_of_others(indices, partners, write_reason, category)
 

@@ -1,19 +1,77 @@
-"""What a partner reads is something else now: another type, another message, or a message with other fields."""
+"""What a partner reads is something else now, or is going away: another type, another message, another version."""
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from archgen.compare.comparison import Change
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
-from archgen.compare.losses.loss_wording import tick_name, tick_sorted_names
-from archgen.compare.losses.message_users import MessageUsers
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_sorted_names
+from archgen.compare.losses.weakened_words import compare_deprecations
 from archgen.compare.matched_ids import MatchedIds
 from archgen.model.architecture import Architecture
+from archgen.model.component import ComponentType
+from archgen.model.graph_search import find_reachable
 from archgen.model.known_interfaces import Interface
+from archgen.model.message_types import ConceptualType
 from archgen.model.port_media import describe_carried
+from archgen.model.review_settings import BreakCategory
 from archgen.model.ros_distro import is_ros_1
+
+DefinitionUse = tuple[bool, str]
+"""Whether somebody writes what is defined, and the partner."""
+
+
+class MessageUsers:
+    """The users of types and messages in the first version."""
+
+    def __init__(self, context: ChangeContext) -> None:
+        self._context = context
+        self._uses: dict[tuple[str, str], list[DefinitionUse]] = defaultdict(list)
+        for endpoint in context.before.endpoints:
+            node = context.before.nodes[endpoint.node]
+            component = context.before.components.get(endpoint.component or "")
+            partner = (component.owner if component else None) or node.owner
+            if not partner:
+                continue
+            use = endpoint.use in {"publishes", "serves"}, context.matched_ids.common_id("partner", partner)
+            if endpoint.message:
+                self._uses["message", context.matched_ids.common_id("message", endpoint.message)].append(use)
+            if endpoint.type:
+                self._uses["type", context.matched_ids.common_id("type", endpoint.type)].append(use)
+
+    def partners_using_type(self, type_name: str) -> list[str]:
+        """Return the partners whom another definition of a type breaks, sorted."""
+        return _other_partners(self._uses.get(("type", type_name), ()))
+
+    def partners_using_message(self, message_name: str) -> list[str]:
+        """Return the partners whom another definition of a message breaks, also inside of other messages, sorted."""
+        names = _messages_containing(self._context, message_name)
+        return _other_partners([use for name in names for use in self._uses.get(("message", name), ())])
+
+
+def _other_partners(uses: Sequence[DefinitionUse]) -> list[str]:
+    """Return all users but the one who alone writes what is defined, if there is one."""
+    writers = {partner for is_writer, partner in uses if is_writer}
+    return sorted({partner for _, partner in uses} - (writers if len(writers) == 1 else frozenset()))
+
+
+def _messages_containing(context: ChangeContext, message_name: str) -> Sequence[str]:
+    """Return a message of the second version and all that contain it, at any depth."""
+    packages = context.after.interfaces.project_packages
+    project_messages = [
+        interface_name
+        for interface_name in context.after.interfaces.names
+        if interface_name.partition("/")[0] in packages
+    ]
+    containers_by_type: Mapping[str, list[str]] = defaultdict(list)
+    for container_name in sorted(project_messages):
+        definition = context.after.interfaces.definitions.get(container_name)
+        for part in definition.parts if definition else ():
+            for field in part:
+                containers_by_type[field.type].append(container_name)
+    return list(find_reachable(containers_by_type, [message_name]))
+
 
 _INNER_TYPE_KEYS = ("request", "response", "feedback")
 
@@ -217,3 +275,55 @@ def _compare_fields(old_definition: Interface, new_definition: Interface) -> tup
         {name for _, name in new_fields.keys() - old_fields.keys()},
         changed,
     )
+
+
+_Lives = Mapping[str, ConceptualType] | Mapping[str, ComponentType]
+
+
+def find_deprecated_types(context: ChangeContext) -> Iterator[PartnerLoss]:
+    """Find types and component types with another version, or that are deprecated now, and the partners who use them."""
+    message_users: MessageUsers | None = None
+    before, after = context.before, context.after
+    pairs: tuple[tuple[str, _Lives, _Lives], ...] = (
+        ("type", before.types, after.types),
+        ("component_type", before.component_types, after.component_types),
+    )
+    for kind, old_types, new_types in pairs:
+        for name, old in old_types.items():
+            common_id = context.matched_ids.common_id(kind, name)
+            new = new_types.get(common_id)
+            if new is None or (old.version is None and old.deprecated == new.deprecated):
+                continue
+            for words, key, category in _compare_lives(old, new):
+                if kind == "type":
+                    message_users = message_users or MessageUsers(context)
+                    partners = message_users.partners_using_type(common_id)
+                else:
+                    partners = _list_instance_owners(context, name)
+                indices = context.change_indices(kind, common_id, key) or [
+                    index
+                    for index, change in context.find_changes(kind, common_id)
+                    if change.key and change.key.startswith(key.partition(".")[0])
+                ]
+                reason_text = f"{words.replace('{}', tick_name(name), 1)}; {{}} it"
+                yield from context.losses_of_users(indices, partners, reason_text, "uses", category)
+
+
+def _compare_lives(
+    old: ConceptualType | ComponentType, new: ConceptualType | ComponentType
+) -> Iterator[tuple[str, str, BreakCategory]]:
+    if old.version is not None and old.version != new.version:
+        after = f"the version {tick_name(new.version)}" if new.version else "no version any more"
+        yield f"gives {{}} {after} instead of {tick_name(old.version)}", "version", "meaning"
+    for weakening in compare_deprecations(old.deprecated, new.deprecated):
+        yield weakening.words, weakening.key, weakening.category
+
+
+def _list_instance_owners(context: ChangeContext, type_name: str) -> list[str]:
+    """Return the partners who own instances of a component type, or of types that are made from it, sorted."""
+    owners = {
+        context.matched_ids.common_id("partner", component.owner)
+        for component in context.before.list_described_components()
+        if component.owner and any(base.id == type_name for base in context.before.list_bases(component.type_name))
+    }
+    return sorted(owners)

@@ -1,18 +1,143 @@
-"""The same bytes mean something else: what is said of outputs, types and fields has other words, units among them."""
+"""The same bytes mean something else: what is said of outputs, types and components, and the coordinate frames relied on."""
 
 from __future__ import annotations
 
 import re
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cached_property
 
 from archgen.compare.comparison import Change
 from archgen.compare.key_phrases import format_value
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
-from archgen.compare.losses.loss_wording import tick_name
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name
+from archgen.compare.losses.changed_definitions import MessageUsers
 from archgen.compare.losses.lost_connections import find_output_causes
-from archgen.compare.losses.message_users import MessageUsers
 from archgen.compare.text_meaning import differs_in_meaning, differs_in_measures, quote_difference
+from archgen.model.architecture import Architecture
+from archgen.model.component import Output
+from archgen.model.coordinate_frames import index_child_frames
+from archgen.model.graph_search import find_reachable
+from archgen.model.quantity import Quantity, parse_quantity
+from archgen.model.review_settings import BreakCategory
+
+
+def find_changed_frames(context: ChangeContext) -> Iterator[PartnerLoss]:
+    """Find frames that mean something else to the partners who use them, and outputs that are given in another one."""
+    yield from _find_turned_outputs(context)
+    changes = [
+        (index, change)
+        for index, whole_change in enumerate(context.changes)
+        for change in context.walk_change(whole_change)
+        if change.element_kind == "frame"
+    ]
+    users = _FrameUsers(context) if changes else None
+    for index, change in changes:
+        lost = _describe_loss(context, change)
+        if lost and users:
+            reason_text, category, reaches_below = lost
+            parts = users.list_users(context.common_id(change), reaches_below=reaches_below)
+            yield from context.shared_losses([index], parts, f"{reason_text}; {{}} it", "uses", category)
+
+
+def _describe_loss(context: ChangeContext, change: Change) -> tuple[str, BreakCategory, bool] | None:
+    """Return what is said of a changed frame, what its users lose by it, and whether users of frames below it do, too."""
+    name = tick_name(change.old_id or change.element_id)
+    if change.kind == "removed":
+        return f"takes away the frame {name}", "wire", False
+    if change.kind == "renamed":
+        # Programs look frames up by their names; files follow, programs do not.
+        return f"calls {tick_name(change.element_id)} what was the frame {name}", "wire", False
+    if change.kind != "changed" or change.before is None:
+        return None
+    after = format_value(change.after) if change.after is not None else ""
+    instead = f"instead of {format_value(change.before)}"
+    losses: dict[str, tuple[str, BreakCategory, bool]] = {
+        "parent": (f"places the frame {name} in {after or 'nothing'} {instead}", "meaning", True),
+        "by": (f"has the frame {name} written by {after or 'nobody'} {instead}", "promise", False),
+        "rate": (f"writes the frame {name} at {after or 'no rate any more'} {instead}", "promise", False),
+    }
+    # A lower rate takes from the margin alone: nobody has said how old a transform may be.
+    is_weakened = change.key != "rate" or (context.guards_margins and _is_rarer(change))
+    return losses.get(change.key or "") if is_weakened else None
+
+
+def _is_rarer(change: Change) -> bool:
+    before, after = (parse_quantity(str(value), "frequency") for value in (change.before, change.after))
+    return isinstance(before, Quantity) and (after is None or after.value < before.value)
+
+
+class _FrameUsers:
+    """Who used which frame in the first version, by common ids."""
+
+    def __init__(self, context: ChangeContext) -> None:
+        self._context = context
+
+    def list_users(self, frame_name: str, *, reaches_below: bool) -> Mapping[str, list[str]]:
+        """Return the ports and frames that use a frame, by partner; who looks up a frame below it uses it, too."""
+        names: Iterable[str] = [frame_name]
+        if reaches_below:
+            names = find_reachable(self._frames_below, [frame_name])
+        parts_by_partner: dict[str, set[str]] = defaultdict(set)
+        for name in names:
+            for kind, element_id in self._users_by_frame.get(name, ()):
+                partner = self._context.owner_before(kind, element_id)
+                if partner:
+                    parts_by_partner[partner].add(self._context.old_id(kind, element_id))
+        return {partner: sorted(parts) for partner, parts in parts_by_partner.items()}
+
+    @cached_property
+    def _frames_below(self) -> Mapping[str, list[str]]:
+        common_id = self._context.matched_ids.common_id
+        return {
+            common_id("frame", name): [common_id("frame", child.id) for child in children]
+            for name, children in index_child_frames(self._context.before.frames).items()
+        }
+
+    @cached_property
+    def _users_by_frame(self) -> Mapping[str, list[tuple[str, str]]]:
+        architecture, common_id = self._context.before, self._context.matched_ids.common_id
+        users: dict[str, list[tuple[str, str]]] = defaultdict(list)
+        for kind, ports in (("output", architecture.outputs), ("input", architecture.inputs)):
+            for port in ports.values():
+                frame_name = architecture.frame_of(port)
+                if frame_name is not None:
+                    users[common_id("frame", frame_name)].append((kind, common_id(kind, port.id)))
+        for frame in architecture.frames.values():
+            if frame.parent is not None:
+                users[common_id("frame", frame.parent)].append(("frame", common_id("frame", frame.id)))
+        return users
+
+
+def _find_turned_outputs(context: ChangeContext) -> Iterator[PartnerLoss]:
+    """Find outputs whose data is given in another frame: the same numbers mean another place."""
+    for output, new_output, inputs_by_partner in context.lasting_outputs:
+        before = _find_frame(context.before, context.before.outputs.get(context.old_id("output", output)))
+        old_frame = context.matched_ids.common_id("frame", before) if before else None
+        new_frame = _find_frame(context.after, context.after.outputs.get(new_output))
+        if old_frame is None or old_frame == new_frame:
+            continue
+        indices = context.change_indices("output", new_output, "frame", "type") or [
+            index
+            for name in _list_types(context, context.old_id("output", output))
+            for index in context.change_indices("type", name, "frame")
+        ]
+        given = f"in {tick_name(new_frame)}" if new_frame else "in no frame any more"
+        reason_text = (
+            f"gives {tick_name(context.old_id('output', output))} {given} instead of {tick_name(before)}; {{}} it"
+        )
+        causes = indices or find_output_causes(context, output)
+        yield from context.shared_losses(causes, inputs_by_partner, reason_text, "reads", "meaning")
+
+
+def _find_frame(architecture: Architecture, port: Output | None) -> str | None:
+    return architecture.frame_of(port) if port else None
+
+
+def _list_types(context: ChangeContext, output_id: str) -> Iterator[str]:
+    port = context.before.outputs.get(output_id)
+    if port and port.type:
+        yield context.matched_ids.common_id("type", port.type)
+
 
 _MEASURE_PARAMETER = re.compile(r"^parameters\.(?:.*[._])?(?:frame|frame_id|units?)$")
 _COMPONENT_TEXTS = ("functionality", "description")

@@ -6,8 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from archgen.compare.comparison import Change
 from archgen.compare.key_phrases import format_value
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
-from archgen.compare.losses.loss_wording import tick_name
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node
 from archgen.model.parameter import Parameter

@@ -10,10 +10,10 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from archgen.compare.agreements import find_partner_id
-from archgen.compare.compared_elements import ElementKey
 from archgen.compare.comparison import Change
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
 from archgen.compare.matched_ids import MatchedIds
+from archgen.compare.version_pair import ElementKey
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Severity
 from archgen.model.architecture import Architecture

@@ -13,10 +13,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from archgen.analyses.qos_compatibility import QosConflict, find_qos_conflicts
-from archgen.compare.compared_elements import ElementKey
 from archgen.compare.kinds import Effect, find_effect
-from archgen.compare.losses.change_context import WRITING_USES, ChangeContext, PartnerLoss
-from archgen.compare.losses.loss_wording import tick_name, tick_sorted_names
+from archgen.compare.losses.change_context import WRITING_USES, ChangeContext, PartnerLoss, tick_name, tick_sorted_names
+from archgen.compare.version_pair import ElementKey
 from archgen.derivation.wire.running_state import domain_of
 from archgen.diagnostics.common_wording import join_words
 from archgen.model.architecture import Architecture

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Container, Iterable, Iterator, Mapping
 
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_sorted_names
 from archgen.compare.losses.composed_places import find_component_renames
-from archgen.compare.losses.loss_wording import tick_name, tick_sorted_names
 from archgen.model.node import Endpoint, FlowKind
 
 TopicKey = tuple[str, FlowKind]

@@ -13,9 +13,10 @@ from fractions import Fraction
 from functools import cached_property
 from typing import NamedTuple
 
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
-from archgen.compare.losses.loss_wording import tick_sorted_names
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_sorted_names
+from archgen.compare.losses.changed_definitions import MessageUsers
 from archgen.compare.losses.lost_connections import find_output_causes
+from archgen.compare.version_pair import ComparedElement
 from archgen.model.architecture import Architecture
 from archgen.model.declared_timing import OutputTiming, Timing
 from archgen.model.quantity import Quantity
@@ -207,3 +208,34 @@ def _find_causes(context: ChangeContext, old_output: str, new_output: str, keys:
             return list(dict.fromkeys(indices))
     # A node that came or went, or that carries something else now.
     return list(dict.fromkeys(index for kind, name in elements for index in context.change_indices(kind, name)))
+
+
+def find_weakened_sizes(context: ChangeContext) -> Iterator[PartnerLoss]:
+    """Find types whose written size grew, or is no longer written: where promises have a severity of their own."""
+    if not context.guards_margins:
+        return
+    changes = [
+        (index, change)
+        for index, change in enumerate(context.changes)
+        if (change.element_kind, change.kind, change.key) == ("type", "changed", "size") and change.before is not None
+    ]
+    users = MessageUsers(context) if changes else None
+    for index, change in changes:
+        old_size, new_size = (
+            _read_size(elements.get(("type", change.element_id)))
+            for elements in (context.versions.elements_before, context.versions.elements_after)
+        )
+        if old_size is not None and (new_size is None or new_size > old_size):
+            promise = (
+                f"{change.after} instead of {change.before}"
+                if change.after
+                else f"no size any more (it was {change.before})"
+            )
+            partners = users.partners_using_type(change.element_id) if users else []
+            reason_text = f"promises for {tick_name(change.element_id)} {promise}; {{}} it"
+            yield from context.losses_of_users([index], partners, reason_text, "uses", "promise")
+
+
+def _read_size(element: ComparedElement | None) -> Fraction | None:
+    value = element.values.get("size") if element else None
+    return Fraction(value.value) if isinstance(value, Quantity) else None

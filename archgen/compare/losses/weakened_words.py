@@ -10,8 +10,7 @@ from collections.abc import Iterator, Mapping
 from functools import cached_property
 from typing import NamedTuple
 
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
-from archgen.compare.losses.loss_wording import tick_name
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name
 from archgen.compare.losses.lost_connections import find_output_causes
 from archgen.compare.matched_ids import MatchedIds
 from archgen.model.architecture import Architecture

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from archgen.compare.compared_elements import ComparedElement
 from archgen.compare.matched_ids import MatchedIds
-from archgen.compare.version_pair import VersionPair
+from archgen.compare.version_pair import ComparedElement, VersionPair
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint
 

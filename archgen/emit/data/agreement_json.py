@@ -8,11 +8,10 @@ from typing import Any
 from archgen.bringup.plan_shapes import StartStep
 from archgen.diagnostics.safe_text import format_json
 from archgen.model.agreed_terms import find_agreement
-from archgen.views.agreement.agreed_words import list_word_rows
 from archgen.views.agreement.agreement_content import AgreementContent
+from archgen.views.agreement.general_sections import list_start_steps, list_variant_differences
 from archgen.views.agreement.interface_record import InterfaceRecord
-from archgen.views.agreement.start_section import list_start_steps
-from archgen.views.agreement.terms_section import list_variant_differences
+from archgen.views.agreement.interface_sections import list_word_rows
 
 FORMAT_VERSION = 1
 

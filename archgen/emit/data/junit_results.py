@@ -9,19 +9,14 @@ from __future__ import annotations
 
 import posixpath
 from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
-from typing import TYPE_CHECKING
 
-from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.safe_text import make_visible
-from archgen.emit.data.repository_path import path_in_repository
+from archgen.diagnostics.source_span import SourceTexts
+from archgen.emit.data.findings_data import path_in_repository
 from archgen.emit.terminal.findings_text import render_finding_text
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
-
-    from archgen.diagnostics.diagnostic import Diagnostic
-    from archgen.diagnostics.source_span import SourceTexts
 
 _NO_FILE_NAME = "the project"
 _MAX_NAME_LENGTH = 250

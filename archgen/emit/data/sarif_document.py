@@ -8,22 +8,19 @@ from __future__ import annotations
 
 import gzip
 import re
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from urllib.parse import quote_from_bytes
 
+from archgen.diagnostics.diagnostic import Diagnostic, Label, Rule
 from archgen.diagnostics.finding_identity import number_findings
 from archgen.diagnostics.safe_text import format_json, make_visible
 from archgen.diagnostics.source_span import Span
-from archgen.emit.data.repository_path import path_in_repository
+from archgen.emit.data.findings_data import path_in_repository
 from archgen.findings import rule_pages
 from archgen.findings.variant_findings import phrase_absence
 from archgen.resources import HOME_URL
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
-
-    from archgen.diagnostics.diagnostic import Diagnostic, Label, Rule
 
 _SCHEMA_URL = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 _ROOT_ID = "%SRCROOT%"
@@ -93,21 +90,13 @@ def _rule_to_sarif(rule: Rule) -> dict[str, Any]:
         # A rule of a package has no page but its own text.
         **({} if rule.origin else {"helpUri": f"{HOME_URL}/blob/main/docs/rules/{rule.name}.md"}),
         "help": {"text": rule_pages.format_rule_page(rule), "markdown": rule_pages.rule_page_to_markdown(rule)},
-        "defaultConfiguration": {"level": _severity_to_level(rule.severity)},
+        "defaultConfiguration": {"level": ("none" if rule.severity == "off" else str(rule.severity))},
         "properties": {
             "tags": ["architecture"],
             "precision": "very-high",
-            "problem.severity": _severity_to_problem(rule.severity),
+            "problem.severity": {"error": "error", "warning": "warning"}.get(str(rule.severity), "recommendation"),
         },
     }
-
-
-def _severity_to_level(severity: object) -> str:
-    return "none" if severity == "off" else str(severity)
-
-
-def _severity_to_problem(severity: object) -> str:
-    return {"error": "error", "warning": "warning"}.get(str(severity), "recommendation")
 
 
 def _result_to_sarif(diagnostic: Diagnostic, scan: SarifScan) -> dict[str, Any]:

@@ -129,6 +129,9 @@ def chain_to_json(result: ChainResult, evidence: ChainEvidence = NO_EVIDENCE) ->
         "reduced_age": duration_to_json(result.reduced_age),
         "terms": [term_to_json(chain_term) for chain_term in result.terms],
         "deadline": duration_to_json(result.deadline)["value"] if result.deadline else None,
+        "deadline_shares": [
+            {"share": each.name, "limit": float(each.limit / _MS), "verdict": each.verdict} for each in result.shares
+        ],
         "slack": None if result.slack is None else float(result.slack / _MS),
         "verdict": result.verdict,
         **_evidence_to_json(result.id, evidence),
@@ -138,20 +141,28 @@ def chain_to_json(result: ChainResult, evidence: ChainEvidence = NO_EVIDENCE) ->
 def _evidence_to_json(chain_id: str, evidence: ChainEvidence) -> JsonObject:
     """Return the run in which a chain is late, and what would prove it; nothing where neither was looked for."""
     document: JsonObject = {}
-    witness, remedy = evidence.witnesses.get(chain_id), evidence.remedies.get(chain_id)
+    witness, proposal = evidence.witnesses.get(chain_id), evidence.proposal
     if witness:
         document["witness"] = {
             "seed": witness.seed,
             "seconds": witness.seconds,
             "longest": float(witness.longest / _MS),
+            "orders": [order._asdict() for order in witness.orders],
         }
-    if remedy:
+    if proposal and chain_id in proposal.tried[0].late:
+        best = proposal.best
+        tried: dict[str, dict[str, None]] = {}
+        for change in dict.fromkeys(change for each in proposal.tried for change in each.changes):
+            tried.setdefault(change.kind, {})[change.element] = None
+        is_met = chain_id not in best.late
         document["remedy"] = {
-            "set": list(map(str, remedy.changes)),
-            "bound": duration_to_json(remedy.bound) if remedy.changes else None,
-            "tried": {kind: list(names) for kind, names in remedy.tried},
-            "cut": remedy.is_cut,
+            "set": list(map(str, best.changes)) if is_met else [],
+            "bound": duration_to_json(TimingValue(best.bounds[chain_id])) if is_met else None,
+            "tried": {kind: list(names) for kind, names in tried.items()},
+            "cut": proposal.is_cut,
         }
+        if chain_id in proposal.hopeless:
+            document["floor"] = float(proposal.hopeless[chain_id] / _MS)
     return document
 
 

@@ -11,23 +11,30 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from archgen.emit.docx.contents_lists import write_contents
-from archgen.emit.docx.core_properties import write_core_properties
-from archgen.emit.docx.document_parts import clean_settings, replace_document_text
 from archgen.emit.docx.document_text import format_document
 from archgen.emit.docx.docx_file import save_package
-from archgen.emit.docx.page_filling import fill_pages
-from archgen.emit.docx.page_flow import assign_sheets, estimate_pages
-from archgen.emit.docx.report_template import open_template
+from archgen.emit.docx.page_flow import assign_sheets, estimate_pages, fill_pages
+from archgen.emit.docx.report_template import (
+    clean_settings,
+    create_writer,
+    open_template,
+    replace_document_text,
+    warn_of_template,
+)
 from archgen.emit.docx.section_pieces import list_anchors, write_sections
-from archgen.emit.docx.template_checks import TemplateError
 from archgen.emit.docx.template_placeholders import (
     fill_placeholders,
     find_contents_mark,
     find_placeholders,
     place_contents,
 )
-from archgen.emit.docx.title_page import list_placeholder_values, write_front_sections, write_title_page
-from archgen.emit.docx.writer_setup import create_writer, warn_of_template
+from archgen.emit.docx.template_repair import TemplateError
+from archgen.emit.docx.title_page import (
+    list_placeholder_values,
+    write_core_properties,
+    write_front_sections,
+    write_title_page,
+)
 from archgen.emit.picture import Picture
 from archgen.views.shapes import Outline
 

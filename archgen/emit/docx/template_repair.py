@@ -1,4 +1,4 @@
-"""What is mended in a template so that python-docx opens what Word opens: content types, and relationships (`template_relations`).
+"""What is mended in a template so that python-docx opens what Word opens: content types, and relationships.
 
 python-docx refuses .dotx files, and raises KeyError for a part without a content type.
 """
@@ -6,21 +6,206 @@ python-docx refuses .dotx files, and raises KeyError for a part without a conten
 from __future__ import annotations
 
 import io
+import posixpath
 import zipfile
+import zlib
+from urllib.parse import unquote
 
-from docx.opc.constants import CONTENT_TYPE, NAMESPACE
+from docx.opc.constants import CONTENT_TYPE, NAMESPACE, RELATIONSHIP_TYPE
 from docx.oxml.ns import qn
 from lxml import etree
 
-from archgen.emit.docx.template_checks import TemplateError, parse_part
-from archgen.emit.docx.template_relations import KIND_TYPES, find_main_target, repair_relations
+_MAX_PARTS = 4_000
+_MAX_BYTES = 200_000_000
+# A compound file: what Word writes for a document with a password, and what every .doc is.
+_OLE_SIGNATURE = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
+_ZIP_ERRORS = (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, OSError, ValueError)
+
+
+class TemplateError(ValueError):
+    """The file given as a template cannot be used. The message is for the user."""
+
+
+def unpack_template(data: bytes) -> dict[str, bytes]:
+    """Return the parts of a Word file by name, without a slash in front. Raise TemplateError if it is too large or no zip."""
+    if data.startswith(_OLE_SIGNATURE):
+        message = "the template is protected with a password or is an old .doc file: save it as a Word document (.docx)"
+        raise TemplateError(message)
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            return _read_bounded_parts(archive)
+    except TemplateError:
+        raise
+    except _ZIP_ERRORS as error:
+        message = f"the template is no Word file: it cannot be opened as a package ({error})"
+        raise TemplateError(message) from None
+
+
+def _parse_part(data: bytes, name: str) -> etree._Element:
+    """Return the root of a part: no document type, no entity, nothing fetched. Raise TemplateError if it is not well-formed."""
+    parser = etree.XMLParser(
+        resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False, remove_comments=True, remove_pis=True
+    )
+    try:
+        root = etree.fromstring(data, parser)
+    except (etree.XMLSyntaxError, ValueError) as error:
+        message = f"the template is damaged: its part `{name}` is not well-formed XML ({error})"
+        raise TemplateError(message) from None
+    # python-docx leaves entities unresolved too, but a part that needs them would lose its text without a word.
+    if root.getroottree().docinfo.internalDTD is not None:
+        message = f"the template is refused: its part `{name}` declares a document type, which Word never writes"
+        raise TemplateError(message)
+    return root
+
+
+def _read_bounded_parts(archive: zipfile.ZipFile) -> dict[str, bytes]:
+    """Return all parts, but never more than a Word file can sensibly hold."""
+    entries = [entry for entry in archive.infolist() if not entry.is_dir()]
+    if len(entries) > _MAX_PARTS:
+        message = f"the template is refused: it has {len(entries)} parts, more than {_MAX_PARTS}"
+        raise TemplateError(message)
+    parts: dict[str, bytes] = {}
+    remaining = _MAX_BYTES
+    for entry in entries:
+        # The bytes are counted as they are unpacked: sizes that stand in the zip may lie, whatever their ratio.
+        with archive.open(entry) as stream:
+            content = stream.read(remaining + 1)
+        remaining -= len(content)
+        if remaining < 0:
+            message = f"the template is refused: unpacked it is larger than {_MAX_BYTES // 1_000_000} MB"
+            raise TemplateError(message)
+        parts[entry.filename.lstrip("/")] = content
+    return parts
+
+
+_PACKAGE_RELATIONS = "_rels/.rels"
+_ROOT_TAG = f"{{{NAMESPACE.OPC_RELATIONSHIPS}}}Relationships"
+_SINGLE_KINDS = {
+    "styles": CONTENT_TYPE.WML_STYLES,
+    "numbering": CONTENT_TYPE.WML_NUMBERING,
+    "settings": CONTENT_TYPE.WML_SETTINGS,
+}
+"""Parts of which a document has one, by the last word of the relationship's type; their root bears the same name."""
+_KIND_TYPES = _SINGLE_KINDS | {"header": CONTENT_TYPE.WML_HEADER, "footer": CONTENT_TYPE.WML_FOOTER}
+
+
+def _find_main_target(parts: dict[str, bytes]) -> str:
+    """Return the name of the part that the package calls its document, empty if it calls none so."""
+    relations = _parse_relations(parts, _PACKAGE_RELATIONS) if _PACKAGE_RELATIONS in parts else ()
+    targets = (
+        _resolve_target("", item.get("Target", ""))
+        for item in relations
+        if _read_relation_kind(item) == "officeDocument" and not _is_external(item)
+    )
+    return next(targets, "")
+
+
+def _repair_relations(parts: dict[str, bytes], types: dict[str, str], main: str) -> None:
+    """Mend the relationships of the package, of its document and of all other parts; `types` are the parts' content types."""
+    for name in [name for name in parts if "_rels/" in name and name.endswith(".rels")]:
+        root = _parse_relations(parts, name)
+        source = _find_source_part(name)
+        if name == _PACKAGE_RELATIONS:
+            _repair_package_relations(root, parts, main)
+        elif source == main:
+            _repair_main_relations(root, parts, types, main)
+        else:
+            _repair_other_relations(root, parts, source)
+        parts[name] = etree.tostring(root)
+
+
+def _parse_relations(parts: dict[str, bytes], name: str) -> etree._Element:
+    """Return the root of a part of relationships, with each id once; an empty one if the part holds something else."""
+    root = _parse_part(parts[name], name)
+    if root.tag != _ROOT_TAG:
+        return etree.fromstring(f'<Relationships xmlns="{NAMESPACE.OPC_RELATIONSHIPS}"/>')
+    ids = {""}
+    for item in list(root):
+        if item.get("Id", "") in ids:
+            root.remove(item)
+        ids.add(item.get("Id", ""))
+    return root
+
+
+def _repair_package_relations(root: etree._Element, parts: dict[str, bytes], main: str) -> None:
+    """Keep of the package's relationships the document, and custom properties, which a cover's fields may show.
+
+    The template's title, author, dates and preview are not the report's: python-docx never reads them.
+    """
+    kinds = {"officeDocument", "custom-properties"}
+    for item in list(root):
+        kind, target = _read_relation_kind(item), _resolve_target("", item.get("Target", ""))
+        if kind not in kinds or target not in parts or _is_external(item):
+            root.remove(item)
+            continue
+        kinds.remove(kind)
+        item.set("Target", f"/{target}")
+        if target == main:
+            item.set("Type", RELATIONSHIP_TYPE.OFFICE_DOCUMENT)
+
+
+def _repair_main_relations(root: etree._Element, parts: dict[str, bytes], types: dict[str, str], main: str) -> None:
+    """Drop what leads nowhere from the document's relationships, and let parts be of the kind that they are used as."""
+    single_kinds: set[str] = set()
+    for item in [item for item in root if not _is_external(item)]:
+        kind, target = _read_relation_kind(item), _resolve_target(posixpath.dirname(main), item.get("Target", ""))
+        if target not in parts or kind in single_kinds or not _fits_kind(parts, target, kind):
+            root.remove(item)
+            continue
+        item.set("Target", f"/{target}")
+        if kind in _KIND_TYPES:
+            item.set("Type", f"{NAMESPACE.OFC_RELATIONSHIPS}/{kind}")
+            types[target] = _KIND_TYPES[kind]
+        if kind in _SINGLE_KINDS:
+            single_kinds.add(kind)
+
+
+def _repair_other_relations(root: etree._Element, parts: dict[str, bytes], source: str) -> None:
+    """Let relationships of headers and the like that lead nowhere point outside of the file.
+
+    They cannot go: a header's drawing still names them, and a name without a relationship is a damaged file to Word.
+    """
+    for item in [item for item in root if not _is_external(item)]:
+        target = _resolve_target(posixpath.dirname(source), item.get("Target", ""))
+        if target in parts:
+            item.set("Target", f"/{target}")
+        else:
+            item.set("TargetMode", "External")
+
+
+def _fits_kind(parts: dict[str, bytes], name: str, kind: str) -> bool:
+    """Tell whether a part that should be styles, numbering or settings is that."""
+    return kind not in _SINGLE_KINDS or _parse_part(parts[name], name).tag == qn(f"w:{kind}")
+
+
+def _is_external(relation: etree._Element) -> bool:
+    return relation.get("TargetMode") == "External"
+
+
+def _read_relation_kind(relation: etree._Element) -> str:
+    """Return the last word of a relationship's type: `styles`, `image`, `hyperlink`."""
+    return relation.get("Type", "").rpartition("/")[2]
+
+
+def _find_source_part(name: str) -> str:
+    """Return the name of the part whose relationships a part holds."""
+    folder, file = posixpath.split(name)
+    return posixpath.join(posixpath.dirname(folder), file.removesuffix(".rels"))
+
+
+def _resolve_target(folder: str, target: str) -> str:
+    """Return the name of the part that a relationship's target means; python-docx does not know percent signs."""
+    path = unquote(target.partition("#")[0])
+    joined = path if path.startswith("/") else posixpath.join("/", folder, path)
+    return posixpath.normpath(joined).lstrip("/")
+
 
 _CONTENT_TYPES = "[Content_Types].xml"
 _TYPES = f"{{{NAMESPACE.OPC_CONTENT_TYPES}}}"
 _TEMPLATE_MAIN = "application/vnd.openxmlformats-officedocument.wordprocessingml.template.main+xml"
 _STRICT_DOCUMENT = "{http://purl.oclc.org/ooxml/wordprocessingml/main}document"
 _MACRO_SIGNS = ("macroEnabled", "vbaProject", "vbaData", "activeX")
-_PARSED_TYPES = {*KIND_TYPES.values(), CONTENT_TYPE.WML_COMMENTS}
+_PARSED_TYPES = {*_KIND_TYPES.values(), CONTENT_TYPE.WML_COMMENTS}
 """Content types that python-docx parses as soon as it opens a file, beside the main part."""
 
 
@@ -31,10 +216,10 @@ def repair_package(parts: dict[str, bytes]) -> bytes:
     _check_document(parts, main)
     # A .dotx differs from a .docx in this alone.
     types[main] = CONTENT_TYPE.WML_DOCUMENT_MAIN
-    repair_relations(parts, types, main)
+    _repair_relations(parts, types, main)
     for name, content_type in types.items():
         if content_type in _PARSED_TYPES:
-            parse_part(parts[name], name)
+            _parse_part(parts[name], name)
     return _zip_parts(parts, types)
 
 
@@ -44,7 +229,7 @@ def _read_content_types(parts: dict[str, bytes]) -> dict[str, str]:
     if listing is None:
         message = f"the template is no Word file: it is a zip file without `{_CONTENT_TYPES}`"
         raise TemplateError(message)
-    root = parse_part(listing, _CONTENT_TYPES)
+    root = _parse_part(listing, _CONTENT_TYPES)
     if any(sign in item.get("ContentType", "") for item in root for sign in _MACRO_SIGNS):
         message = "the template is refused: it holds macros or controls; save it as .docx or .dotx without them"
         raise TemplateError(message)
@@ -62,7 +247,7 @@ def _read_content_types(parts: dict[str, bytes]) -> dict[str, str]:
 
 def _find_main_part(parts: dict[str, bytes], types: dict[str, str]) -> str:
     """Return the name of the part that holds the document."""
-    main = find_main_target(parts)
+    main = _find_main_target(parts)
     if main not in parts or types[main] not in {CONTENT_TYPE.WML_DOCUMENT_MAIN, _TEMPLATE_MAIN}:
         message = "the template is no Word file: its main part is not a Word document (.docx) or template (.dotx)"
         raise TemplateError(message)
@@ -70,7 +255,7 @@ def _find_main_part(parts: dict[str, bytes], types: dict[str, str]) -> str:
 
 
 def _check_document(parts: dict[str, bytes], main: str) -> None:
-    root = parse_part(parts[main], main)
+    root = _parse_part(parts[main], main)
     if root.tag == _STRICT_DOCUMENT:
         message = 'the template is a "Strict Open XML Document": save it as an ordinary Word document (.docx)'
         raise TemplateError(message)

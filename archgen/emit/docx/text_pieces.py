@@ -2,16 +2,149 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+import re
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from archgen.emit.docx.docx_writer import ContentsEntry, DocxWriter
-from archgen.emit.docx.heading_numbers import format_heading_number
+from archgen.emit.docx.list_numbering import format_heading_number
 from archgen.emit.docx.page_flow import FlowPiece
 from archgen.emit.docx.style_table import HEADING_LEVELS
-from archgen.emit.docx.text_runs import format_runs, join_text
-from archgen.emit.docx.word_xml import format_paragraph, format_run, name_bookmark
-from archgen.views.shapes import Bullets, Inlines, Paragraph
+from archgen.emit.docx.text_metrics import CODE_SCALE, measure_code, measure_word, split_name
+from archgen.emit.docx.word_xml import (
+    format_field,
+    format_paragraph,
+    format_run,
+    mark_label,
+    name_bookmark,
+    name_label_bookmark,
+)
+from archgen.views.shapes import Bullets, Inlines, Paragraph, Text
+from archgen.views.short_figures import write_comparisons
+
+MUTED_COLOUR = '<w:color w:val="55606A"/>'
+_CHANGE_COLOURS = {"added": "1C6B3C", "removed": "B3261E", "changed": "8A5300"}
+_STATUS_COLOURS = {
+    "met": "1C6B3C",
+    "not proven": "8A5300",
+    "open": "8A5300",
+    "uncovered": "8A5300",
+    "warning": "8A5300",
+    "missed": "B3261E",
+    "error": "B3261E",
+}
+"""Colours of states, which are bold as well: their words say the same on grey paper."""
+_MONOSPACE_FONT = '<w:rFonts w:ascii="Consolas" w:hAnsi="Consolas" w:cs="Consolas"/>'
+LINE_BREAK = "<w:r><w:br/></w:r>"
+
+
+@dataclass(frozen=True, slots=True)
+class RunSetting:
+    """How runs are set in a cell: the type size around them and the width of a line, in points; 0 outside of tables."""
+
+    size: float = 0
+    width: float = 0
+
+    def break_names(self, inlines: Sequence[Text]) -> list[str]:
+        """Return the runs' texts with places to break in each name that is wider than the line, and in no other.
+
+        A name may run through several runs, where a part of it is a link. Word finds a name by its letters only where
+        nothing stands between them.
+        """
+        # No letter is wider than the type is high.
+        if not self.width or sum(len(text.text) + 1 for text in inlines) * self.size < self.width:
+            return [text.text for text in inlines]
+        pieces = [text.text.split(" ") for text in inlines]
+        for word in _list_words(inlines, pieces):
+            parts = [(pieces[run][place], inlines[run].code) for run, place in word]
+            if _FIGURE.match("".join(part for part, _ in parts)):
+                continue
+            width = math.fsum(measure_code(part) if is_code else measure_word(part) for part, is_code in parts)
+            if width * self.size > self.width:
+                for run, place in word:
+                    pieces[run][place] = self._break_name(pieces[run][place], is_last=(run, place) == word[-1])
+        return [" ".join(words) for words in pieces]
+
+    @staticmethod
+    def _break_name(part: str, *, is_last: bool) -> str:
+        broken = "\u200b".join(split_name(part)) if part else part
+        return broken if is_last or not part.endswith(("_", ".", "/")) else f"{broken}\u200b"
+
+
+def _list_words(inlines: Sequence[Text], pieces: Sequence[Sequence[str]]) -> list[list[tuple[int, int]]]:
+    """Return words as the numbers of their runs and of their places there: a comma behind a name is a part of it."""
+    words: list[list[tuple[int, int]]] = []
+    for run, places in enumerate(pieces):
+        for place in range(len(places)):
+            if words and not place and not inlines[run].line_break:
+                words[-1].append((run, place))
+            else:
+                words.append([(run, place)])
+    return words
+
+
+_FIGURE = re.compile(r"[^\w/]*[0-9]")
+"""No name: its point is a decimal one."""
+_PLAIN_SETTING = RunSetting()
+
+
+def format_runs(writer: DocxWriter, inlines: Iterable[Text], setting: RunSetting = _PLAIN_SETTING) -> str:
+    """Return runs of text as they stand in a paragraph."""
+    runs = tuple(inlines)
+    return "".join(
+        [
+            (_format_link if text.ref or text.url else _format_text)(writer, text, shown, setting)
+            for text, shown in zip(runs, setting.break_names(runs), strict=True)
+        ]
+    )
+
+
+def join_text(inlines: Iterable[Text]) -> str:
+    """Return the text alone, each line break as one."""
+    return "".join(["\n" + text.text if text.line_break else text.text for text in inlines])
+
+
+def _format_text(writer: DocxWriter, text: Text, shown: str, setting: RunSetting, link_style: str = "") -> str:
+    before = LINE_BREAK if text.line_break else ""
+    shown = shown if text.code else write_comparisons(shown)
+    if not (link_style or text.strong or text.emphasis or text.code or text.muted or text.change or text.status):
+        return before + format_run(shown)
+    # In the order of the schema: style, font, bold, italics, colour (ECMA-376 17.3.2.28).
+    properties = ""
+    if link_style or text.code:
+        properties = f'<w:rStyle w:val="{link_style or writer.styles.find_style_id("Inline Code")}"/>'
+    if link_style and text.code:
+        # A run has one character style, and a link's is the one that readers must see.
+        properties += _MONOSPACE_FONT
+    is_strong = text.strong or text.status in _STATUS_COLOURS
+    properties += ("<w:b/><w:bCs/>" if is_strong else "") + ("<w:i/><w:iCs/>" if text.emphasis else "")
+    if text.status in _STATUS_COLOURS:
+        properties += f'<w:color w:val="{_STATUS_COLOURS[text.status]}"/>'
+    elif text.change:
+        properties += f'<w:color w:val="{_CHANGE_COLOURS[text.change]}"/>'
+    elif text.muted and not link_style:
+        properties += MUTED_COLOUR
+    if text.code and setting.size:
+        half_points = int(setting.size * CODE_SCALE * 2)  # rounded up, it would not fit what was measured
+        properties += f'<w:sz w:val="{half_points}"/><w:szCs w:val="{half_points}"/>'
+    return before + format_run(shown, properties)
+
+
+def _format_link(writer: DocxWriter, text: Text, shown: str, setting: RunSetting) -> str:
+    if text.is_number and text.ref in writer.anchors:
+        # What is only written later has no number yet: `docx_writer` fills it in.
+        return format_field(f"REF {name_label_bookmark(text.ref or '')} \\h", mark_label(text.ref or ""))
+    if text.ref in writer.anchors:
+        target = f'w:anchor="{name_bookmark(text.ref or "")}"'
+    elif text.url and (relation := writer.relate_link(text.url)):
+        target = f'r:id="{relation}"'
+    else:
+        return _format_text(writer, text, shown, setting)
+    # `history` lets Word show the link as visited, as it does with its own (ECMA-376 17.16.22).
+    runs = _format_text(writer, text, shown, setting, writer.styles.find_style_id("Hyperlink"))
+    return f'<w:hyperlink {target} w:history="1">{runs}</w:hyperlink>'
+
 
 _PARAGRAPH_STYLES = {"text": "Normal", "note": "Note Box", "warning": "Warning Box", "error": "Error Box"}
 _LIST_STEP = 18.0

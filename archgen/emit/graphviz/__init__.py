@@ -20,7 +20,7 @@ from archgen.emit.graphviz import font_config
 from archgen.emit.graphviz import picture_cache as store
 from archgen.emit.graphviz.drawing_worker import DrawingTask
 from archgen.emit.graphviz.hidden_texts import hide_texts
-from archgen.emit.graphviz.layout_memory import NO_MEMORY, LayoutMemory
+from archgen.emit.graphviz.line_crossings import NO_MEMORY, LayoutMemory
 from archgen.emit.graphviz.palette import dark_rules
 from archgen.emit.graphviz.worker_pool import (
     DrawingObserver,
@@ -31,8 +31,7 @@ from archgen.emit.graphviz.worker_pool import (
 )
 from archgen.emit.graphviz.worker_pool import draw_tasks as draw_all
 from archgen.emit.picture import Picture
-from archgen.views.chart_shapes import Chart, Drawing
-from archgen.views.sequence_shapes import SequenceChart
+from archgen.views.picture_shapes import Chart, Drawing, SequenceChart
 
 __all__ = ["PICTURE_FORMATS", "MissingGraphviz", "dark_rules", "draw_pictures", "start_early_workers"]
 

@@ -23,7 +23,7 @@ from archgen.emit.graphviz import palette
 from archgen.emit.graphviz.box_styles import LinkResolver, link_attributes
 from archgen.emit.graphviz.dot_text import escape_label, quote_value, wrap_text
 from archgen.emit.graphviz.placed_scene import FONT_NAME, DotAttributes
-from archgen.views.graph_shapes import Arrow
+from archgen.views.picture_shapes import Arrow
 
 PEN_WIDTHS = ((4, "3.2"), (2, "2"), (1, "1"))
 """The pen width by the least number of flows, the largest first."""

@@ -27,7 +27,7 @@ from archgen.emit.graphviz.dot_text import escape_label, wrap_text
 from archgen.emit.graphviz.drawn_legend import add_legend
 from archgen.emit.graphviz.placed_scene import Scene, ScenePart
 from archgen.emit.graphviz.styled_graph import measure_nodes
-from archgen.views.chart_shapes import BarSegment, Chart, ChartBar
+from archgen.views.picture_shapes import BarSegment, Chart, ChartBar
 from archgen.views.short_figures import shorten_text
 
 _CHART_WIDTH = 440.0
@@ -151,9 +151,9 @@ def _draw_bar(bar: ChartBar, index: int, scale: _ChartScale, middle: float) -> I
     for number, (each, width) in enumerate(
         zip(known_stretches, _stretch_widths(known_stretches, scale.factor), strict=True)
     ):
-        if width:
+        if width and each.kind != "gap":
             yield ScenePart(f"b{index}.{number}", style_stretch(each, width), x + width / 2, middle, width, BAR_HEIGHT)
-            x += width
+        x += width
     if unknown_stretches:
         question_mark = BarSegment(
             None, unknown_stretches[0].kind, "?", "\n".join(each.tooltip for each in unknown_stretches if each.tooltip)

@@ -11,7 +11,7 @@ from archgen.emit.graphviz.box_styles import LinkResolver, link_attributes
 from archgen.emit.graphviz.dot_text import escape_label, quote_value, wrap_text
 from archgen.emit.graphviz.placed_scene import DotAttributes, ScenePart
 from archgen.emit.graphviz.styled_graph import measure_nodes
-from archgen.views.chart_shapes import BarSegment
+from archgen.views.picture_shapes import BarSegment
 
 BAR_HEIGHT = 14.0
 """In points, as all lengths here."""
@@ -26,6 +26,7 @@ STRETCH_FORMS: dict[str, tuple[str, str, str]] = {
     "other_load": ("filled,dotted", "#9ecae1", ""),
     "met": ("filled", palette.OK, ""),
     "missed": ("filled", palette.ERROR, ""),
+    "late_wait": ("filled,dotted", "#f8d7d4", "waits"),
     "unproven": ("filled", palette.WARNING, ""),
     "open": ("filled", palette.NEIGHBOUR_FRAME, ""),
     "best": ("filled", "#e3e6e9", ""),

@@ -13,10 +13,10 @@ import struct
 import sys
 from typing import IO, Any
 
-from archgen.emit.graphviz.layout_memory import NO_MEMORY, LayoutMemory
+from archgen.emit.graphviz.line_crossings import NO_MEMORY, LayoutMemory
 from archgen.emit.picture import Picture
 from archgen.frozen import dataclass
-from archgen.views.chart_shapes import Drawing
+from archgen.views.picture_shapes import Drawing
 
 _LENGTH_PREFIX = struct.Struct("<Q")
 PROCESSOR_SECONDS = 30

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from archgen.emit.graphviz import arrow_styles, box_styles, palette
-from archgen.emit.graphviz.box_decorations import add_decorations
+from archgen.emit.graphviz.box_styles import add_decorations
 from archgen.emit.graphviz.dot_text import escape_label, wrap_text
 from archgen.emit.graphviz.placed_scene import DotAttributes, Scene, SceneLine, ScenePart
 from archgen.emit.graphviz.styled_graph import measure_nodes
 from archgen.frozen import replace
-from archgen.views.graph_shapes import Arrow, Box, Graph, PeriodStep
+from archgen.views.picture_shapes import Arrow, Box, Graph, PeriodStep
 
 _SAMPLE_SIZE = (24.0, 11.0)
 _ROW_HEIGHT = 15.0
@@ -89,7 +89,7 @@ _KEY_SENTENCES = {
 def add_graph_legend(scene: Scene, graph: Graph) -> Scene:
     """Add a graph's legend and notes below a scene, at its left."""
     entries = [entry for key in graph.legend for entry in _legend_entries(key)]
-    entries += [(_colour_sample(index), text) for index, text in graph.legend_colours]
+    entries += [(_box_sample(Box("", "", style="group", colour=index)), text) for index, text in graph.legend_colours]
     return add_legend(
         scene, entries, [_KEY_SENTENCES[key] for key in graph.legend if key in _KEY_SENTENCES] + list(graph.notes)
     )
@@ -139,10 +139,6 @@ def _box_sample(box: Box) -> Scene:
     return add_decorations(
         Scene(parts=(ScenePart("s", attributes, _SAMPLE_SIZE[0] / 2, 0, width, height),)), {"s": box}
     )
-
-
-def _colour_sample(index: int) -> Scene:
-    return _box_sample(Box("", "", style="group", colour=index))
 
 
 def _arrow_sample(key: str, arrow: Arrow) -> Scene:

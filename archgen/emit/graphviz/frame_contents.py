@@ -6,11 +6,11 @@ import math
 from collections.abc import Iterable, Sequence
 
 from archgen.emit.graphviz import layout_engine
+from archgen.emit.graphviz.group_order import route_between_rows, wrap_ranks
 from archgen.emit.graphviz.placed_scene import Scene, ScenePart
-from archgen.emit.graphviz.rank_wrapping import route_between_rows, wrap_ranks
 from archgen.emit.graphviz.styled_graph import StyledGraph, measure_nodes, read_layout, write_dot
 from archgen.model.graph_search import find_strong_components
-from archgen.views.graph_shapes import Arrow, Box
+from archgen.views.picture_shapes import Arrow, Box
 
 _PIECE_GAP = 12.0
 _WRAPPED_ASPECT = 3.0

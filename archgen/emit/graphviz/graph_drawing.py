@@ -23,18 +23,16 @@ from archgen.emit.graphviz import (
     sequence_layout,
     two_step_layout,
 )
-from archgen.emit.graphviz.box_decorations import add_decorations
+from archgen.emit.graphviz.box_styles import add_decorations
 from archgen.emit.graphviz.dot_text import clean_label_text
 from archgen.emit.graphviz.drawn_legend import add_graph_legend
 from archgen.emit.graphviz.glyph_outlines import shorten_glyphs
-from archgen.emit.graphviz.layout_memory import NO_MEMORY, LayoutMemory
+from archgen.emit.graphviz.line_crossings import NO_MEMORY, LayoutMemory
 from archgen.emit.graphviz.placed_scene import Scene
 from archgen.emit.graphviz.png_writer import render_png
 from archgen.emit.graphviz.styled_graph import StyledGraph, style_graph
 from archgen.emit.picture import Picture
-from archgen.views.chart_shapes import Chart, Drawing
-from archgen.views.graph_shapes import Graph
-from archgen.views.sequence_shapes import SequenceChart
+from archgen.views.picture_shapes import Chart, Drawing, Graph, SequenceChart
 
 _LAYOUT_FUNCTIONS = {
     "flow": flow_layout.lay_out_flow,

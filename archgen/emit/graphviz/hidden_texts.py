@@ -16,8 +16,7 @@ from operator import attrgetter
 from archgen.emit.graphviz.dot_text import clean_label_text, quote_value, safe_address
 from archgen.emit.picture import Picture
 from archgen.frozen import replace
-from archgen.views.chart_shapes import Drawing
-from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
+from archgen.views.picture_shapes import Arrow, Box, Cluster, Drawing, Graph
 
 _ALT = "archgen.alt"
 _SVG_LINK = re.compile(r'<a xlink:href="archgen\.link/([bac][0-9]+)"([^>]*)>\n(.*?)</a>\n', re.DOTALL)

@@ -14,8 +14,7 @@ from archgen.emit.graphviz.dot_text import escape_label, wrap_text
 from archgen.emit.graphviz.drawn_legend import add_graph_legend
 from archgen.emit.graphviz.placed_scene import DotAttributes, Scene, SceneLine, ScenePart, ScenePoint
 from archgen.emit.graphviz.styled_graph import measure_nodes
-from archgen.views.graph_shapes import Arrow, Box, Graph
-from archgen.views.sequence_shapes import Lifeline, MessageStyle, SequenceChart, SequenceMessage
+from archgen.views.picture_shapes import Arrow, Box, Graph, Lifeline, MessageStyle, SequenceChart, SequenceMessage
 
 _HEAD_GAP = 10.0
 _TEXT_GAP = 14.0

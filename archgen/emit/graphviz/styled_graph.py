@@ -22,7 +22,7 @@ from archgen.emit.graphviz.placed_scene import (
     format_attributes,
     read_scene,
 )
-from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
+from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph
 
 
 @dataclass(frozen=True, slots=True)

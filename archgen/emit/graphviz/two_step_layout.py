@@ -19,8 +19,7 @@ from archgen.emit.graphviz import layout_engine
 from archgen.emit.graphviz.frame_contents import lay_out_inside
 from archgen.emit.graphviz.group_order import GroupRows, fold_order, order_forward
 from archgen.emit.graphviz.label_places import declutter_labels
-from archgen.emit.graphviz.layout_memory import NO_MEMORY, LayoutCandidate, LayoutMemory
-from archgen.emit.graphviz.line_crossings import count_crossings, line_length
+from archgen.emit.graphviz.line_crossings import NO_MEMORY, LayoutCandidate, LayoutMemory, count_crossings, line_length
 from archgen.emit.graphviz.placed_scene import Scene, SceneFrame, SceneLine, ScenePart, format_attributes, read_scene
 from archgen.emit.graphviz.styled_graph import (
     StyledGraph,
@@ -30,7 +29,7 @@ from archgen.emit.graphviz.styled_graph import (
     title_attributes,
     write_dot,
 )
-from archgen.views.graph_shapes import Arrow
+from archgen.views.picture_shapes import Arrow
 
 _PAGE_SIZE = (1105.0, 728.0)
 """A landscape A3 page without its margins, in points: the text size of a scene is judged on it."""

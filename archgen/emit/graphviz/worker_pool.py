@@ -25,7 +25,7 @@ from archgen.emit.graphviz.drawing_worker import (
 )
 from archgen.emit.picture import Picture
 from archgen.resources import worker_environment
-from archgen.views.graph_shapes import Graph
+from archgen.views.picture_shapes import Graph
 
 DRAWING_TIMEOUT = 300.0
 """Seconds that one drawing may take by the clock: for what hangs, and for a machine without limits on processor time."""

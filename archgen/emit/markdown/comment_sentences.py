@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from urllib.parse import quote
 
 from archgen.diagnostics.safe_text import make_visible
-from archgen.emit.markdown.escaped_text import make_code_span
-from archgen.emit.markdown.inert_text import escape_inert
+from archgen.emit.markdown.inert_text import escape_inert, make_code_span
 from archgen.views.changes.change_wording import text_runs
 
 _ADDRESS_SIGNS = ":/?#@!$&'*+,;=%"

@@ -24,14 +24,13 @@ from archgen.emit.markdown.mermaid_chart import write_flowchart
 from archgen.model.variant import BASE_NAME
 from archgen.views.changes import comparison_document
 from archgen.views.changes.breaking_items import BreakingChange
-from archgen.views.changes.chain_rows import ChainRow
 from archgen.views.changes.change_wording import CHANGE_SIGNS, ChangeGroup
 from archgen.views.changes.comparison_document import ComparisonDocument, FindingGroup, NamedVersion
-from archgen.views.changes.figure_lines import FigureLine
-from archgen.views.graph_shapes import Graph
+from archgen.views.changes.figure_lines import ChainRow, FigureLine
 from archgen.views.graphs.changes import SMALL_BUDGET
-from archgen.views.graphs.changes.group_folding import fits_budget
+from archgen.views.graphs.changes.picture_folding import fits_budget
 from archgen.views.inline_text import count_noun
+from archgen.views.picture_shapes import Graph
 
 _SHOWN_PARTNERS = 12
 _MAX_OPEN_ITEMS, _MAX_OPEN_TOTAL = 8, 24

@@ -1,16 +1,23 @@
-"""Write a graph as a Mermaid flowchart: the only place that knows Mermaid.
-
-What changed between two versions is shown by signs, lines and colours. Comments take `write_flowchart`, templates the
-filters `mermaid_graph` and `mermaid`.
-"""
+"""Write a graph as a Mermaid flowchart, and a sequence as a sequence diagram: the only place that knows Mermaid."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 from archgen.emit.safe_names import make_identifier
-from archgen.views.graph_shapes import Arrow, Box, Cluster, ElementChange, Graph
+from archgen.views.graphs.graph_folding import fold_graph
+from archgen.views.picture_shapes import (
+    Arrow,
+    Box,
+    Cluster,
+    ElementChange,
+    Graph,
+    Lifeline,
+    SequenceChart,
+    SequenceMessage,
+)
 
 _MAX_LABEL_LENGTH = 60
 _BOX_SHAPES = {"topic": "[]", "service": "{{}}", "action": "{{}}", "node": "([])", "composed": "[[]]", "port": "[]"}
@@ -124,3 +131,73 @@ def _label_text(text: str) -> str:
     line = line if len(line) <= _MAX_LABEL_LENGTH else f"{line[: _MAX_LABEL_LENGTH - 1]}…"
     # Mermaid reads labels as Markdown, and some beginnings as a list: a zero-width space prevents that.
     return ("#8203;" if _LIST_START.match(line) else "") + escape_mermaid(line)
+
+
+_MAX_MERMAID_ARROWS = 40
+
+
+def fold_for_mermaid(graph: Graph) -> Graph:
+    """Fold a graph with too many arrows: what runs between a neighbour and a frame becomes one arrow, then frames become
+    boxes.
+    """
+    if len(graph.arrows) <= _MAX_MERMAID_ARROWS:
+        return graph
+    merged_graph = _lead_to_frames(graph)
+    return (
+        merged_graph
+        if len(merged_graph.arrows) <= _MAX_MERMAID_ARROWS
+        else fold_graph(merged_graph, _MAX_MERMAID_ARROWS)
+    )
+
+
+def _lead_to_frames(graph: Graph) -> Graph:
+    """Lead arrows that cross a frame to the frame itself, one for all with the same ends."""
+    frame_ids = {cluster.id for cluster in graph.clusters}
+    frames = {box.id: box.cluster for box in graph.boxes if box.cluster in frame_ids}
+    bundles: dict[tuple[str, str], list[Arrow]] = {}
+    arrows = []
+    for arrow in graph.arrows:
+        tail_frame, head_frame = frames.get(arrow.tail), frames.get(arrow.head)
+        if tail_frame == head_frame:
+            arrows.append(arrow)
+        else:
+            bundles.setdefault((tail_frame or arrow.tail, head_frame or arrow.head), []).append(arrow)
+    for (tail, head), bundle in bundles.items():
+        first = replace(bundle[0], tail=tail, head=head, tail_port=None, head_port=None)
+        flows = tuple(flow for arrow in bundle for flow in arrow.flows)
+        count = sum(arrow.count for arrow in bundle)
+        style = first.style if len({arrow.style for arrow in bundle}) == 1 else "data"
+        label = first.label if len(bundle) == 1 else ""
+        arrows.append(replace(first, label=label, style=style, count=count, flows=flows))
+    return replace(graph, arrows=tuple(arrows))
+
+
+_MAX_LENGTH = 60
+_ARROWS = {"service": "-->>", "action": "-->>", "broken": "-x"}
+
+
+def write_sequence_diagram(chart: SequenceChart) -> Iterator[str]:
+    """Yield the lines of a sequence diagram. Who takes part is `p0`, `p1`: no text of the model is a name or a word of Mermaid."""
+    yield "sequenceDiagram"
+    yield from (f"  {_write_lifeline(at, lifeline)}" for at, lifeline in enumerate(chart.lifelines))
+    yield from (f"  {_write_message(message)}" for message in chart.messages)
+
+
+def _write_lifeline(at: int, lifeline: Lifeline) -> str:
+    word = "actor" if lifeline.kind == "actor" else "participant"
+    return f"{word} p{at} as {_escape_text(lifeline.title)}"
+
+
+def _write_message(message: SequenceMessage) -> str:
+    arrow = _ARROWS.get(message.style, "->>")
+    details = [part for part in message.detail.split("\n") if part]
+    # The number comes first, so that no text can begin with a word that Mermaid knows.
+    words = "<br>".join([_escape_text(f"{message.number} {message.text}"), *map(_escape_text, details)])
+    return f"p{message.tail}{arrow}p{message.head}: {words}"
+
+
+def _escape_text(text: str) -> str:
+    line = " ".join(text.split())
+    line = line if len(line) <= _MAX_LENGTH else f"{line[: _MAX_LENGTH - 1]}…"
+    # A colon may begin a directive (`wrap:`).
+    return escape_mermaid(line).replace(":", "#58;")

@@ -13,20 +13,18 @@ from archgen.emit.file_tree import FileTree, make_file_tree
 from archgen.emit.picture import Picture
 from archgen.emit.site import page_pictures as drawing
 from archgen.emit.site.chapter_html import ChapterFiles, ChapterWriter
-from archgen.emit.site.explorer_files import (
+from archgen.emit.site.html_blocks import PageWriter
+from archgen.emit.site.matrix_files import build_matrix_files, write_matrix
+from archgen.emit.site.page_frame import LIVE_PAGE_POLICY, PAGE_POLICY, PageFrame, write_frame
+from archgen.emit.site.page_links import SiteLinks, collect_links, open_page
+from archgen.emit.site.script_files import (
     EXPLORER_ANCHOR,
     EXPLORER_STYLE,
     build_explorer_files,
+    build_search_files,
     find_explorer_address,
     list_explorer_scripts,
 )
-from archgen.emit.site.html_blocks import PageWriter
-from archgen.emit.site.matrix_files import build_matrix_files
-from archgen.emit.site.matrix_html import write_matrix
-from archgen.emit.site.page_frame import PageFrame, write_frame
-from archgen.emit.site.page_links import SiteLinks, collect_links, open_page
-from archgen.emit.site.page_policy import LIVE_PAGE_POLICY, PAGE_POLICY
-from archgen.emit.site.search_files import build_search_files
 from archgen.emit.site.site_navigation import SiteNavigation, build_navigation
 from archgen.frozen import dataclass, replace
 from archgen.views.explorer.map_shapes import ExplorerMap

@@ -15,8 +15,8 @@ from archgen.emit.site import page_pictures as drawing
 from archgen.emit.site.chapter_html import ChapterWriter
 from archgen.emit.site.html_blocks import PageWriter, name_natural_width
 from archgen.emit.site.html_text import escape_breakable, escape_html, replace_forbidden
+from archgen.emit.site.page_frame import write_standalone_policy
 from archgen.emit.site.page_links import CurrentPage, collect_links, open_page
-from archgen.emit.site.page_policy import write_standalone_policy
 from archgen.views.shapes import Facts, Outline, Page, Section
 
 if TYPE_CHECKING:

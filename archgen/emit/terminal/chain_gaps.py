@@ -1,11 +1,16 @@
-"""What a chain's bound lacks, in words: execution times, rates, latencies, links between hosts."""
+"""What is said of chains without a bound or beyond it: what the bound lacks, what is left, the run in which one is late."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.safe_text import make_visible
+from archgen.diagnostics.text_columns import TextRow
+from archgen.simulation.drawn_orders import describe_orders
+from archgen.simulation.seeded_runs import LateRun
 from archgen.timing.analysis import Analysis, ChainResult
+from archgen.timing.chains.chain_verdicts import VERDICT_WORDS
 from archgen.timing.chains.unfound_bounds import describe_unfound_places, find_overloaded_hosts, find_unfound_places
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
@@ -96,3 +101,30 @@ def _describe_basis(result: ChainResult) -> str:
         return ""
     values = [value for term in result.terms for value in (term.response, term.link)]
     return "(what is known) " if any(value.value for value in values) else "(periods only) "
+
+
+def describe_slack(result: ChainResult) -> str:
+    """Return how much of its deadline a chain's bound leaves, or by how much it is above it: `252.1 ms left`."""
+    if result.slack is None:
+        return ""
+    text = figure_wording.format_duration(abs(result.slack))
+    return f"{text} left" if result.slack >= 0 else f"{text} above it"
+
+
+def list_share_rows(result: ChainResult) -> Iterator[TextRow]:
+    """Yield the deadlines of shares of a chain's reactions, and what bounds say of them."""
+    for each in result.shares:
+        verdict = (
+            VERDICT_WORDS[each.verdict] if each.verdict != "open" else "only `archgen simulate` and recordings judge it"
+        )
+        yield f"  {each.name} of reactions", "", f"deadline {figure_wording.format_duration(each.limit)}", verdict
+
+
+def describe_witness(chain_id: str, witness: LateRun | None) -> str:
+    """Return how to see a chain late, empty where no run is known."""
+    if witness is None:
+        return ""
+    command = f"archgen simulate --seed {witness.seed} --chain {chain_id} --seconds {witness.seconds}"
+    orders_text = describe_orders(witness.orders)
+    longest_text = figure_wording.format_duration(witness.longest)
+    return make_visible(f"seen in `{command}`: {longest_text}{f' ({orders_text})' if orders_text else ''}")

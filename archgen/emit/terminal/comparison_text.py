@@ -11,9 +11,8 @@ from archgen.diagnostics.source_span import SourceTexts
 from archgen.emit.terminal import findings_text
 from archgen.views.changes import comparison_document
 from archgen.views.changes.breaking_items import BreakingChange
-from archgen.views.changes.chain_rows import MINUS_SIGN, ChainRow
 from archgen.views.changes.comparison_document import ComparisonDocument, FindingGroup, NamedVersion
-from archgen.views.changes.figure_lines import FigureLine
+from archgen.views.changes.figure_lines import MINUS_SIGN, ChainRow, FigureLine
 
 # Plain ASCII, as terminals of build servers show it.
 _TERMINAL_SIGNS = {

@@ -7,8 +7,13 @@ from typing import Any
 
 from archgen.emit.terminal import list_formats
 from archgen.model.project_history import History, HistoryPoint
-from archgen.views.tables.project_growth import format_change, format_finding_counts, format_step_share, name_point
-from archgen.views.tables.statistics_tables import PROGRESS_STEPS
+from archgen.views.tables.statistics_tables import (
+    PROGRESS_STEPS,
+    format_change,
+    format_finding_counts,
+    format_step_share,
+    name_point,
+)
 
 VERSION = 1
 _SHALLOW_NOTE = "this clone is shallow: older commits are not in it (`git fetch --unshallow` brings them)"

@@ -9,7 +9,7 @@ from typing import Any
 from archgen.diagnostics.safe_text import make_visible
 from archgen.diagnostics.text_columns import TextRow, align_rows, format_section
 from archgen.emit.data import timing_json
-from archgen.emit.terminal.figure_text import format_figure
+from archgen.emit.terminal.timing_text import format_figure
 from archgen.timing.chains.measured_comparison import MeasuredComparison, Observation
 from archgen.timing.chains.sample_statistics import PERCENTILES, SampleStatistics, UnmappedSamples
 from archgen.timing.figures import figure_wording
@@ -28,7 +28,7 @@ def format_measured(
     statistics = [(o.id, kind, samples) for o in observations for kind, samples in o.samples.items()]
     sampled_ids = {element for element, _, _ in statistics}
     # What has no counterpart in the design stands in the second table, if samples of it were recorded.
-    shown_rows = [row for row in rows if row.verdict != "not designed" or row.id not in sampled_ids]
+    shown_rows = [row for row in rows if row.verdict != "not designed" or row.why or row.id not in sampled_ids]
     if shown_rows:
         yield from align_rows([("id", "figure", "designed", "measured", ""), *map(_measured_row, shown_rows)], width)
         yield ""
@@ -55,7 +55,7 @@ def _outlier_lines(rows: Sequence[MeasuredComparison]) -> Iterator[str]:
 def _measured_row(row: MeasuredComparison) -> TextRow:
     write = figure_wording.format_rate if row.key == "rate" else figure_wording.format_duration
     ratio = f" ({figure_wording.format_number(100 * row.ratio)} %)" if row.ratio is not None else ""
-    mark = "OUTLIER" if row.verdict == "outlier" else row.verdict
+    mark = "OUTLIER" if row.verdict == "outlier" else row.why or row.verdict
     return row.id, row.key, format_figure(row.designed, write), write(row.measured) + ratio, mark
 
 

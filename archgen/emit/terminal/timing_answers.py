@@ -12,7 +12,7 @@ from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.text_columns import TextRow, align_rows, format_section
 from archgen.emit.data import timing_json
 from archgen.emit.terminal.chain_gaps import describe_gaps
-from archgen.emit.terminal.figure_text import format_figure
+from archgen.emit.terminal.timing_text import format_figure
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.chain_sensitivity import ChainSensitivity, UnknownFigure
 from archgen.timing.chains.working_lines import ReasonLine

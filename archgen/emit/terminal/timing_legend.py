@@ -1,92 +1,90 @@
-"""What the words of a timing summary mean: those that it uses, and no others."""
+"""What the words of a timing summary mean: those that it uses and nobody knows, in ten lines at most."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 
-from archgen.diagnostics.text_columns import TextRow
+from archgen.diagnostics.text_columns import TextRow, format_section
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.chain_verdicts import VERDICT_MEANINGS, VERDICT_WORDS
-from archgen.timing.chains.fused_inputs import find_fused_inputs
 from archgen.timing.figures.figure_wording import name_unknown_reason
 from archgen.timing.figures.timing_values import TimingValue
 
+_MOST_LINES = 10
 _CHAIN_FIGURES = {
     "reaction time": "from a change in the world until the last element has acted on it: what a deadline is about",
     "data age": "how old what the last element sends may be, until its next output replaces it",
-    "bound": "what a figure is never above, whatever happens at the same time (`best case`: never below)",
-}
-_HOST_VERDICTS = {
-    "schedulable": "each response is within its deadline (the period where none is written), or the load is so low that it would be with priorities by rate",
-    "overload": "more is to be done than the cores (or a resource) can do",
-    "undecided": "the cores can do it; not each response is proven to be within its period",
-}
-_RESOURCE_VERDICTS = {"bearable": "what is asked of a resource is no more than it can do"}
-_BEHAVIOURS = {
-    "periodic": "works by its own clock",
-    "event": "works when something arrives",
-    "on_demand": "works when it is called",
-    "once": "works once, at the start",
-}
-_TIERS = {
-    "declared": "the response is taken as it is written",
-    "dedicated": "no host is written: as if on a core of its own",
-    "host": "one core, holds for any order of its work",
-    "priorities": "by the priorities that are written",
-    "fair": "threads without a priority share the cores as Linux does it",
-    "executor": "callbacks of one thread, holds for any order of them",
-    "non_preemptive": "by the priorities that are written; what has begun is not interrupted",
-    "fifo": "in the order in which things come",
-    "ros2_executor": "by the rounds in which an executor of ROS 2 works",
-    "edf": "the earliest deadline first",
-    "cores": "several cores, holds for any order of their work",
-    "whole host": "several cores taken as one, holds for any order of their work",
-    "unknown": "an execution time, or the number of cores, is not written",
 }
 _SIGNS = {
     "~": "rounded to what is shown",
-    ">=": "adds up what is known: at least so much, no bound",
-    "<=": "at most so much, whatever the figures that are missing may be",
-    "(inferred)": "nobody wrote how it works: it follows from what it reads and serves",
+    ">=": "what is known adds up to so much: no bound",
+    "<=": "at most so much, whatever is missing",
+    "(inferred)": "nobody wrote how it works",
 }
 _FIGURES = {
     "unknown": "figures are missing",
-    "unbounded": "there is no largest one: an overload, what works only once, what need not come at all",
-    "no bound found": "there may be a bound, but the search found none",
+    "unbounded": "there is no largest one (overload, what works once, what need not come)",
+    "no bound found": "the search found none; there may be one",
+}
+_BEHAVIOURS = {
+    "periodic": "works by its own clock",
+    "event": "when something arrives",
+    "on_demand": "when it is called",
+    "once": "at the start",
+}
+_TIERS = {
+    "declared": "as it is written",
+    "dedicated": "no host is written: a core of its own",
+    "host": "one core in any order",
+    "priorities": "by priority",
+    "fair": "Linux shares the cores",
+    "executor": "one thread in any order",
+    "non_preemptive": "by priority, without interruption",
+    "fifo": "first come, first served",
+    "ros2_executor": "by the rounds of ROS 2",
+    "edf": "the earliest deadline first",
+    "cores": "several cores in any order",
+    "whole host": "several cores taken as one, in any order",
+    "whole way": "ways over hosts and links as wholes, in any order",
+    "unknown": "an execution time, or the number of cores, is not written",
 }
 
 
-def list_legend(analysis: Analysis, chains: Mapping[str, ChainResult], summary: str) -> Iterator[TextRow]:
-    """Yield the words that the summary of an analysis uses, each with what it means."""
+def format_legend(
+    analysis: Analysis, chains: Mapping[str, ChainResult], summary: str, width: int | None
+) -> Iterator[str]:
+    """Yield the section of words below a summary. In a narrow terminal the last ones give way to the name of their page."""
+    rows = list(_list_words(analysis, chains, summary))
+    lines = list(format_section("Words", rows, width))
+    while len(lines) > _MOST_LINES + 2 and rows:  # the title, and an empty line
+        rows.pop()
+        lines = list(format_section("Words", [*rows, ("...", "docs/timing.md has the others")], width))
+    yield from lines
+
+
+def _list_words(analysis: Analysis, chains: Mapping[str, ChainResult], summary: str) -> Iterator[TextRow]:
+    """Yield the words with what they mean, those of verdicts first; words of one kind share a row."""
     verdicts = {result.verdict for result in chains.values() if result.deadline}
     yield from ((VERDICT_WORDS[word], text) for word, text in VERDICT_MEANINGS.items() if word in verdicts)
     if chains:
         yield from _CHAIN_FIGURES.items()
+    reasons = {
+        *map(name_unknown_reason, _list_shown_values(analysis, chains)),
+        *(load.verdict for load in analysis.hosts.values()),
+    }
+    yield from _join_words(_FIGURES, reasons)
     # Signs are no part of any id: where one stands in the text, it is a sign.
-    yield from ((sign, text) for sign, text in _SIGNS.items() if sign in summary)
-    host_verdicts: set[str] = {load.verdict for load in analysis.hosts.values()}
-    resource_verdicts: set[str] = {load.verdict for load in analysis.resources.values()}
-    host_verdicts |= resource_verdicts
-    reasons = {*map(name_unknown_reason, _list_shown_values(analysis, chains)), *host_verdicts}
-    yield from ((word, text) for word, text in _FIGURES.items() if word in reasons)
-    yield from ((word, text) for word, text in _HOST_VERDICTS.items() if word in host_verdicts)
-    yield from ((word, text) for word, text in _RESOURCE_VERDICTS.items() if word in resource_verdicts)
-    behaviours = {pace.behaviour for pace in analysis.paces.values()}
-    yield from ((word, text) for word, text in _BEHAVIOURS.items() if word in behaviours)
-    if analysis.hosts:
-        yield "load", "rate times execution time, added up: 100 % is one core all the time"
-    if any("jitter" in line for line in summary.splitlines()):
-        yield "jitter", "how much later than its clock says an element may start"
-    if analysis.services:
-        yield "caller", "an element that calls the service; the time holds for one call of each"
-    if find_fused_inputs(analysis):
-        yield "age", "how old a message may be when what uses it begins, since its source began to make it"
-        yield "apart", "the largest time between the beginnings at the sources of what is used together"
-    if analysis.paces:
-        yield "gap", "the largest time between two activations"
-        yield "response", "the longest time from an activation to its end, with all that gets in its way"
+    yield from _join_words(_SIGNS, {sign for sign in _SIGNS if sign in summary})
     tiers = {response.tier for response in analysis.responses.values()}
-    yield from ((f"({word})", text) for word, text in _TIERS.items() if word in tiers)
+    yield from _join_words({f"({word})": text for word, text in _TIERS.items()}, {f"({word})" for word in tiers})
+    yield from _join_words(_BEHAVIOURS, {pace.behaviour for pace in analysis.paces.values()})
+
+
+def _join_words(meanings: Mapping[str, str], used: Collection[str | None]) -> Iterator[TextRow]:
+    """Yield one row for the words of a kind that are used, the first in front of the others."""
+    first, *others = [(word, text) for word, text in meanings.items() if word in used] or [("", "")]
+    if first[0]:
+        yield first[0], "; ".join((first[1], *(f"{word}: {text}" for word, text in others)))
 
 
 def _list_shown_values(analysis: Analysis, chains: Mapping[str, ChainResult]) -> Iterator[TimingValue]:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
 
 from archgen.diagnostics.text_columns import TextRow, format_section
-from archgen.emit.terminal import chain_remedies, timing_legend
+from archgen.emit.terminal import chain_gaps, chain_remedies, timing_legend
 from archgen.emit.terminal.chain_gaps import describe_gaps
-from archgen.emit.terminal.figure_text import format_figure, format_missing
 from archgen.simulation.chain_evidence import NO_EVIDENCE, ChainEvidence
 from archgen.timing.analysis import Analysis, ChainResult, HostLoad
 from archgen.timing.chains.chain_advice import advise_on_chain
@@ -17,8 +16,9 @@ from archgen.timing.chains.figure_explanations import describe_behaviour
 from archgen.timing.chains.fused_inputs import find_fused_inputs
 from archgen.timing.chains.loop_rounds import LoopRound
 from archgen.timing.figures import figure_wording
+from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import NO_MATCH_NOTE, is_unfound
-from archgen.timing.load.host_verdicts import is_done_in_time
+from archgen.timing.load.host_verdicts import name_host_verdict
 from archgen.timing.system.thread_pools import find_joint_nodes
 
 
@@ -33,23 +33,32 @@ def format_timing(
     sections = (
         ("Chains: largest reaction time (= largest data age)", _chain_rows(analysis, chains.values(), evidence)),
         (
-            "What is late or not proven to be in time, why, and what to do",
-            _advice_rows(analysis, chains.values(), evidence),
+            "What is late or not proven to be in time, and why",
+            _advice_rows(analysis, chains.values()),
         ),
-        (chain_remedies.REMEDY_TITLE, chain_remedies.list_remedy_rows(chains, evidence)),
-        ("Hosts", _host_rows(analysis)),
+        (chain_remedies.REMEDY_TITLE, chain_remedies.list_remedy_rows(evidence.proposal)),
+        ("Hosts: load (100 % is one core all the time)", _host_rows(analysis)),
         ("Resources: load, and longest time from asking until done", _resource_rows(analysis)),
         ("Links", _link_rows(analysis)),
-        ("Services and actions: longest time from a call until it is worked off", _service_rows(analysis)),
-        ("Elements", _element_rows(analysis)),
-        ("Messages that are used together: how old, and how far apart in time", _fused_rows(analysis)),
+        (
+            "Services and actions: longest time from a call until it is worked off, for one call of each that calls",
+            _service_rows(analysis),
+        ),
+        (
+            "Elements: largest time between two activations (gap), and from an activation to its end (response)",
+            _element_rows(analysis),
+        ),
+        (
+            "Messages that are used together: age since each source began, and how far apart these beginnings are",
+            _fused_rows(analysis),
+        ),
         ("Execution times that were measured: no bound rests on percentiles", _percentile_rows(analysis)),
         ("Loops: latency of one round", _loop_rows(loops)),
         ("What is taken for granted", _assumption_rows(analysis)),
     )
     lines = [line for title, rows in sections for line in format_section(title, rows, width)]
     yield from lines
-    yield from format_section("Words", timing_legend.list_legend(analysis, chains, "\n".join(lines)), width)
+    yield from timing_legend.format_legend(analysis, chains, "\n".join(lines), width)
     yield from _fault_lines(analysis)
 
 
@@ -61,26 +70,26 @@ def _chain_rows(analysis: Analysis, chains: Iterable[ChainResult], evidence: Cha
             format_figure(result.bound),
             deadline,
             VERDICT_WORDS[result.verdict] if result.deadline else "",
-            chain_remedies.describe_slack(result),
+            chain_gaps.describe_slack(result),
             "; ".join(
                 filter(
                     None,
                     (
-                        chain_remedies.describe_witness(result.id, evidence.witnesses.get(result.id)),
+                        chain_gaps.describe_witness(result.id, evidence.witnesses.get(result.id)),
                         describe_gaps(result, analysis),
                     ),
                 )
             ),
         )
+        yield from chain_gaps.list_share_rows(result)
 
 
-def _advice_rows(analysis: Analysis, chains: Iterable[ChainResult], evidence: ChainEvidence) -> Iterator[TextRow]:
-    """Yield three sentences on each chain that does not surely meet its deadline, misses first."""
+def _advice_rows(analysis: Analysis, chains: Iterable[ChainResult]) -> Iterator[TextRow]:
+    """Yield what is known of each chain that does not surely meet its deadline, misses first."""
     for verdict in ("missed", "not proven", "open"):
         for result in chains:
             advice = advise_on_chain(analysis, result) if result.verdict == verdict else None
             if advice is not None:
-                advice = chain_remedies.replace_advice(advice, evidence.remedies.get(result.id))
                 yield from zip((result.id, "", ""), (sentence for sentence in advice if sentence), strict=False)
 
 
@@ -98,11 +107,8 @@ def _host_rows(analysis: Analysis) -> Iterator[TextRow]:
             name,
             cores,
             load_text,
-            load.verdict,
-            missing_text
-            or _count_unfound(analysis, load)
-            or _describe_undecided(analysis, load)
-            or _format_bounds(load),
+            name_host_verdict(load),
+            missing_text or _count_unfound(analysis, load) or _describe_unproven(load) or _format_bounds(load),
         )
 
 
@@ -113,21 +119,11 @@ def _count_unfound(analysis: Analysis, load: HostLoad) -> str:
     return f"no bound found for {len(unfound_ids)} of {len(names)} elements" if unfound_ids else ""
 
 
-def _describe_undecided(analysis: Analysis, load: HostLoad) -> str:
-    """Say of an undecided host which of its elements may be activated again before they are done, and what helps."""
-    if load.verdict != "undecided":
+def _describe_unproven(load: HostLoad) -> str:
+    """Say of a host that can do its work which of its elements are not proven to be done in time."""
+    if load.verdict != "undecided" or not load.unproven:
         return ""
-    names = tuple(
-        name
-        for name, _ in load.activity_shares
-        if not is_done_in_time(analysis.system, name, analysis.paces[name], analysis.responses[name])
-    )
-    return (
-        f"may not be done before they are due again: {figure_wording.join_first_names(names)}; shorten them, pin them "
-        "(`core:`), or give them a priority"
-        if names
-        else ""
-    )
+    return f"the cores can do it; not proven to be done in time: {figure_wording.join_first_names(load.unproven)}"
 
 
 def _format_bounds(load: HostLoad) -> str:
@@ -218,7 +214,9 @@ def _assumption_rows(analysis: Analysis) -> Iterator[TextRow]:
     clocked = [activity for activity in analysis.system.activities.values() if activity.behaviour == "periodic"]
     unwritten_count = sum("jitter" not in activity.places for activity in clocked)
     if unwritten_count:
-        yield (f"no jitter is written for {unwritten_count} of {len(clocked)} periodic elements: taken as none",)
+        yield (
+            f"no jitter is written for {unwritten_count} of {len(clocked)} periodic elements: taken to start exactly by their clocks",
+        )
     measured_ids = tuple(activity.id for activity in analysis.system.activities.values() if activity.wcet_measured)
     if measured_ids:
         names = figure_wording.join_first_names(measured_ids)
@@ -236,3 +234,19 @@ def _fault_lines(analysis: Analysis) -> Iterator[str]:
         yield f"deadlock: each waits for the other in {' > '.join(ring)}"
     if analysis.diverged:
         yield f"no bound was found for {figure_wording.join_first_names(analysis.diverged)}"
+
+
+def format_missing(value: TimingValue) -> str:
+    """Return which elements' figures a value lacks."""
+    return f"unknown: {figure_wording.join_first_names(value.missing)}" if value.missing and not value.complete else ""
+
+
+def format_figure(value: TimingValue | None, write: Callable[[Fraction], str] = figure_wording.format_duration) -> str:
+    """Format a value: `202 ms`, `>= 468 ms`, `unknown`, `unbounded (overload)`."""
+    if value is None:
+        return ""
+    if value.value is None:
+        reason = figure_wording.name_unknown_reason(value)
+        return f"unbounded ({reason})" if reason == "overload" else reason
+    sign = "" if value.complete else {"at least": ">= ", "at most": "<= "}.get(value.side, ">= ")
+    return sign + write(value.value)

@@ -22,7 +22,7 @@ from archgen.emit.manifest_parsing import BACKEND_ERROR_RULE
 from archgen.emit.safe_names import assign_safe_paths, explain_long_path
 from archgen.emit.text.kept_answers import NO_ANSWERS, keep_answer, load_answer, make_answer_key
 from archgen.emit.text.template_limits import TemplateLimits
-from archgen.emit.workspace.generated_file import GeneratedFile, find_path_problems
+from archgen.emit.workspace.disk_files import GeneratedFile, find_path_problems
 from archgen.resources import worker_environment
 
 DEFAULT_LIMITS = TemplateLimits()

@@ -6,8 +6,7 @@ import dataclasses
 from collections.abc import Mapping
 from typing import Any, TypeVar
 
-from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
-from archgen.views.sequence_shapes import Lifeline, SequenceChart, SequenceMessage
+from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph, Lifeline, SequenceChart, SequenceMessage
 
 Shape = TypeVar("Shape", Box, Arrow, Cluster, Graph, Lifeline, SequenceMessage, SequenceChart)
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from archgen.emit.markdown.escaped_text import CONTROL_CHARACTER, escape_markdown, make_code_span
+from archgen.emit.markdown.inert_text import CONTROL_CHARACTER, escape_markdown, make_code_span
 from archgen.emit.safe_names import make_identifier, make_slug
 from archgen.emit.text.code_filters import CODE_FILTERS
 
@@ -52,8 +52,7 @@ def _is_strange(address: str) -> bool:
 def draw_mermaid(graph: object) -> str:
     """Write a graph, as templates get it, as a Mermaid flowchart without the fence around it; a large one is folded."""
     # Imported here, as below: most backends draw nothing, and generators are run again and again.
-    from archgen.emit.markdown.mermaid_chart import write_flowchart
-    from archgen.emit.markdown.mermaid_folding import fold_for_mermaid
+    from archgen.emit.markdown.mermaid_chart import fold_for_mermaid, write_flowchart
     from archgen.emit.text.plain_graphs import graph_from_plain
 
     return "\n".join(write_flowchart(fold_for_mermaid(graph_from_plain(graph)), has_stable_names=True))
@@ -61,7 +60,7 @@ def draw_mermaid(graph: object) -> str:
 
 def draw_mermaid_sequence(sequence: object) -> str:
     """Write a sequence, as templates get it, as a Mermaid sequence diagram without the fence around it."""
-    from archgen.emit.markdown.mermaid_sequence import write_sequence_diagram
+    from archgen.emit.markdown.mermaid_chart import write_sequence_diagram
     from archgen.emit.text.plain_graphs import sequence_from_plain
 
     return "\n".join(write_sequence_diagram(sequence_from_plain(sequence)))

@@ -1,14 +1,94 @@
-"""What stands at a path of a workspace: a file with its digest, or something in the way. No link is followed."""
+"""The files of a workspace: those that a backend makes, and what stands at a path already."""
 
 from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Iterator
+import unicodedata
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from archgen.emit.file_tree import digest_named_file, list_files_below
+from archgen.emit.safe_names import explain_long_path, is_safe_path
+
+_MAX_PART_BYTES = 200
+"""What every file system takes as one name, with room for what other tools append."""
+_MAX_SHOWN_PATH = 120
+_TOOL_FOLDERS = frozenset({".archgen", ".git", ".hg", ".svn"})
+"""Folders in which a file is an instruction to a tool: `.git/hooks/pre-commit` is run."""
+
+
+@dataclass(frozen=True, slots=True)
+class GeneratedFile:
+    """One file to write. `path` is relative to the workspace, with `/` between its parts."""
+
+    path: str
+    data: bytes
+    executable: bool = False
+    once: bool = False
+    """The user's own from the start: written where it is absent, and never touched again."""
+    expected_words: tuple[str, ...] = ()
+    """Words that the user's own file should hold."""
+    place: str = ""
+    """Where the element stands that it is made for, such as `archgen.yaml:12:3`; empty where there is none."""
+
+
+def fold_file_path(path: str) -> str:
+    """Return a path as file systems compare it that ignore case, or write letters and accents apart."""
+    return unicodedata.normalize("NFC", unicodedata.normalize("NFC", path).casefold())
+
+
+def find_path_problems(files: Iterable[GeneratedFile]) -> Iterator[str]:
+    """Yield in words what is wrong with the paths of generated files, with the places that they come from."""
+    files_by_fold = dict[str, GeneratedFile]()
+    folders_by_fold = dict[str, GeneratedFile]()
+    for file in files:
+        refusal = explain_bad_path(file.path)
+        if refusal:
+            yield f"{_name_file(file)} {refusal}"
+            continue
+        fold = fold_file_path(file.path)
+        other = files_by_fold.get(fold) or folders_by_fold.get(fold)
+        for parent in _list_parents(fold):
+            other = other or files_by_fold.get(parent)
+            folders_by_fold.setdefault(parent, file)
+        if other is not None:
+            yield f"{_name_file(other)} and {_name_file(file)} fall together: {_explain_clash(other.path, file.path)}"
+        files_by_fold.setdefault(fold, file)
+
+
+def explain_bad_path(path: str) -> str:
+    """Return why a path may not be written, as the end of a sentence; empty where it may."""
+    if explain_long_path(path):
+        return "is too long a path"
+    if not is_safe_path(path):
+        return "is no path that every system takes"
+    parts = path.split("/")
+    if any(len(part.encode("utf-8", "surrogatepass")) > _MAX_PART_BYTES for part in parts):
+        return f"has a part of more than {_MAX_PART_BYTES} bytes"
+    folded_parts = [fold_file_path(part) for part in parts]
+    if any(part in _TOOL_FOLDERS or part.startswith("git~") for part in folded_parts):
+        return "leads into a folder of another tool"
+    return ""
+
+
+def _list_parents(path: str) -> list[str]:
+    parts = path.split("/")
+    return ["/".join(parts[:count]) for count in range(1, len(parts))]
+
+
+def _name_file(file: GeneratedFile) -> str:
+    path = file.path if len(file.path) <= _MAX_SHOWN_PATH else f"{file.path[:_MAX_SHOWN_PATH]}..."
+    return f"`{path}`" + (f" ({file.place})" if file.place else "")
+
+
+def _explain_clash(first: str, second: str) -> str:
+    if first == second:
+        return "two files of one name"
+    if len(first) == len(second):
+        return "on many systems they are one file"
+    return "one is a file where the other needs a folder"
 
 
 @dataclass(frozen=True, slots=True)

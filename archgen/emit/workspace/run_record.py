@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from archgen.emit.file_tree import OutputError
-from archgen.emit.workspace.generated_file import explain_bad_path, fold_file_path
+from archgen.emit.workspace.disk_files import explain_bad_path, fold_file_path
 
 RECORD_FOLDER = ".archgen"
 _FORMAT = 1

@@ -9,8 +9,7 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from archgen.emit.workspace.disk_files import DiskFile, DiskReader
-from archgen.emit.workspace.generated_file import GeneratedFile, fold_file_path
+from archgen.emit.workspace.disk_files import DiskFile, DiskReader, GeneratedFile, fold_file_path
 from archgen.emit.workspace.run_record import RecordedFile, RunRecord
 
 FileVerb = Literal["new", "changed", "same", "removed", "yours", "left", "edited", "foreign", "blocked"]

@@ -112,7 +112,7 @@ class ComponentNodes:
         inherited = {key: around[key] for key in _CONTAINER_KEYS if key in around}
         body = MappingNode({**inherited, **own.entries}, own.span)
         _join_namespaces(body, inherited, own)
-        return MappingEntry(entry.key, entry.key_span, body)
+        return entry.with_value(body)
 
     def _lay_under_written(self, written_nodes: MappingNode, implements: Mapping[str, tuple[str, ...]]) -> None:
         for entry in written_nodes:
@@ -123,7 +123,7 @@ class ComponentNodes:
                 body = lay_node(own_bodies[0][1], body)
             for component_id in component_ids:
                 self._report_unused(component_id, entry, is_one=len(component_ids) == 1)
-            self.entries[entry.key] = MappingEntry(entry.key, entry.key_span, _drop_whole(body))
+            self.entries[entry.key] = entry.with_value(_drop_whole(body))
 
     def _report_unused(self, component_id: str, node: MappingEntry, *, is_one: bool) -> None:
         """Report `node` inside of what a node implements as a whole, and at one of several components of a node."""

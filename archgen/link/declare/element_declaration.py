@@ -17,6 +17,7 @@ from archgen.diagnostics.diagnostic import Diagnostic, Label, diagnose_repetitio
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.language.language_tables import KEYS, OFFERS, SECTION_KINDS
 from archgen.link import mapping_values, sanity_checks
+from archgen.link.declare.deadline_declaration import read_deadline
 from archgen.link.reference_resolution import SECTIONS_OF_PLAIN_NAMES, ReferenceResolver
 from archgen.link.value_readers import find_type, find_value_reader, list_held_keys, read_element, store_value
 from archgen.model.architecture import GlossaryTerm, Partner
@@ -279,7 +280,7 @@ NAMING_TYPES = {"id": _resolve_id, "requirement_ids": _resolve_ids}
 """Types of what is named by its id alone; the description says what a key `offers`."""
 DECLARERS: Mapping[str, KeyDeclarer] = {
     "bandwidth": partial(_read_positive, dimension="bandwidth"),
-    "chain.deadline": partial(_read_positive, dimension="duration"),
+    "chain_deadline": read_deadline,
     "link.connects": read_link_ends,
     "link.latency": sanity_checks.read_latency,
     "property_declaration.range": read_range,

@@ -64,7 +64,7 @@ class HandedParameters:
     def _fill_in_entry(self, entry: MappingEntry, component_id: str) -> MappingEntry:
         if entry.key == "parameters" or not _holds_reference(entry.value):
             return entry
-        return MappingEntry(entry.key, entry.key_span, self._fill_in_node(entry.value, component_id))
+        return entry.with_value(self._fill_in_node(entry.value, component_id))
 
     def _fill_in_node(self, node: YamlNode, component_id: str) -> YamlNode:
         if isinstance(node, MappingNode):

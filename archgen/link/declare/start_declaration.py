@@ -132,4 +132,4 @@ def inherit_start(entry: MappingEntry) -> MappingEntry | None:
     if not isinstance(entry.value, MappingNode):
         return None
     entries = {each.key: each for each in entry.value if each.key not in _NOT_INHERITED}
-    return MappingEntry(entry.key, entry.key_span, MappingNode(entries, entry.value.span)) if entries else None
+    return entry.with_value(MappingNode(entries, entry.value.span)) if entries else None

@@ -164,7 +164,8 @@ def read_input_timing(
         if stored_at_once and sanity_checks.report_times_of_none(input_body, ports.owner_id, diagnostics):
             wcet = bcet = None
         if port:
-            yield port, InputTiming(wcet, bcet, stored_at_once, entry.key_span)
+            memory = mapping_values.get_text(input_body, "memory")
+            yield port, InputTiming(wcet, bcet, stored_at_once, "each_source" if memory else None, entry.key_span)
 
 
 def read_resource_times(

@@ -82,7 +82,7 @@ class ElementRemover:
             entries["groups"] = self._prune_groups(entries["groups"])
         containers, hosts = find_idle_places(root, nodes, self._outline, self.removed.components)
         if "nodes" in entries:
-            entries["nodes"] = _with_value(entries["nodes"], nodes)
+            entries["nodes"] = entries["nodes"].with_value(nodes)
         _keep_entries(entries, "containers", lambda entry: entry.key not in containers)
         _keep_entries(entries, "hosts", lambda entry: entry.key not in hosts)
         _keep_entries(
@@ -92,7 +92,7 @@ class ElementRemover:
         )
         if "links" in entries:
             entries["links"] = self._prune_links(entries["links"], hosts)
-        return MappingNode(entries, root.span, root.declares)
+        return root.with_entries(entries)
 
     def _prune_groups(self, section: MappingEntry) -> MappingEntry:
         groups = {
@@ -100,15 +100,15 @@ class ElementRemover:
             for group in mapping_values.get_body(section)
             if group.key not in self.removed.groups
         }
-        return _with_value(section, MappingNode(groups, section.value.span))
+        return section.with_value(MappingNode(groups, section.value.span))
 
     def _prune_group(self, group: MappingEntry) -> MappingEntry:
         body = mapping_values.get_body(group)
         if "components" not in body.entries:
             return group
         parts = self._prune_parts(mapping_values.get_mapping(body, "components"), group.key)
-        components = _with_value(body.entries["components"], parts)
-        return _with_value(group, MappingNode({**body.entries, "components": components}, body.span, body.declares))
+        components = body.entries["components"].with_value(parts)
+        return group.with_value(body.with_entries({**body.entries, "components": components}))
 
     def _prune_parts(self, parts: MappingNode, holder_id: str) -> MappingNode:
         kept = {
@@ -116,7 +116,7 @@ class ElementRemover:
             for part in parts
             if f"{holder_id}.{part.key}" not in self.removed.components
         }
-        return MappingNode(kept, parts.span, parts.declares)
+        return parts.with_entries(kept)
 
     def _prune_component(self, part: MappingEntry, component_id: str) -> MappingEntry:
         body = mapping_values.get_body(part)
@@ -133,13 +133,13 @@ class ElementRemover:
             "components" in entries and not _TYPE_KEYS.intersection(body.entries)
         ):
             inner = self._prune_parts(mapping_values.get_mapping(body, "components"), component_id)
-            entries["components"] = _with_value(entries["components"], inner)
+            entries["components"] = entries["components"].with_value(inner)
         if "node" in entries:
             entries["node"] = self._prune_start(entries["node"], component_id)
         is_same = len(entries) == len(body.entries) and all(entries[key] is body.entries[key] for key in entries)
         if is_same and body is part.value:
             return part
-        return _with_value(part, MappingNode(entries, body.span, body.declares))
+        return part.with_value(body.with_entries(entries))
 
     def _write_out(self, component_id: str, body: MappingNode) -> MappingNode:
         """Return an instance as if all that it has of its type had been written at it; what is inside stays as written."""
@@ -149,7 +149,7 @@ class ElementRemover:
         entries["components"] = MappingEntry(
             "components", shell.entry.key_span, MappingNode(dict(shell.parts), full_body.span)
         )
-        return MappingNode(entries, body.span, body.declares)
+        return body.with_entries(entries)
 
     def _prune_ports(self, ports: MappingEntry, component_id: str, side: str) -> MappingEntry:
         kept: dict[str, MappingEntry] = {}
@@ -163,10 +163,10 @@ class ElementRemover:
             is_same = len(entries) == len(mapping_values.get_body(port).entries) and all(
                 entries[key] is each for key, each in mapping_values.get_body(port).entries.items()
             )
-            kept[port.key] = port if is_same else _with_value(port, MappingNode(entries, port.value.span))
+            kept[port.key] = port if is_same else port.with_value(MappingNode(entries, port.value.span))
         if all(kept[port.key] is port for port in mapping_values.get_body(ports)):
             return ports
-        return _with_value(ports, MappingNode(kept, ports.value.span))
+        return ports.with_value(MappingNode(kept, ports.value.span))
 
     def _prune_sources(
         self, entries: dict[str, MappingEntry], find_target: Callable[[ScalarNode], ElementRef | None]
@@ -186,7 +186,7 @@ class ElementRemover:
         if not kept and items:
             del entries["from"]
         elif len(kept) < len(items):
-            entries["from"] = _with_value(entry, SequenceNode(kept, entry.value.span))
+            entries["from"] = entry.with_value(SequenceNode(kept, entry.value.span))
 
     def _find_source(self, scalar: ScalarNode, component_id: str) -> ElementRef | None:
         if self._sources is not None:
@@ -223,7 +223,7 @@ class ElementRemover:
                 kept[node.key] = self._prune_node(node, body, gone, gone_ids) if gone else node
         self._gone_nodes = frozenset(nodes.entries.keys() - kept.keys())
         pruned = {key: self._prune_start(entry, None) for key, entry in kept.items()}
-        return MappingNode(pruned, nodes.span, nodes.declares)
+        return nodes.with_entries(pruned)
 
     def _prune_node(
         self, node: MappingEntry, body: MappingNode, gone: list[ScalarNode], gone_ids: list[str]
@@ -232,7 +232,7 @@ class ElementRemover:
         entries = dict(body.entries)
         implements = entries["implements"]
         items = [each for each in mapping_values.get_scalars(body, "implements") if each not in gone]
-        entries["implements"] = _with_value(implements, SequenceNode([*items], implements.value.span))
+        entries["implements"] = implements.with_value(SequenceNode([*items], implements.value.span))
         kept_targets = (self._resolver.resolve_reference(each, ("component",), node.key) for each in items)
         kept_ports = {name for target in kept_targets if target for name in self._list_ports(target.id)}
         gone_ports = {name for component_id in gone_ids for name in self._list_ports(component_id)} - kept_ports
@@ -243,7 +243,7 @@ class ElementRemover:
                 key,
                 lambda use: use.key not in gone_ports and not ("." in use.key and use.key.split(".")[-2] in gone_names),
             )
-        return _with_value(node, MappingNode(entries, body.span, body.declares))
+        return node.with_value(body.with_entries(entries))
 
     def _list_ports(self, component_id: str) -> Iterator[str]:
         yield from self._outline.inputs.get(component_id, ())
@@ -260,11 +260,11 @@ class ElementRemover:
         }
         if len(pruned) == len(start.entries) and all(pruned[entry.key] is entry for entry in start):
             return holder
-        laid = _with_value(body.entries["start"], MappingNode(pruned, start.span))
+        laid = body.entries["start"].with_value(MappingNode(pruned, start.span))
         entries = {key: laid if key == "start" else entry for key, entry in body.entries.items()}
         if not pruned:
             del entries["start"]
-        return _with_value(holder, MappingNode(entries, body.span, body.declares))
+        return holder.with_value(body.with_entries(entries))
 
     def _prune_targets(self, entry: MappingEntry, component_id: str | None) -> MappingEntry | None:
         """Return a key that names nodes and components without what is gone; None where nothing else is named."""
@@ -276,7 +276,7 @@ class ElementRemover:
         ]
         if len(kept) == len(items):
             return entry
-        return _with_value(entry, SequenceNode(kept, entry.value.span)) if kept else None
+        return entry.with_value(SequenceNode(kept, entry.value.span)) if kept else None
 
     def _is_gone_target(self, text: str, component_id: str | None) -> bool:
         inner_id = find_inner_component(text, self._resolver, component_id) if component_id else None
@@ -306,15 +306,9 @@ class ElementRemover:
                 kept[link.key] = link
             elif len(staying) >= _LEAST_ENDS:
                 connects = body.entries["connects"]
-                shorter = _with_value(connects, SequenceNode([*staying], connects.value.span))
-                kept[link.key] = _with_value(
-                    link, MappingNode({**body.entries, "connects": shorter}, body.span, body.declares)
-                )
-        return _with_value(section, MappingNode(kept, section.value.span))
-
-
-def _with_value(entry: MappingEntry, value: MappingNode | SequenceNode) -> MappingEntry:
-    return MappingEntry(entry.key, entry.key_span, value)
+                shorter = connects.with_value(SequenceNode([*staying], connects.value.span))
+                kept[link.key] = link.with_value(body.with_entries({**body.entries, "connects": shorter}))
+        return section.with_value(MappingNode(kept, section.value.span))
 
 
 def _keep_entries(entries: dict[str, MappingEntry], key: str, is_kept: Callable[[MappingEntry], bool]) -> None:
@@ -324,4 +318,4 @@ def _keep_entries(entries: dict[str, MappingEntry], key: str, is_kept: Callable[
         return
     kept = {entry.key: entry for entry in section.value if is_kept(entry)}
     if len(kept) < len(section.value.entries):
-        entries[key] = _with_value(section, MappingNode(kept, section.value.span, section.value.declares))
+        entries[key] = section.with_value(section.value.with_entries(kept))

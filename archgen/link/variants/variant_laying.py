@@ -166,7 +166,7 @@ def _find_lost_changes(changes: MappingNode, removed_components: frozenset[str])
 
 def remove_variants(root: MappingNode) -> MappingNode:
     """Return a merged project without its variants: as it stands in one of them it has none."""
-    return MappingNode({e.key: e for e in root if e.key != "variants"}, root.span, root.declares)
+    return root.with_entries({e.key: e for e in root if e.key != "variants"})
 
 
 _INSTANCE_KEYS = frozenset({"is", "same_as"})
@@ -180,9 +180,7 @@ class ChangeTargets:
         self.diagnostics: list[Diagnostic] = []
         self._root = root
         self._lost_keys = lost_keys
-        self.sound = MappingNode(
-            {section.key: self._keep_sound(section) for section in changes}, changes.span, changes.declares
-        )
+        self.sound = changes.with_entries({section.key: self._keep_sound(section) for section in changes})
 
     def _keep_sound(self, section: MappingEntry) -> MappingEntry:
         if not isinstance(section.value, MappingNode):
@@ -194,7 +192,7 @@ class ChangeTargets:
             kept = {e.key: e for e in section.value if self._is_sound(kind, known, e)}
         else:
             return section
-        return MappingEntry(section.key, section.key_span, MappingNode(kept, section.value.span))
+        return section.with_value(MappingNode(kept, section.value.span))
 
     def _is_sound(self, kind: str, known_body: MappingNode, entry: MappingEntry) -> bool:
         body = mapping_values.get_body(entry)
@@ -243,7 +241,7 @@ class ChangeTargets:
         components = body.entries["components"]
         parts = MappingNode(kept, components.value.span)
         entries = {**body.entries, "components": MappingEntry("components", components.key_span, parts)}
-        return MappingEntry(holder.key, holder.key_span, MappingNode(entries, body.span, body.declares))
+        return holder.with_value(body.with_entries(entries))
 
     def _report(self, entry: MappingEntry, kind: str, name: str, known_names: list[str], new_help: str) -> None:
         self.diagnostics.append(
@@ -271,7 +269,7 @@ def _list_declared(holder: MappingEntry, holder_id: str) -> Iterator[str]:
     for part in mapping_values.get_mapping(mapping_values.get_body(holder), "components"):
         body = mapping_values.get_body(part)
         part_id = f"{holder_id}.{part.key}"
-        own_keys = MappingNode({e.key: e for e in body if e.key != "components"}, body.span, body.declares)
+        own_keys = body.with_entries({e.key: e for e in body if e.key != "components"})
         if _is_stub(part) or (own_keys.entries and declares_itself(own_keys)):
             yield part_id
         yield from _list_declared(part, part_id)

@@ -89,7 +89,7 @@ def prune_selectors(root: MappingNode, removed: RemovedElements, evaluator: Sele
             if (pruned := _prune_holder(entry, removed, evaluator)) is not None
         }
         entries[section_name] = MappingEntry(section_name, section.key_span, MappingNode(kept, section.value.span))
-    return MappingNode(entries, root.span, root.declares)
+    return root.with_entries(entries)
 
 
 def _prune_holder(entry: MappingEntry, removed: RemovedElements, evaluator: SelectorEvaluator) -> MappingEntry | None:
@@ -107,13 +107,13 @@ def _prune_holder(entry: MappingEntry, removed: RemovedElements, evaluator: Sele
                 return None
             if text != each.value.text:
                 scalar = ScalarNode(text, text, each.value.span, is_plain=False)
-                kept = MappingEntry(each.key, each.key_span, scalar)
+                kept = each.with_value(scalar)
         if kept is None:
             return None
         entries[each.key] = kept
     if all(entries[each.key] is each for each in entry.value):
         return entry
-    return MappingEntry(entry.key, entry.key_span, MappingNode(entries, entry.value.span, entry.value.declares))
+    return entry.with_value(entry.value.with_entries(entries))
 
 
 def _prune_text(text: str, removed: RemovedElements, evaluator: SelectorEvaluator) -> str | None:

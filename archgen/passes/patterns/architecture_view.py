@@ -11,10 +11,14 @@ from archgen.model.generic_names import read_generic_name
 from archgen.passes.patterns.matching import IndexToken
 from archgen.passes.patterns.pattern_shapes import ComponentBody, PortReference, ViewValue
 from archgen.passes.patterns.type_layers import Layer, TypeLayers
-from archgen.passes.patterns.view_elements import ViewElement, is_instance, list_view_elements
-from archgen.passes.patterns.view_index import ComponentIndex
-from archgen.passes.patterns.view_references import ViewReferences
-from archgen.passes.patterns.view_types import ConceptualTypes
+from archgen.passes.patterns.view_elements import (
+    ComponentIndex,
+    ConceptualTypes,
+    ViewElement,
+    ViewReferences,
+    is_instance,
+    list_view_elements,
+)
 from archgen.passes.patterns.view_values import read_view_value
 from archgen.passes.project_tree import ProjectTree
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, YamlNode

@@ -20,8 +20,7 @@ from archgen.passes.patterns.pattern_shapes import (
     Variable,
     ViewValue,
 )
-from archgen.passes.patterns.text_matching import resolve_text
-from archgen.passes.patterns.value_matching import MatchBudget, match_value
+from archgen.passes.patterns.value_matching import MatchBudget, match_value, resolve_text
 
 INDEXED_DEPTH = 3
 """So deep below a component its keys and texts are found by the index: `inputs`, the port, its `type`."""

@@ -64,13 +64,7 @@ def _parse_end(cursor: TokenCursor, classifier: Classifier) -> None:
             cursor.make_error(words, f"{classifier.category} {classifier.name} begins in line {classifier.span.line}")
         )
         return
-    end = cursor.advance()
-    closing = cursor.expect_path("a classifier")
-    if closing.lower() != classifier.name.lower():
-        error = AadlSyntaxError(f"this ends `{closing}`, but what is open is `{classifier.name}`", end)
-        error.help_line = f"write `end {classifier.name};`"
-        cursor.tell(error)
-    cursor.expect(";")
+    cursor.expect_end("", classifier.name, lambda: cursor.expect_path("a classifier"))
 
 
 def _name_place(cursor: TokenCursor) -> str:
@@ -174,8 +168,7 @@ def parse_annex(cursor: TokenCursor, annexes: list[tuple[str, Span]]) -> None:
 def parse_subcomponent(cursor: TokenCursor) -> Subcomponent:
     """Parse a subcomponent, or a call, up to its `;`."""
     start = cursor.token.offset
-    name = cursor.expect_name("a subcomponent")
-    cursor.expect(":")
+    name = cursor.expect_declared("a subcomponent")
     refined = cursor.accept("refined", "to")
     category = accept_one_of(cursor, CATEGORIES)
     if not category:
@@ -198,19 +191,16 @@ def parse_subcomponent(cursor: TokenCursor) -> Subcomponent:
 
 def _parse_array_elements(cursor: TokenCursor) -> None:
     cursor.expect("(")
-    while not cursor.accept(")"):
+    for _ in cursor.walk_entries(")", ","):
         cursor.expect_path("a classifier")
         parse_bindings(cursor)
-        if not cursor.at(")"):
-            cursor.expect(",")
 
 
 def _parse_connection(cursor: TokenCursor) -> AadlConnection:
     start = cursor.token.offset
     name, refined = "", False
     if cursor.peek().text == ":":
-        name = cursor.expect_name("a connection")
-        cursor.expect(":")
+        name = cursor.expect_declared("a connection")
         refined = cursor.accept("refined", "to")
     kind = accept_one_of(cursor, _CONNECTION_KINDS)
     if not kind:
@@ -231,8 +221,7 @@ def _parse_connection(cursor: TokenCursor) -> AadlConnection:
 
 def _parse_call_sequence(cursor: TokenCursor, classifier: Classifier) -> None:
     if not cursor.at("{"):
-        cursor.expect_name("a call sequence")
-        cursor.expect(":")
+        cursor.expect_declared("a call sequence")
     cursor.expect("{")
     cursor.parse_entries(
         lambda: classifier.calls.append(parse_subcomponent(cursor)), lambda: cursor.at("}") or cursor.at("end")
@@ -245,8 +234,7 @@ def _parse_call_sequence(cursor: TokenCursor, classifier: Classifier) -> None:
 
 def _parse_flow(cursor: TokenCursor) -> AadlFlow:
     start = cursor.token.offset
-    name = cursor.expect_name("a flow")
-    cursor.expect(":")
+    name = cursor.expect_declared("a flow")
     refined = cursor.accept("refined", "to")
     kind = "end to end" if cursor.accept("end", "to", "end", "flow") else ""
     if not kind:
@@ -256,9 +244,7 @@ def _parse_flow(cursor: TokenCursor) -> AadlFlow:
             cursor.fail("`source`, `sink` or `path` is missing here")
     steps: list[Path] = []
     if cursor.token.kind == "name" and not cursor.at("in", "modes"):
-        steps.append(parse_contained_path(cursor))
-        while cursor.accept("->"):
-            steps.append(parse_contained_path(cursor))
+        steps = cursor.parse_separated(lambda: parse_contained_path(cursor), "->")
     properties = parse_property_list(cursor)
     modes = parse_modes(cursor)
     cursor.expect(";")

@@ -50,8 +50,7 @@ def parse_direction(cursor: TokenCursor) -> str:
 def parse_prototype(cursor: TokenCursor) -> Prototype:
     """Parse a prototype up to its `;`."""
     start = cursor.token.offset
-    name = cursor.expect_name("a prototype")
-    cursor.expect(":")
+    name = cursor.expect_declared("a prototype")
     cursor.accept("refined", "to")
     category = _parse_prototype_category(cursor)
     classifier = "" if cursor.token.kind != "name" else cursor.expect_path("a classifier")
@@ -80,12 +79,10 @@ def parse_bindings(cursor: TokenCursor) -> dict[str, PrototypeBinding]:
         return {}
     bindings: dict[str, PrototypeBinding] = {}
     with cursor.deeper():
-        while not cursor.accept(")"):
+        for _ in cursor.walk_entries(")", ","):
             name = cursor.expect_name("a prototype")
             cursor.expect("=>")
             bindings[name.lower()] = _parse_actual(cursor)
-            if not cursor.at(")"):
-                cursor.expect(",")
     return bindings
 
 
@@ -93,9 +90,7 @@ def _parse_actual(cursor: TokenCursor) -> PrototypeBinding:
     if cursor.accept("("):
         # An array of actuals: the first stands for all.
         with cursor.deeper():
-            first = _parse_actual(cursor)
-            while cursor.accept(","):
-                _parse_actual(cursor)
+            first, *_ = cursor.parse_separated(lambda: _parse_actual(cursor), ",")
         cursor.expect(")")
         return first
     direction = parse_direction(cursor)
@@ -110,8 +105,7 @@ def _parse_actual(cursor: TokenCursor) -> PrototypeBinding:
 def parse_feature(cursor: TokenCursor) -> AadlFeature:
     """Parse a feature up to its `;`."""
     start = cursor.token.offset
-    name = cursor.expect_name("a feature")
-    cursor.expect(":")
+    name = cursor.expect_declared("a feature")
     feature = AadlFeature(name, "", cursor.span_from(start))
     feature.refined = cursor.accept("refined", "to")
     feature.direction = parse_direction(cursor)

@@ -78,7 +78,7 @@ def _parse_package(cursor: TokenCursor, parsed: ParsedText) -> None:
     while cursor.token.kind != END:
         if cursor.at("end"):
             if _is_package_end(cursor, package):
-                _parse_package_end(cursor, package)
+                cursor.expect_end("package ", package.name, lambda: _parse_package_name(cursor))
                 return
             # What it ends could not be read, which was told.
             cursor.advance()
@@ -106,20 +106,8 @@ def _is_package_end(cursor: TokenCursor, package: AadlPackage) -> bool:
     return name == package.name.lower() or following.kind == END or following.word in {"package", "property"}
 
 
-def _parse_package_end(cursor: TokenCursor, package: AadlPackage) -> None:
-    end = cursor.expect("end")
-    name = _parse_package_name(cursor)
-    if name.lower() != package.name.lower():
-        words = f"this ends `{name}`, but what is open is package `{package.name}`"
-        cursor.tell(AadlSyntaxError(words, end, f"write `end {package.name};`"))
-    cursor.expect(";")
-
-
 def _parse_package_name(cursor: TokenCursor) -> str:
-    parts = [cursor.expect_name("a package")]
-    while cursor.accept("::"):
-        parts.append(cursor.expect_name("a package"))
-    return "::".join(parts)
+    return "::".join(cursor.parse_separated(lambda: cursor.expect_name("a package"), "::"))
 
 
 def _parse_package_entry(cursor: TokenCursor, package: AadlPackage) -> None:
@@ -188,12 +176,7 @@ def _parse_property_set(cursor: TokenCursor) -> PropertySet:
     cursor.parse_entries(
         lambda: _parse_set_entry(cursor, property_set), lambda: cursor.at("end") and cursor.peek().kind == "name"
     )
-    end = cursor.expect("end")
-    name = cursor.expect_name("a property set")
-    if name.lower() != property_set.name.lower():
-        words = f"this ends `{name}`, but what is open is property set `{property_set.name}`"
-        cursor.tell(AadlSyntaxError(words, end, f"write `end {property_set.name};`"))
-    cursor.expect(";")
+    cursor.expect_end("property set ", property_set.name, lambda: cursor.expect_name("a property set"))
     return property_set
 
 

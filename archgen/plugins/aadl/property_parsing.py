@@ -50,9 +50,7 @@ def parse_property(cursor: TokenCursor) -> AadlProperty:
     if not appended:
         cursor.expect("=>")
     cursor.accept("constant")
-    values = [(parse_property_value(cursor), parse_modes(cursor))]
-    while cursor.accept(","):
-        values.append((parse_property_value(cursor), parse_modes(cursor)))
+    values = cursor.parse_separated(lambda: (parse_property_value(cursor), parse_modes(cursor)), ",")
     paths = parse_targets(cursor)
     if cursor.accept("in", "binding"):
         _skip_brackets(cursor)
@@ -63,12 +61,9 @@ def parse_property(cursor: TokenCursor) -> AadlProperty:
 
 def parse_targets(cursor: TokenCursor) -> tuple[Path, ...]:
     """Parse `applies to a.b, c` if it stands here."""
-    paths: list[Path] = []
-    if cursor.accept("applies", "to"):
-        paths.append(parse_contained_path(cursor))
-        while cursor.accept(","):
-            paths.append(parse_contained_path(cursor))
-    return tuple(paths)
+    if not cursor.accept("applies", "to"):
+        return ()
+    return tuple(cursor.parse_separated(lambda: parse_contained_path(cursor), ","))
 
 
 def parse_modes(cursor: TokenCursor) -> Modes:
@@ -202,30 +197,22 @@ def _make_number(text: str) -> Fraction | None:
 
 
 def _parse_list(cursor: TokenCursor) -> AadlList:
-    items: list[AadlValue] = []
-    while not cursor.accept(")"):
-        items.append(parse_property_value(cursor))
-        if not cursor.at(")"):
-            cursor.expect(",")
-    return AadlList(tuple(items))
+    return AadlList(tuple(parse_property_value(cursor) for _ in cursor.walk_entries(")", ",")))
 
 
 def _parse_record(cursor: TokenCursor) -> AadlRecord:
     fields: dict[str, AadlValue] = {}
-    while not cursor.accept("]"):
+    for _ in cursor.walk_entries("]", ";"):
         name = cursor.advance().text
         cursor.expect("=>")
         fields[name] = parse_property_value(cursor)
-        if not cursor.at("]"):
-            cursor.expect(";")
     return AadlRecord(fields)
 
 
 def parse_property_definition(cursor: TokenCursor, property_set: PropertySet) -> None:
     """Parse a definition of a property set: a property, a type, or a constant."""
     start = cursor.token.offset
-    name = cursor.expect_name("a property")
-    cursor.expect(":")
+    name = cursor.expect_declared("a property")
     if cursor.accept("type"):
         parse_property_type(cursor)
         property_set.types[name.lower()] = cursor.span_from(start)
@@ -258,8 +245,7 @@ def _parse_property_type(cursor: TokenCursor) -> None:
     elif cursor.accept("record"):
         cursor.expect("(")
         while not cursor.accept(")"):
-            cursor.expect_name("a field")
-            cursor.expect(":")
+            cursor.expect_declared("a field")
             parse_property_type(cursor)
             cursor.expect(";")
     elif cursor.accept("enumeration"):
@@ -286,11 +272,9 @@ def _parse_units(cursor: TokenCursor) -> None:
     if not cursor.accept("("):
         cursor.expect_path("units")
         return
-    while not cursor.accept(")"):
+    for _ in cursor.walk_entries(")", ","):
         cursor.expect_name("a unit")
         if cursor.accept("=>"):
             cursor.expect_name("a unit")
             cursor.expect("*")
             _parse_number(cursor)
-        if not cursor.at(")"):
-            cursor.expect(",")

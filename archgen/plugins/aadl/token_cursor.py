@@ -11,7 +11,7 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from itertools import islice
-from typing import NamedTuple, NoReturn
+from typing import NamedTuple, NoReturn, TypeVar
 
 from archgen.plugin import dataclass
 from archgen.plugin.importing import Span
@@ -113,6 +113,7 @@ def unquote_text(token: Token) -> str:
     return token.text[1:-1].replace('""', '"').replace('\\"', '"')
 
 
+Entry = TypeVar("Entry")
 MAX_DEPTH = 60
 """How deep values, bindings and types may stand in one another."""
 _MAX_SHOWN = 40
@@ -220,6 +221,35 @@ class TokenCursor:
         while self.at("::") or self.at("."):
             parts += [self.advance().text, self.expect_name(what)]
         return "".join(parts)
+
+    def expect_declared(self, what: str) -> str:
+        """Return the name that comes next, and go behind the `:` that follows it."""
+        name = self.expect_name(what)
+        self.expect(":")
+        return name
+
+    def expect_end(self, opened: str, name: str, closing: Callable[[], str]) -> None:
+        """Go behind `end name;`; another name than that of what is open is told."""
+        end = self.expect("end")
+        found = closing()
+        if found.lower() != name.lower():
+            words = f"this ends `{found}`, but what is open is {opened}`{name}`"
+            self.tell(AadlSyntaxError(words, end, f"write `end {name};`"))
+        self.expect(";")
+
+    def parse_separated(self, parse_entry: Callable[[], Entry], separator: str) -> list[Entry]:
+        """Return entries with a sign between them, one or more."""
+        entries = [parse_entry()]
+        while self.accept(separator):
+            entries.append(parse_entry())
+        return entries
+
+    def walk_entries(self, end: str, separator: str) -> Iterator[None]:
+        """Yield before each entry up to the sign behind them; between them stands another one."""
+        while not self.accept(end):
+            yield
+            if not self.at(end):
+                self.expect(separator)
 
     @contextmanager
     def deeper(self) -> Iterator[None]:

@@ -16,6 +16,7 @@ from typing import Any
 from archgen.plugin.findings import Diagnostic
 from archgen.plugin.generating import GeneratedView, GenerationContext, read_own_hints, tell_left_out, write_place
 from archgen.plugin.model import Architecture, Component, Qos
+from archgen.plugins.middlewares.component_parameters import record_middleware_parameters
 from archgen.plugins.middlewares.middleware_classes import (
     ComponentClass,
     collect_component_classes,
@@ -26,7 +27,6 @@ from archgen.plugins.middlewares.middleware_classes import (
     record_outputs,
 )
 from archgen.plugins.middlewares.middleware_names import drop_clashes, name_member, name_space, shorten_wire_name
-from archgen.plugins.middlewares.middleware_parameters import record_middleware_parameters
 from archgen.plugins.middlewares.middleware_types import MiddlewareTypes
 from archgen.plugins.middlewares.player_interfaces import OPAQUE
 from archgen.plugins.middlewares.simulated_timing import find_period, find_timing

@@ -16,8 +16,8 @@ from archgen.plugin.generating import (
     write_place,
 )
 from archgen.plugin.model import Architecture, Component, Input, Output
+from archgen.plugins.middlewares.component_parameters import record_simulated_parameters
 from archgen.plugins.middlewares.java_names import JAVA_CLASS_NAMES
-from archgen.plugins.middlewares.simulated_parameters import record_simulated_parameters
 from archgen.plugins.middlewares.simulated_types import ANYTHING, TEXT, SimulatedTypes, ValueType, name_java_field
 
 _JAVA_FIELDS = frozenset(("parameters", "behaviour"))

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from archgen.plugin.importing import XmlElement
 from archgen.plugins.xmi import uml_values
-from archgen.plugins.xmi.import_ledger import ImportLedger, name_element
+from archgen.plugins.xmi.import_ledger import ImportLedger
 from archgen.plugins.xmi.made_names import choose_id, name_parameter
 from archgen.plugins.xmi.uml_catalogue import read_description
 from archgen.plugins.xmi.uml_index import UmlIndex, get_kind, get_name, is_true, list_child_elements
@@ -58,7 +58,7 @@ def _read_property(
         features.data_types[name] = type_name
         ledger.take(element)
     elif not name:
-        ledger.leave(element, f"{name_element(element)} is not taken: it has no name")
+        ledger.refuse(element, "it has no name")
     elif name.lower() == _PERIOD_NAME and (text := uml_values.read_default(index, element)) is not None:
         default = element.find("defaultValue")
         # archgen keeps the words of a period as the literal's name.
@@ -94,7 +94,7 @@ def _read_parameter(
         ledger.leave(element, f"the property `{name[:80]}` is no parameter: {why}")
         return
     if key in features.parameters:
-        ledger.leave(element, f"{name_element(element)} is not taken: there is another one of this name")
+        ledger.refuse(element, "there is another one of this name")
         return
     parameter: dict[str, object] = {"choices": choices} if choices else {"type": kind}
     is_list = uml_values.is_many(element)
@@ -138,7 +138,7 @@ def _add_default(
 def _read_operation(index: UmlIndex, ledger: ImportLedger, element: XmlElement, features: ClassFeatures) -> None:
     name = get_name(element)
     if not name:
-        ledger.leave(element, f"{name_element(element)} is not taken: it has no name")
+        ledger.refuse(element, "it has no name")
         return
     operation_id = choose_id(element, "operation", features.operations)
     # Code calls an operation by its id where it has no other name.

@@ -7,7 +7,7 @@ from collections import defaultdict
 from archgen.plugin.importing import XmlElement, make_id
 from archgen.plugins.xmi.class_features import ClassFeatures, read_features
 from archgen.plugins.xmi.component_facts import ClassFacts, ClassSorting
-from archgen.plugins.xmi.import_ledger import ImportLedger, name_element
+from archgen.plugins.xmi.import_ledger import ImportLedger
 from archgen.plugins.xmi.made_names import choose_id
 from archgen.plugins.xmi.port_facts import InterfaceUses, PortFacts
 from archgen.plugins.xmi.uml_catalogue import UmlCatalogue
@@ -83,8 +83,7 @@ class ComponentAssembly:
                 if part_type is None or part_type.sort != "component_type":
                     continue
                 if is_true(part_type.element, "isAbstract"):
-                    words = f"{name_element(part)} is not taken: `{get_name(part_type.element)}` is abstract"
-                    self._ledger.leave(part, words)
+                    self._ledger.refuse(part, f"`{get_name(part_type.element)}` is abstract")
                     continue
                 facts = ClassFacts(part, "component", owner=owner, base=part_type, base_arguments=arguments)
                 owner.inside.append(facts)
@@ -113,8 +112,7 @@ class ComponentAssembly:
                 if inner.base is not None and any(
                     id(each) in active for each in (inner.base, *inner.base.list_bases())
                 ):
-                    words = f"{name_element(inner.element)} is not taken: the component type would contain itself"
-                    self._ledger.leave(inner.element, words)
+                    self._ledger.refuse(inner.element, "the component type would contain itself")
                     facts.inside.remove(inner)
                     self._sorting.parts.pop(inner.element, None)
                 else:

@@ -142,7 +142,7 @@ class ClassSorting:
             realizing = [each for each in realizing if each in classes and each not in components]
             components = [each for each in components if get_kind(each) == "Component"]
             if realizing and (unbound := self._templates.describe_unbound(realizing[0])):
-                self._ledger.leave(realization, f"{name_element(realization)} is not taken: {unbound}")
+                self._ledger.refuse(realization, unbound)
                 continue
             for component in components:
                 for each in realizing[:1]:
@@ -157,8 +157,7 @@ class ClassSorting:
                 words = f"{name_element(components[0])} is realized by {names[:100]}, too: a component is made from one type"
                 self._ledger.leave(realization, words)
             if not components or not realizing:
-                words = f"{name_element(realization)} is not taken: it does not lead from a class to a component"
-                self._ledger.leave(realization, words)
+                self._ledger.refuse(realization, "it does not lead from a class to a component")
         return realizers
 
     def _sort_classes(self) -> None:
@@ -235,7 +234,7 @@ class ClassSorting:
         if element not in self.with_ports:
             return None, ()
         if unbound := self._templates.describe_unbound(reference.element):
-            self._ledger.leave(part, f"{name_element(part)} is not taken: {unbound}")
+            self._ledger.refuse(part, unbound)
             return None, ()
         return self.facts.get(element), arguments
 

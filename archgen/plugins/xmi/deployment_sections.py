@@ -67,10 +67,7 @@ class DeploymentSections:
             host = self._find_host(element)
             hosts = [host] if host else hosts_of_all
             if not hosts:
-                self._ledger.leave(
-                    element,
-                    f"{name_element(element)} is not taken: it stands in no node, and there is none, or too many",
-                )
+                self._ledger.refuse(element, "it stands in no node, and there is none, or too many")
                 continue
             for each in hosts:
                 middlewares[each].append(get_name(element))
@@ -94,7 +91,7 @@ class DeploymentSections:
             if components:
                 self._ledger.take(element)
             else:
-                self._ledger.leave(element, f"{name_element(element)} is not taken: what it manifests is no component")
+                self._ledger.refuse(element, "what it manifests is no component")
 
     def _make_own_nodes(self) -> None:
         """Make the nodes that archgen exported, as they were: one may implement several components."""
@@ -126,9 +123,7 @@ class DeploymentSections:
             host = self._find_host(targets[0] if targets else parent)
             deployed = self._index.list_named(element, "deployedArtifact", "supplier")
             if host is None or not deployed:
-                self._ledger.leave(
-                    element, f"{name_element(element)} is not taken: it does not lead from an artifact to a node"
-                )
+                self._ledger.refuse(element, "it does not lead from an artifact to a node")
                 continue
             for each in deployed:
                 self._deploy(element, each, manifested.get(each, []), host)
@@ -191,9 +186,7 @@ class DeploymentSections:
         used = {*self._package_of.values(), *self._library_artifacts}
         for artifact in self._catalogue.artifacts:
             if not _is_own_node(artifact) and artifact not in used:
-                self._ledger.leave(
-                    artifact, f"{name_element(artifact)} is not taken: it is on no node, and no component is in it"
-                )
+                self._ledger.refuse(artifact, "it is on no node, and no component is in it")
         return section
 
     def _leave_undeployable(self, facts: ClassFacts) -> None:
@@ -217,8 +210,7 @@ class DeploymentSections:
                     if ends
                     else "what flows between components is said by ports and interfaces"
                 )
-                words = f"{name_element(element)} is not taken: {why}"
-                self._ledger.leave(element, words)
+                self._ledger.refuse(element, why)
                 continue
             link_id = choose_id(element, "link", section.keys(), get_name(element) or "link", self._index.known_ids)
             section[link_id] = {"connects": ends} | say_title(get_name(element), link_id) | make_hints(element)

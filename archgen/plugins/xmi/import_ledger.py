@@ -40,6 +40,10 @@ class ImportLedger:
         """Note an element that is not taken, and `others` of which the message speaks, too."""
         self._add(element, message, help_line, NOT_TAKEN, kind, tuple(others))
 
+    def refuse(self, element: XmlElement, why: str, help_line: str = "") -> None:
+        """Note that an element is not taken, and why."""
+        self.leave(element, f"{name_element(element)} is not taken: {why}", help_line)
+
     def note(self, element: XmlElement, message: str, help_line: str = "", kind: str = "") -> None:
         """Note an element that is taken in another form than it is written in."""
         self._add(element, message, help_line, NOTED, kind, ())

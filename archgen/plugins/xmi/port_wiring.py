@@ -56,8 +56,7 @@ class PortWiring:
         ends = list_child_elements(connector, "ConnectorEnd")
         found = [end for each in ends if (end := self._find_end(each))]
         if len(ends) != 2 or len(found) != 2:  # noqa: PLR2004 - a connector joins two
-            words = f"{name_element(connector)} is not taken: it does not join two ports of components"
-            self._ledger.leave(connector, words)
+            self._ledger.refuse(connector, "it does not join two ports of components")
             return None
         for each, other in (found, found[::-1]):
             # A port that is passed on to the inside still meets others outside.
@@ -109,8 +108,7 @@ class PortWiring:
         if taken:
             self._ledger.take(connector)
         else:
-            words = f"{name_element(connector)} is not taken: {self._tell_ends(first, second)} do not fit"
-            self._ledger.leave(connector, words)
+            self._ledger.refuse(connector, f"{self._tell_ends(first, second)} do not fit")
 
     @staticmethod
     def _tell_ends(first: PortEnd, second: PortEnd) -> str:
@@ -124,8 +122,7 @@ class PortWiring:
         if outer.port.is_output and inner.port.is_output:
             self.inner_of[outer.facts][outer.port].append(inner)
         if outer.port.is_input != inner.port.is_input and outer.port.is_output != inner.port.is_output:
-            words = f"{name_element(connector)} is not taken: its ports do not go the same way, {self._tell_ends(outer, inner)}"
-            self._ledger.leave(connector, words)
+            self._ledger.refuse(connector, f"its ports do not go the same way, {self._tell_ends(outer, inner)}")
         else:
             self._ledger.take(connector)
 

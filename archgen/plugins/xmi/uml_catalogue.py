@@ -9,9 +9,8 @@ from dataclasses import dataclass, field
 from html.parser import HTMLParser
 
 from archgen.plugin.importing import XmlElement
-from archgen.plugins.xmi.import_ledger import OWN_PREFIX, ImportLedger, name_element
-from archgen.plugins.xmi.uml_index import UmlIndex, get_id, get_kind, get_name
-from archgen.plugins.xmi.xmi_files import XmiDocument
+from archgen.plugins.xmi.import_ledger import OWN_PREFIX, ImportLedger
+from archgen.plugins.xmi.uml_index import UmlIndex, XmiDocument, get_id, get_kind, get_name
 
 _PACKAGES = frozenset({"Model", "Package"})
 _CLASSES = frozenset({"Class", "Component"})
@@ -88,7 +87,7 @@ def make_catalogue(documents: Sequence[XmiDocument], index: UmlIndex, ledger: Im
     for document in documents:
         for model in document.models:
             if get_kind(model) == "Profile":
-                ledger.leave(model, f"{name_element(model)} is not taken: profiles describe UML itself")
+                ledger.refuse(model, "profiles describe UML itself")
             else:
                 walk.catalogue.all_packages.append(model)
                 walk.visit_contents(model, model)
@@ -177,7 +176,7 @@ class _CatalogueWalk:
 
     def _leave(self, element: XmlElement, kind: str) -> None:
         reason = _WHY.get(kind, "the language has nothing like it")
-        self._ledger.leave(element, f"{name_element(element)} is not taken: {reason}")
+        self._ledger.refuse(element, reason)
 
     def note_surroundings(self, document: XmiDocument) -> None:
         """Note what a tool keeps for itself, and the stereotypes that it wrote outside of the model."""

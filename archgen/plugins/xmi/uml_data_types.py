@@ -10,7 +10,7 @@ from archgen.plugin.importing import XmlElement, make_id
 from archgen.plugin.model import read_generic_name
 from archgen.plugin.ros import spell_message_name
 from archgen.plugins.xmi import uml_values
-from archgen.plugins.xmi.import_ledger import OWN_PREFIX, ImportLedger, make_hints, name_element
+from archgen.plugins.xmi.import_ledger import OWN_PREFIX, ImportLedger, make_hints
 from archgen.plugins.xmi.template_classes import SIGNATURE_KINDS, read_generic_names
 from archgen.plugins.xmi.uml_catalogue import read_description
 from archgen.plugins.xmi.uml_index import Reference, UmlIndex, get_id, get_kind, get_name, list_child_elements
@@ -35,7 +35,7 @@ class UmlDataTypes:
                 continue
             if not name or name in self._elements:
                 why = "there is another one of this name" if name else "it has no name"
-                ledger.leave(element, f"{name_element(element)} is not taken: {why}")
+                ledger.refuse(element, why)
                 continue
             self._elements[name] = element
             for signature in list_child_elements(element, *SIGNATURE_KINDS):

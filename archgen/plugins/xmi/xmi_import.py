@@ -16,8 +16,15 @@ from archgen.plugins.xmi.port_wiring import PortWiring
 from archgen.plugins.xmi.uml_catalogue import TOOL_TAGS, UmlCatalogue, make_catalogue
 from archgen.plugins.xmi.uml_component_sections import ComponentSections, assign_port_ids
 from archgen.plugins.xmi.uml_data_types import UmlDataTypes
-from archgen.plugins.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, is_written_here
-from archgen.plugins.xmi.xmi_files import XmiDocument, read_documents
+from archgen.plugins.xmi.uml_index import (
+    UmlIndex,
+    XmiDocument,
+    get_id,
+    get_kind,
+    get_name,
+    is_written_here,
+    read_documents,
+)
 
 _FILES = {
     "component_types.yaml": ("component_types",),
@@ -83,15 +90,14 @@ def _count_relations(
         if element in uses.used_elements:
             ledger.take(element)
         elif get_kind(element) in {"Usage", "Dependency", "Abstraction", "Substitution"}:
-            words = f"{name_element(element)} is not taken: it does not say what flows"
-            ledger.leave(element, words, "let ports use and realize an interface")
+            ledger.refuse(element, "it does not say what flows", "let ports use and realize an interface")
     meant = {key for keys in (*uses.provided.values(), *uses.required.values()) for key in keys}
     meant |= {key for port in assembly.list_ports() for key in (*port.provided, *port.required)}
     for element in catalogue.interfaces:
         if element in meant:
             ledger.take(element)
         else:
-            ledger.leave(element, f"{name_element(element)} is not taken: nobody realizes or uses it")
+            ledger.refuse(element, "nobody realizes or uses it")
 
 
 def _note_packages(catalogue: UmlCatalogue, ledger: ImportLedger, groups: frozenset[XmlElement]) -> None:

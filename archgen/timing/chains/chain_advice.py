@@ -1,32 +1,31 @@
-"""Three sentences on a chain that does not surely meet its deadline: by how much, what takes most and why, one thing to do.
+"""What is known of a chain that does not surely meet its deadline: by how much, what takes most and why, what is missing.
 
-Nothing is tried out here: what to do follows from the largest part alone.
+Nothing here says what would help: that is known of what was analysed alone (`search.proposals`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from fractions import Fraction
 from typing import Literal, NamedTuple
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm
-from archgen.timing.chains.gap_formulas import find_storing_part
-from archgen.timing.chains.trigger_arrivals import TriggerArrivals
-from archgen.timing.chains.unfound_bounds import find_overloaded_hosts, find_unfound_places
+from archgen.timing.chains.unfound_bounds import find_overloaded_hosts
 from archgen.timing.figures import figure_wording
-from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.figures.value_arithmetic import UNLINKED_NOTE, is_boundless
+from archgen.timing.figures.value_arithmetic import NO_USE_NOTE, REPLACED_WORDS, UNLINKED_NOTE, is_boundless
 from archgen.timing.system.core_placement import is_missing_cores
-from archgen.timing.system.thread_pools import name_lane
 
 _NAMED_LOADS = 3
 """So many of the elements that load a host most are named."""
 
 
 class ChainAdvice(NamedTuple):
-    """What to know about a chain: by how much it may be late, which parts take most, and what to do first."""
+    """What to know about a chain: by how much it may be late, which parts take most, and what has to be known or to go.
+
+    `first_step` is empty where no figure is missing and no host is overloaded.
+    """
 
     lateness: str
     largest_parts: str
@@ -47,7 +46,7 @@ def advise_on_chain(analysis: Analysis, result: ChainResult) -> ChainAdvice | No
     return ChainAdvice(
         _describe_lateness(analysis, result, result.deadline.value),
         _describe_parts(analysis, parts[:2]),
-        _suggest_for_cause(analysis, result) or (_suggest_for_part(analysis, parts[0], result.terms) if parts else ""),
+        _suggest_for_cause(analysis, result),
     )
 
 
@@ -75,11 +74,18 @@ def _describe_lateness(analysis: Analysis, result: ChainResult, deadline: Fracti
     if result.verdict == "open":
         known = f"What is known of it adds up to {_write(bound)}" if bound else "Nothing is known of how long it takes"
         return f"{known}, and figures are missing: nobody can say whether it meets {deadline_text}."
+    # Missed although its best case is in time: a simulated run was too late.
+    is_seen = result.verdict == "missed"
     if bound is not None and bound > deadline:
-        # Missed although its best case is in time: a simulated run was too late.
-        evidence = "a simulated run was late" if result.verdict == "missed" else "nothing shows that it ever does"
-        return f"It may take up to {_write(bound)}, {_write(bound - deadline)} longer than {deadline_text} allows; {evidence}."
-    return f"Nobody can say how long it takes at most, and so not whether it meets {deadline_text}: no bound was found."
+        head = "It may take up to" if result.bound.complete else "What is known of it adds up to"
+        evidence = "a simulated run was late" if is_seen else "nothing shows that it ever does"
+        return f"{head} {_write(bound)}, {_write(bound - deadline)} longer than {deadline_text} allows; {evidence}."
+    unsure = (
+        f"A simulated run took longer than {deadline_text} allows"
+        if is_seen
+        else f"Nothing says whether it meets {deadline_text}"
+    )
+    return f"{unsure}; nobody can say how long it takes at most: no bound was found."
 
 
 def _describe_parts(analysis: Analysis, parts: list[_ChainPart]) -> str:
@@ -113,7 +119,7 @@ def _describe_response(analysis: Analysis, name: str) -> str:
 
 
 def _suggest_for_cause(analysis: Analysis, result: ChainResult) -> str:
-    """Suggest what to do about a cause that leaves no bound, empty where there is one."""
+    """Say what has to go from an overloaded host, or which figure is to be measured first; empty for neither."""
     hosts = find_overloaded_hosts(analysis, result.terms)
     if hosts:
         shares = sorted(
@@ -124,22 +130,9 @@ def _suggest_for_cause(analysis: Analysis, result: ChainResult) -> str:
         return f"Take work off {hosts[0]}, where {needed} need{'s' if len(shares) == 1 else ''} most."
     if result.bound.missing and not result.bound.complete:
         return _suggest_measuring(analysis, result)
-    places = find_unfound_places(analysis, result.terms)
-    if places:
-        first_place = places[0]
-        return _UNFOUND_STEPS.get(first_place.tiers[0], _PIN_STEP).format(
-            join_words(list(first_place.activities[:_NAMED_LOADS])), first_place.host or "their host"
-        )
+    if any(text.startswith(NO_USE_NOTE) and REPLACED_WORDS in text for text in result.bound.assumptions):
+        return "Let each source send on a topic of its own, or write `memory: each_source` at the input where the program keeps a message of each."
     return ""
-
-
-_PIN_STEP = "Pin {0} to cores of {1} (`core:`), so that less other work comes in the way."
-_UNFOUND_STEPS: dict[ResponseTier, str] = {
-    "host": "Write priorities for what runs on {1} (`priority:`), or pin {0} to a core (`core:`).",
-    "executor": "Give {0} a thread of their own (another container, or more `threads:`).",
-    "dedicated": "Let {0} work less often, or for a shorter time (`wcet:`).",
-}
-"""What to do where no bound was found, by what was analysed there."""
 
 
 def _suggest_measuring(analysis: Analysis, result: ChainResult) -> str:
@@ -180,93 +173,6 @@ def _suggest_figure(analysis: Analysis, name: str) -> str:
         return f"Measure the execution time of {name} and write it (`wcet:`)"
     is_unpaced = activity.period is None and activity.behaviour not in {"event", "on_demand", "once"}
     return f"Measure how often {name} works and write it (`rate:`)" if is_unpaced else ""
-
-
-def _suggest_for_part(analysis: Analysis, part: _ChainPart, terms: Sequence[ChainTerm]) -> str:
-    """Suggest what makes the largest part smaller."""
-    name = part.term.activity
-    if part.kind == "link":
-        return f"Send less to {name}, or measure its link and write what it really takes (`latency:`)."
-    if part.kind == "waits":
-        is_mostly_stored = 2 * find_storing_part(analysis, name, part.duration) > part.duration
-        return _suggest_for_storing(analysis, name) if is_mostly_stored else _suggest_for_wait(analysis, name)
-    return _suggest_for_run(analysis, part, terms) or _suggest_for_response(analysis, name)
-
-
-def _suggest_for_storing(analysis: Analysis, name: str) -> str:
-    """Suggest what lets the callback that stores what an element reads have its turn sooner."""
-    system, activity = analysis.system, analysis.system.activities[name]
-    lane = name_lane(system, activity)
-    mates = [other.id for other in system.activities.values() if other.id != name and name_lane(system, other) == lane]
-    if mates:
-        step = f"Let fewer callbacks share a thread with {name} (a container of its own, or more `threads:`)"
-    elif activity.host is None:
-        step = f"Let {name} work less often, or for a shorter time (`wcet:`)"
-    elif system.cores.get(activity.host) == 1 or len(activity.cores) == 1:
-        now = f", now {activity.priority}" if activity.priority is not None else ""
-        other_way = f"move work off {activity.host} (`host:`)" if not activity.cores else "a core of its own (`core:`)"
-        step = f"Give {name} a higher priority than the others there (`priority:`{now}), or {other_way}"
-    else:
-        step = f"Give {name} a core of its own (`core:`), or a priority above the others there (`priority:`)"
-    return f"{step}, so that what it reads is stored sooner; `stored: at_once` only where nothing has to store it."
-
-
-def _suggest_for_run(analysis: Analysis, part: _ChainPart, terms: Sequence[ChainTerm]) -> str:
-    """Suggest what shortens a run of several steps on several cores; empty where there is none, or it is mostly work."""
-    name = part.term.activity
-    activity, response = analysis.system.activities[name], analysis.responses[name]
-    own_work = (activity.wcet or 0) * analysis.system.tick
-    steps = _list_run(analysis, part, terms)
-    if response.tier not in {"cores", "whole host"} or len(steps) == 1 or 2 * own_work >= part.duration:
-        return ""
-    return (
-        f"Give {join_words(steps)}, which run one after the other, cores of {activity.host} with little else on them "
-        "(`core:`), or a priority above the others there (`priority:`)."
-    )
-
-
-def _list_run(analysis: Analysis, part: _ChainPart, terms: Sequence[ChainTerm]) -> list[str]:
-    """Return the steps of a chain of which each fires the next on the host of a part, with that of the part."""
-    first = last = terms.index(part.term)
-    while first and terms[first].activity in analysis.runs:
-        first -= 1
-    while last + 1 < len(terms) and terms[last + 1].activity in analysis.runs:
-        last += 1
-    return [term.activity for term in terms[first : last + 1]]
-
-
-def _suggest_for_wait(analysis: Analysis, name: str) -> str:
-    activity = analysis.system.activities[name]
-    gap = analysis.paces[name].gap.value
-    now = f", now every {_write(gap)} at the latest" if gap is not None else ""
-    if activity.behaviour == "periodic":
-        other_way = ", or let what it reads fire it (`trigger:`)" if analysis.system.arcs_into.get(name) else ""
-        return f"Let {name} work more often (`period:`{now}){other_way}."
-    if TriggerArrivals(analysis).waits_for_all(activity):
-        return f"Let all that {name} waits for come more often, or let any of it fire {name} (`trigger: any`)."
-    if activity.throttle or activity.every > 1:
-        return f"Let {name} drop less of what fires it (`{'throttle' if activity.throttle else 'every'}:`)."
-    return f"Let what fires {name} come more often, or less late (`jitter:`)."
-
-
-def _suggest_for_response(analysis: Analysis, name: str) -> str:
-    activity, response = analysis.system.activities[name], analysis.responses[name]
-    own_work = (activity.wcet or 0) * analysis.system.tick
-    if response.tier == "declared":
-        return f"Shorten {name}, and what its `response:` declares."
-    if response.worst.value is not None and 2 * own_work >= response.worst.value:
-        return f"Shorten {name} (`wcet:`, {_write(own_work)}), measured if it is a guess: its own work is most of it."
-    if response.tier == "executor":
-        return f"Give {name} a thread of its own: a container of its own, or more `threads:`."
-    has_one_core = analysis.system.cores.get(activity.host or "") == 1
-    other_way = (
-        f"move work off {activity.host} (`host:`)" if has_one_core else "pin it to a core with less on it (`core:`)"
-    )
-    if activity.priority is not None:
-        return f"Give {name} a higher priority (`priority:`, now {activity.priority}), or {other_way}."
-    if has_one_core or activity.cores:
-        return f"Give {name} a priority above the others there (`priority:`), or {other_way}."
-    return f"Pin {name} to a core with little else on it (`core:`), or give it a priority (`priority:`)."
 
 
 def _write(nanoseconds: Fraction) -> str:

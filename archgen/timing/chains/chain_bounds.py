@@ -12,13 +12,13 @@ from itertools import pairwise
 
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture, Chain, Waypoint
-from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, ChainVerdict
+from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, ChainVerdict, ShareDeadline
 from archgen.timing.chains import chain_regions
-from archgen.timing.chains.chain_verdicts import judge_deadline, may_be_late
+from archgen.timing.chains.chain_verdicts import judge_deadline, judge_shares, may_be_late
 from archgen.timing.chains.cost_network import CostNetwork, PathAim
+from archgen.timing.chains.element_index import ChainPoint
 from archgen.timing.chains.extreme_paths import find_aimed_paths, find_extreme_path, find_extreme_value, sum_path
-from archgen.timing.chains.measured_basis import describe_measured_basis
-from archgen.timing.chains.path_search import CostedPath, PathSet
+from archgen.timing.chains.path_search import CostedPath, PathSet, RouteRegion
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue
 from archgen.timing.figures.value_arithmetic import (
@@ -55,7 +55,7 @@ def bound_chain(
 ) -> ChainResult:
     """Bound one chain. Pass a network to share its costs among many chains."""
     network = network or CostNetwork.of_analysis(analysis)
-    chain_points = chain_regions.resolve_points(analysis.system, architecture, asked_chain.through)
+    chain_points = network.index_elements(architecture).resolve_points(asked_chain.through)
     regions = chain_regions.lay_out_chain(network, chain_points)
     return _build_result(network, regions, asked_chain, chain_points)
 
@@ -64,7 +64,7 @@ def find_chain_slack(network: CostNetwork, architecture: Architecture, asked_cha
     """Return what the bound of a chain leaves of its deadline, in ns, and look for no other figure; None where either is open."""
     if asked_chain.deadline is None or asked_chain.unresolved:
         return None
-    chain_points = chain_regions.resolve_points(network.steps.analysis.system, architecture, asked_chain.through)
+    chain_points = network.index_elements(architecture).resolve_points(asked_chain.through)
     extreme_path = find_extreme_path(network, chain_regions.lay_out_chain(network, chain_points), "bound")
     if extreme_path is None or extreme_path.value.value is None or not is_known_bound(extreme_path.value):
         return None
@@ -90,7 +90,7 @@ def find_unmet_chains(analysis: Analysis, architecture: Architecture, margin: Fr
         if asked_chain.deadline is None or asked_chain.unresolved:
             continue
         regions = chain_regions.lay_out_chain(
-            network, chain_regions.resolve_points(analysis.system, architecture, asked_chain.through)
+            network, network.index_elements(architecture).resolve_points(asked_chain.through)
         )
         # Only the bound: each other aim would cost a graph of its own, and rules need none of chains that are in time.
         extreme_path = find_extreme_path(network, regions, "bound")
@@ -107,6 +107,17 @@ def find_unmet_chains(analysis: Analysis, architecture: Architecture, margin: Fr
                 yield LateChain(asked_chain, bound, best, verdict, build_terms(view, path))
 
 
+def find_missed_shares(
+    analysis: Analysis, architecture: Architecture
+) -> Iterator[tuple[Chain, ShareDeadline, TimingValue]]:
+    """Yield the deadlines of shares that no reaction of a chain can meet, each with the best case."""
+    asked_chains = [each for each in architecture.chains.values() if each.deadline_shares and not each.unresolved]
+    network = CostNetwork.of_analysis(analysis) if asked_chains else None
+    for asked_chain in asked_chains if network else ():
+        result = bound_chain(analysis, architecture, asked_chain, network)
+        yield from ((asked_chain, share, result.best) for share in result.shares if share.verdict == "missed")
+
+
 def find_paths_between(
     network: CostNetwork, architecture: Architecture, source: Waypoint, target: Waypoint, aim: PathAim = "bound"
 ) -> PathSet | None:
@@ -115,7 +126,7 @@ def find_paths_between(
     Extremes, the next ones and their number can be asked of the answer. With the aim `best`, the quickest best case is
     first.
     """
-    end_points = chain_regions.resolve_points(network.steps.analysis.system, architecture, (source, target))
+    end_points = network.index_elements(architecture).resolve_points((source, target))
     regions = chain_regions.lay_out_between(network, end_points)
     return find_aimed_paths(network, regions, aim) if regions else None
 
@@ -154,9 +165,9 @@ def build_terms(network: CostNetwork, path: CostedPath) -> tuple[ChainTerm, ...]
 
 def _build_result(
     network: CostNetwork,
-    regions: Sequence[chain_regions.RouteRegion],
+    regions: Sequence[RouteRegion],
     asked_chain: Chain,
-    chain_points: Sequence[chain_regions.ChainPoint],
+    chain_points: Sequence[ChainPoint],
 ) -> ChainResult:
     """Return all figures of a chain, with the terms of its worst path; without terms where there is no path."""
     deadline = TimingValue(asked_chain.deadline.value) if asked_chain.deadline else None
@@ -168,7 +179,10 @@ def _build_result(
             if asked_chain.unresolved
             else _unconnected_value(network, asked_chain, chain_points)
         )
-        return ChainResult(asked_chain.id, waypoint_ids, (), no_bound, no_bound, no_bound, no_bound, deadline, "open")
+        shares = judge_shares(no_bound, no_bound, asked_chain)
+        return ChainResult(
+            asked_chain.id, waypoint_ids, (), no_bound, no_bound, no_bound, no_bound, deadline, "open", shares
+        )
     view, path, path_bound = extreme_path
     bound = _note_event_start(network, path, _note_reentrant_end(network, path, path_bound))
     bound = _note_measured(network, path, bound)
@@ -184,6 +198,7 @@ def _build_result(
         reduced_age=_limit_reduced_age(find_extreme_value(network, regions, "reduced age"), bound, event_ages),
         deadline=deadline,
         verdict=judge_deadline(bound, best, deadline),
+        shares=judge_shares(bound, best, asked_chain),
     )
 
 
@@ -193,9 +208,7 @@ def _unresolved_value(words: tuple[str, ...]) -> TimingValue:
     return TimingValue(None, complete=False, missing=words, assumptions=assumptions)
 
 
-def _unconnected_value(
-    network: CostNetwork, asked_chain: Chain, chain_points: Sequence[chain_regions.ChainPoint]
-) -> TimingValue:
+def _unconnected_value(network: CostNetwork, asked_chain: Chain, chain_points: Sequence[ChainPoint]) -> TimingValue:
     """Return the value of a chain without a path, which names the first two elements that no path joins."""
     for (source, target), pair in zip(pairwise(asked_chain.through), pairwise(chain_points), strict=True):
         regions = chain_regions.lay_out_between(network, pair)
@@ -238,7 +251,7 @@ def _note_reentrant_end(network: CostNetwork, path: CostedPath, bound: TimingVal
 def _note_measured(network: CostNetwork, path: CostedPath, bound: TimingValue) -> TimingValue:
     """Note on a chain which measured execution times its bound rests on."""
     through = (network.names[path.start], *(network.arcs[arc_index].target for arc_index in path.arcs))
-    note = describe_measured_basis(network.steps.analysis, through)
+    note = network.find_measured_basis().describe(through)
     return replace(bound, assumptions=(*bound.assumptions, note)) if note else bound
 
 
@@ -272,7 +285,7 @@ def _limit_reduced_age(reduced_age: TimingValue, bound: TimingValue, event_ages:
 
 
 def _ages_from_events(
-    network: CostNetwork, regions: Sequence[chain_regions.RouteRegion], start_ids: Sequence[str]
+    network: CostNetwork, regions: Sequence[RouteRegion], start_ids: Sequence[str]
 ) -> Iterator[TimingValue]:
     """Yield the largest data age from each event that may be a chain's stimulus: until the result of the next one."""
     system = network.steps.analysis.system

@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from fractions import Fraction
+from typing import Literal
 
-from archgen.timing.analysis import ChainVerdict
+from archgen.model.architecture import Chain
+from archgen.model.quantity import parse_share
+from archgen.timing.analysis import ChainVerdict, ShareDeadline
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import is_boundless, is_known_bound, is_unfound
 
+SeenVerdict = Literal["kept", "late", "too few"]
+"""What simulated or recorded reactions say of the deadline of a share: `too few` of them to say anything."""
 VERDICT_WORDS: Mapping[ChainVerdict, str] = {
     "met": "met",
     "missed": "MISSED",
@@ -39,3 +45,22 @@ def may_be_late(bound: TimingValue, deadline: TimingValue) -> bool:
     if bound.value is not None and deadline.value is not None and bound.value > deadline.value:
         return True
     return is_boundless(bound) or (is_unfound(bound) and not bound.missing)
+
+
+def judge_shares(bound: TimingValue, best: TimingValue, asked_chain: Chain) -> tuple[ShareDeadline, ...]:
+    """Judge the deadlines of shares as far as bounds can: what all reactions keep, and what not a single one does."""
+    found: list[ShareDeadline] = []
+    for name, quantity in asked_chain.deadline_shares.items():
+        is_met = judge_deadline(bound, best, TimingValue(quantity.value)) == "met"
+        is_missed = best.value is not None and best.value > quantity.value
+        verdict: Literal["met", "missed", "open"] = "missed" if is_missed else "met" if is_met else "open"
+        found.append(ShareDeadline(parse_share(name) or Fraction(0), quantity.value, verdict))
+    return tuple(found)
+
+
+def judge_seen_share(share: Fraction, limit: Fraction, seen: Fraction | None, count: int) -> SeenVerdict:
+    """Judge a share by what it took among so many reactions that were seen, which proves nothing."""
+    if seen is not None and seen > limit:
+        return "late"
+    # Of fewer none would be beyond the share.
+    return "kept" if seen is not None and count * (1 - share) >= 1 else "too few"

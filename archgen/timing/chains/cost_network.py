@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field
 from math import lcm
 from typing import Literal
 
 from archgen.frozen import dataclass
-from archgen.timing.analysis import Analysis
+from archgen.model.architecture import Architecture
+from archgen.timing.analysis import Analysis, RunResponse
+from archgen.timing.chains.element_index import ElementIndex, MeasuredBasis
 from archgen.timing.chains.path_search import CostGraph, Hop
 from archgen.timing.chains.step_delays import StepDelays
 from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue
@@ -25,16 +27,20 @@ _TIE_BITS = 24
 class CostNetwork:
     """A system's activities as vertices, its arcs with their costs for each aim. Costs are computed on first use.
 
-    With `by_runs`, consecutive steps on one core cost together what their run takes; else each its own response. Either
-    bounds all paths, and either may be the smaller bound.
+    Consecutive steps cost together what their run takes, of those in `runs`; all others each its own response. Each view
+    (no runs, those on one core, those over hosts as well) bounds all paths, and each may be the smaller bound.
     """
 
     steps: StepDelays
     names: tuple[str, ...]
     vertex_of: dict[str, int]
-    by_runs: bool = False
+    runs: Mapping[str, RunResponse] = field(default_factory=dict)
     _graphs: dict[PathAim, tuple[CostGraph, list[int]]] = field(default_factory=dict)
     _other_views: list[CostNetwork] = field(default_factory=list)
+    _arcs_by_ends: dict[tuple[str, str], list[int]] = field(default_factory=dict)
+    _indices: list[ElementIndex] = field(default_factory=list)
+    _bases: list[MeasuredBasis] = field(default_factory=list)
+    _arcs_of_output: dict[str, list[int]] = field(default_factory=dict)
 
     @classmethod
     def of_analysis(cls, analysis: Analysis) -> CostNetwork:
@@ -43,17 +49,46 @@ class CostNetwork:
         return cls(StepDelays.of_analysis(analysis), names, {name: vertex for vertex, name in enumerate(names)})
 
     def list_views(self) -> tuple[CostNetwork, ...]:
-        """Return this network, and the other view of it where there are runs."""
-        if not self.steps.analysis.runs:
-            return (self,)
+        """Return this network, which has none, and its views with runs where there are some."""
+        runs, host_runs = self.steps.analysis.runs, self.steps.analysis.host_runs
         if not self._other_views:
-            self._other_views.append(CostNetwork(self.steps, self.names, self.vertex_of, not self.by_runs))
-        return (self, self._other_views[0])
+            self._other_views.extend(
+                CostNetwork(self.steps, self.names, self.vertex_of, each)
+                for each in ([runs] if runs else []) + ([{**runs, **host_runs}] if host_runs else [])
+            )
+        return (self, *self._other_views)
 
     @property
     def arcs(self) -> tuple[Arc, ...]:
         """Return the system's arcs; `Hop.arc` is an index into them."""
         return self.steps.analysis.system.arcs
+
+    def list_parallel(self, arc_index: int) -> Sequence[int]:
+        """Return the arcs that have the ends of an arc, itself among them."""
+        if not self._arcs_by_ends:
+            for index, each in enumerate(self.arcs):
+                self._arcs_by_ends.setdefault((each.source, each.target), []).append(index)
+        arc = self.arcs[arc_index]
+        return self._arcs_by_ends[arc.source, arc.target]
+
+    def index_elements(self, architecture: Architecture) -> ElementIndex:
+        """Return what the elements of chains stand for in the architecture that was analysed."""
+        if not self._indices:
+            self._indices.append(ElementIndex(self.steps.analysis.system, architecture))
+        return self._indices[0]
+
+    def find_measured_basis(self) -> MeasuredBasis:
+        """Return the measured execution times on which the figures of chains rest."""
+        if not self._bases:
+            self._bases.append(MeasuredBasis(self.steps.analysis))
+        return self._bases[0]
+
+    def list_arcs(self, output: str) -> Sequence[int]:
+        """Return the arcs (as indices) by which data leaves by an output."""
+        if not self._arcs_of_output:
+            for arc_index, arc in enumerate(self.arcs):
+                self._arcs_of_output.setdefault(arc.output, []).append(arc_index)
+        return self._arcs_of_output.get(output, ())
 
     def cost_graph(self, aim: PathAim) -> tuple[CostGraph, list[int]]:
         """Return the graph with the costs of an aim, and what each vertex costs as a start."""
@@ -69,11 +104,11 @@ class CostNetwork:
 
     def start_response(self, name: str) -> TimingValue:
         """Return what the response of a path's first activity adds."""
-        return self.steps.run_response(name) if self.by_runs else self.steps.response_value(name)
+        return self.steps.run_response(name, self.runs)
 
     def step_response(self, arc: Arc) -> TimingValue:
         """Return what the response of an arc's reader adds."""
-        return self.steps.added_response(arc) if self.by_runs else self.steps.response_value(arc.target)
+        return self.steps.added_response(arc, self.runs)
 
     def step_costs(self, arc: Arc, aim: PathAim) -> tuple[TimingValue, ...]:
         """Return what a step adds: link, sampling (or holding), response."""
@@ -83,8 +118,8 @@ class CostNetwork:
             return (self.steps.link_latency(arc), self.steps.sampling_wait(arc), self.step_response(arc))
         holding_age = self.steps.holding_age(arc)
         # What is used again, with a later event of something else, is not used in the run that brought it.
-        is_held = self.by_runs and holding_age is not ZERO_VALUE
-        response = self.steps.run_response(arc.target) if is_held else self.step_response(arc)
+        is_held = holding_age is not ZERO_VALUE
+        response = self.start_response(arc.target) if is_held else self.step_response(arc)
         return (self.steps.link_latency(arc), holding_age, response)
 
     def _build_graph(self, aim: PathAim) -> tuple[CostGraph, list[int]]:

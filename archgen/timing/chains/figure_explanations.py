@@ -21,7 +21,7 @@ from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import is_known_bound, is_unfound, list_assumptions, multiply_value
 from archgen.timing.load.host_loads import activity_share
 from archgen.timing.load.response_terms import ResponseTerms
-from archgen.timing.rates.link_terms import work_out_link
+from archgen.timing.rates.link_traffic import work_out_link
 from archgen.timing.system.timing_system import Activity, Arc
 
 _FIGURE_FORMATS: Mapping[str, Callable[[Fraction], str]] = {
@@ -81,15 +81,21 @@ def explain_chain(result: ChainResult, analysis: Analysis) -> Iterator[ReasonLin
 
 def _describe_run(analysis: Analysis, term: ChainTerm, names_before: Sequence[str]) -> str:
     """Say of which run the time of a step is the rest; empty where it is the step's own response."""
-    run, own = analysis.runs.get(term.activity), analysis.responses[term.activity].worst
-    if run is None or run.worst.value is None or term.response.value is None or term.response.value == own.value:
+    own, response = analysis.responses[term.activity].worst, term.response.value
+    if response is None or response == own.value or not names_before:
         return ""
-    before = analysis.runs.get(names_before[-1]) if names_before else None
-    start = before.worst if before else analysis.responses[names_before[-1]].worst if names_before else None
-    if start is None or start.value is None or run.worst.value - start.value != term.response.value:
-        return ""
-    whole, counted, rest = map(figure_wording.format_duration, (run.worst.value, start.value, term.response.value))
-    return f": with what fires it on its core {whole}, of which {counted} are counted already: {whole} - {counted} = {rest}"
+    known_runs = ((analysis.runs, "on its core "), ({**analysis.runs, **analysis.host_runs}, "over hosts and links "))
+    for runs, place in known_runs:
+        run, before = runs.get(term.activity), runs.get(names_before[-1])
+        start = before.worst.value if before else analysis.responses[names_before[-1]].worst.value
+        link = (term.link.value or 0) if runs is not analysis.runs else 0
+        if run is None or run.worst.value is None or start is None or run.worst.value - start - link != response:
+            continue
+        whole, counted, rest = map(figure_wording.format_duration, (run.worst.value, start + link, response))
+        return (
+            f": with what fires it {place}{whole}, of which {counted} are counted already: {whole} - {counted} = {rest}"
+        )
+    return ""
 
 
 def explain_topic(analysis: Analysis, name: str) -> Iterator[ReasonLine]:
@@ -226,6 +232,13 @@ def _list_working_lines(analysis: Analysis, workings: ResponseTerms, name: str, 
     working = workings.find_response(name)
     if working is not None:
         yield from lines.explain_response(working, depth)
+    host_run = workings.find_host_run(name)
+    if host_run is not None:
+        way, run_working = host_run
+        time = figure_wording.format_duration((way.delay or 0) * analysis.system.tick)
+        text = f"{name}: at most {time} from the event on, over hosts and links, for the way {' > '.join(way.steps)}"
+        yield ReasonLine(depth - 1, text)
+        yield from lines.explain_response(run_working, depth)
     run = workings.find_run(name)
     if run is not None:
         way, run_working = run

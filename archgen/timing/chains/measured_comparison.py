@@ -13,6 +13,7 @@ from archgen.diagnostics.suggestions import did_you_mean
 from archgen.frozen import dataclass
 from archgen.model.quantity import Quantity
 from archgen.timing.analysis import Analysis, ChainResult, EventPace
+from archgen.timing.chains.chain_verdicts import SeenVerdict, judge_seen_share
 from archgen.timing.chains.sample_statistics import SampleStatistics
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
 from archgen.timing.figures.value_arithmetic import add_values, is_known_bound, smallest_value
@@ -118,6 +119,7 @@ def _compare_recorded(
         designed = UNKNOWN_VALUE
         if key == "latency":
             designed = chain_results[observation.id].bound
+            yield from _compare_shares(observation, chain_results[observation.id])
         elif key == "storing":
             callback = next(
                 (a.storing[observation.id] for a in system.activities.values() if observation.id in a.storing), None
@@ -125,6 +127,23 @@ def _compare_recorded(
             # Zero stands for a time that nobody wrote.
             designed = TimingValue(callback.wcet * system.tick) if callback and callback.wcet else UNKNOWN_VALUE
         yield _compare_bound(observation, key, designed, quantity.value)
+
+
+def _compare_shares(observation: Observation, result: ChainResult) -> Iterator[MeasuredComparison]:
+    """Yield the deadlines of shares of a chain's reactions beside what these took, from the first sample on."""
+    samples = observation.samples.get("latency")
+    if samples is None:
+        return
+    for asked in result.shares:
+        seen = Fraction(samples.find_percentile(asked.share))
+        answers: dict[SeenVerdict, tuple[Literal["as designed", "outlier", "not designed"], str]] = {
+            "kept": ("as designed", ""),
+            "late": ("outlier", f"{asked.name} of its reactions take longer than their deadline"),
+            "too few": ("not designed", f"{samples.count} reactions are too few to judge {asked.name} of them"),
+        }
+        verdict, why = answers[judge_seen_share(asked.share, asked.limit, seen, samples.count)]
+        key, limit = f"latency of {asked.name}", TimingValue(asked.limit)
+        yield MeasuredComparison(observation.id, key, limit, seen, verdict, why)
 
 
 def _find_senders(analysis: Analysis) -> dict[str, list[tuple[str, str]]]:

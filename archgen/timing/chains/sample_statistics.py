@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
+from dataclasses import field
+from fractions import Fraction
 
 from archgen.diagnostics.source_span import Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 
 PERCENTILES = {"p50": 50, "p90": 90, "p95": 95, "p99": 99}
 """The percentiles that are given, by the name that the language has for them."""
@@ -30,6 +32,17 @@ class SampleStatistics:
     total: int
     percentiles: Mapping[str, int]
     is_stepped: bool
+    counts: tuple[tuple[int, int], ...] = field(default=(), repr=False)
+    """How often each value was seen, the smallest first; steps where there were too many."""
+
+    def find_percentile(self, share: Fraction) -> int:
+        """Return the least value that a share of the samples does not exceed."""
+        reached = 0
+        for value, count in self.counts:
+            reached += count
+            if reached >= share * self.count:
+                return min(value, self.largest)
+        return self.largest
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,14 +93,12 @@ class SampleCounter:
 
     def summarise(self) -> SampleStatistics:
         """Return the statistics of what was counted, which must be one sample at least."""
-        return SampleStatistics(
-            self.count,
-            self._least,
-            self._largest,
-            self._total,
-            dict(self._find_percentiles()),
-            is_stepped=self._is_stepped,
+        counts = tuple(sorted(self._counts.items()))
+        known = SampleStatistics(
+            self.count, self._least, self._largest, self._total, {}, is_stepped=self._is_stepped, counts=counts
         )
+        percentiles = {name: known.find_percentile(Fraction(percent, 100)) for name, percent in PERCENTILES.items()}
+        return replace(known, percentiles=percentiles)
 
     def _put_in_steps(self) -> None:
         self._is_stepped = True
@@ -95,16 +106,6 @@ class SampleCounter:
         for value, count in self._counts.items():
             stepped_counts[_round_up(value)] += count
         self._counts = stepped_counts
-
-    def _find_percentiles(self) -> Iterator[tuple[str, int]]:
-        values = sorted(self._counts.items())
-        count = self.count
-        position, reached = 0, values[0][1]
-        for name, percent in PERCENTILES.items():
-            while 100 * reached < percent * count:
-                position += 1
-                reached += values[position][1]
-            yield name, min(values[position][0], self._largest)
 
 
 def _round_up(value: int) -> int:

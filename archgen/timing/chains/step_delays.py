@@ -7,12 +7,13 @@ Hard Real-time Distributed Automotive Systems", DAC 2007: T_i + R_i for each ele
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import field, replace
 from fractions import Fraction
 
 from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass
-from archgen.timing.analysis import Analysis
+from archgen.timing.analysis import Analysis, RunResponse
 from archgen.timing.chains.trigger_arrivals import TriggerArrivals
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, TimingValue
@@ -153,29 +154,27 @@ class StepDelays:
             value = replace(value, assumptions=(f"the response of {name} is as declared",))
         return name_missing_element(value, name)
 
-    def run_response(self, name: str) -> TimingValue:
-        """Return how long a run takes at most, from the event that enters a core to the end of an activity there.
-
-        Of an activity that nothing on its own core fires, that is its own response.
-        """
-        run = self.analysis.runs.get(name)
+    def run_response(self, name: str, runs: Mapping[str, RunResponse]) -> TimingValue:
+        """Return how long a run takes at most, from the event on that it begins with; else the activity's own response."""
+        run = runs.get(name)
         return run.worst if run else self.response_value(name)
 
-    def added_response(self, arc: Arc) -> TimingValue:
+    def added_response(self, arc: Arc, runs: Mapping[str, RunResponse]) -> TimingValue:
         """Return what a step adds to a run that comes over an arc; where the run begins here, how long it takes.
 
         Along a run the sum of what its steps add is never below what the run takes up to there.
         """
-        if not self.continues_run(arc):
-            return self.run_response(arc.target)
-        before, after = self.run_response(arc.source), self.run_response(arc.target)
+        if not self.continues_run(arc, runs):
+            return self.run_response(arc.target, runs)
+        before, after = self.run_response(arc.source, runs), self.run_response(arc.target, runs)
         if before.value is None or after.value is None:
             return after
-        return replace(after, value=max(after.value - before.value, Fraction(0)))
+        counted = before.value + (arc.worst or 0) * self.analysis.system.tick
+        return replace(after, value=max(after.value - counted, Fraction(0)))
 
-    def continues_run(self, arc: Arc) -> bool:
-        """Whether an arc's reader starts at the end of its source, on the same core, for this very message."""
-        run = self.analysis.runs.get(arc.target)
+    def continues_run(self, arc: Arc, runs: Mapping[str, RunResponse]) -> bool:
+        """Whether an arc's reader starts at the end of its source, or behind a link, for this very message."""
+        run = runs.get(arc.target)
         if run is None or not any(run_arc is arc for run_arc in run.arcs):
             return False
         return arc.output not in self.analysis.system.activities[arc.source].max_gaps
@@ -209,6 +208,9 @@ class StepDelays:
     def _reading_wait(self, arc: Arc) -> TimingValue:
         """Return how long the reader leaves a sample that has arrived."""
         reader = self.analysis.system.activities[arc.target]
+        lost_use = self.arrivals.find_lost_use(arc)
+        if lost_use is not None:
+            return lost_use
         if self.arrivals.fires_reader(arc):
             if arc.role == "request":
                 return ZERO_VALUE

@@ -5,19 +5,27 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import field, replace
 from fractions import Fraction
+from math import ceil
 
 from archgen.frozen import dataclass
 from archgen.timing.analysis import Analysis
-from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, TimingValue
+from archgen.timing.figures.figure_wording import join_first_names
+from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, TimingValue, UnknownCause
 from archgen.timing.figures.value_arithmetic import (
+    NO_USE_NOTE,
+    REPLACED_WORDS,
     is_known_bound,
     multiply_value,
     name_missing_element,
     smallest_value,
     sum_bounds,
     unknown_value,
+    value_of_cause,
 )
-from archgen.timing.system.timing_system import Activity, Arc, best_response
+from archgen.timing.load.event_models import input_model
+from archgen.timing.load.event_streams import max_arrivals
+from archgen.timing.load.propagation_state import PropagationState
+from archgen.timing.system.timing_system import Activity, Arc, best_response, list_memory_rivals
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,6 +34,8 @@ class TriggerArrivals:
 
     analysis: Analysis
     _gaps_by_activity: dict[str, dict[str, TimingValue]] = field(default_factory=dict)
+    _waiting_counts: dict[tuple[str, str, str], int | UnknownCause | None] = field(default_factory=dict)
+    """Most messages that wait in the queues of several sources, by reader, input and topic."""
 
     def fires_reader(self, arc: Arc) -> bool:
         """Whether what arrives on an arc triggers its reader."""
@@ -90,6 +100,48 @@ class TriggerArrivals:
         source = self.analysis.system.activities[arc.source]
         covered = (best_response(source) + (arc.worst or 0)) * self.analysis.system.tick
         return replace(age, value=max(age.value - covered, Fraction(0)))
+
+    def find_lost_use(self, arc: Arc) -> TimingValue | None:
+        """Return why nothing promises that a message on an arc is used, though one of each source comes; None where it is.
+
+        Others send to the same memory of the reader, and theirs may take its place: always where it is stored, or waits
+        for messages of other inputs; where each fires the reader as long as the queue may hold too many.
+        """
+        system, state = self.analysis.system, self.analysis.state
+        rivals = list_memory_rivals(system, arc)
+        reader = system.activities[arc.target]
+        if not rivals or reader.mode == "match":  # a match of several sources is never sure
+            return None
+        is_worked_off = self.fires_reader(arc) and not self.waits_for_all(reader)
+        if is_worked_off and reader.every == 1 and not reader.throttle:
+            if arc.depth is None or state is None:
+                return None
+            queue = (arc.target, arc.input, arc.topic)
+            if queue not in self._waiting_counts:
+                self._waiting_counts[queue] = self._count_waiting(state, reader, (arc, *rivals))
+            count = self._waiting_counts[queue]
+            if isinstance(count, UnknownCause):
+                return value_of_cause(count)
+            if count is None or count <= arc.depth:
+                return None
+            reason = f"keeps {arc.depth} of {count} messages of {arc.topic} that may wait (`depth: {count}` keeps all)"
+        else:
+            reason = f"keeps the last message of {arc.topic}"
+        others = join_first_names(tuple(dict.fromkeys(each.source for each in rivals)))
+        text = f"{NO_USE_NOTE}: {reader.id} {reason}: one of {others} {REPLACED_WORDS} that of {arc.source}"
+        return TimingValue(None, assumptions=("diverged", text))
+
+    def _count_waiting(
+        self, state: PropagationState, reader: Activity, arcs: tuple[Arc, ...]
+    ) -> int | UnknownCause | None:
+        """Return how many messages may wait in a reader's queue; None where no bound says how long they do."""
+        response = self.analysis.responses[reader.id].worst
+        if response.value is None or not response.complete:
+            return None
+        # A job has begun R - B after it was activated; what comes at that very moment may come before.
+        wait = ceil(response.value / state.system.tick) - best_response(reader) + reader.jitter
+        model = input_model(state, reader, arcs[0].input, arcs)
+        return model if isinstance(model, UnknownCause) else max_arrivals(model, max(wait, 0) + 1)
 
     def lacks_sure_use(self, activity: Activity, arc: Arc) -> bool:
         """Whether each message of an arc may be among those that are dropped and forgotten: others may come before it."""

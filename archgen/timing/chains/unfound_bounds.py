@@ -20,6 +20,7 @@ _TIER_PHRASES: Mapping[ResponseTier, str] = {
     "executor": "one thread in any order",
     "cores": "several cores in any order",
     "whole host": "several cores as one",
+    "whole way": "ways over hosts as wholes",
 }
 """What was analysed, by how responses were asked for."""
 

@@ -9,13 +9,19 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
+from typing import NamedTuple
 
+from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture, Waypoint
+from archgen.model.component import Component
+from archgen.model.quantity import Quantity
 from archgen.model.step_connections import ConnectedStep, UseCaseSteps
 from archgen.timing.analysis import Analysis
-from archgen.timing.chains.chain_regions import resolve_points
+from archgen.timing.chains import chain_regions
 from archgen.timing.chains.cost_network import CostNetwork
+from archgen.timing.chains.element_index import ElementIndex
+from archgen.timing.chains.extreme_paths import find_extreme_path
 from archgen.timing.chains.path_search import RouteRegion, find_paths
 from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue
 from archgen.timing.figures.value_arithmetic import (
@@ -53,7 +59,7 @@ def bound_use_cases(analysis: Analysis, architecture: Architecture) -> dict[str,
         for end in (each.step.source, each.step.target)
         if end.kind in {"component", "output"}
     )
-    points = resolve_points(analysis.system, architecture, [Waypoint("component", name) for name in ends])
+    points = ElementIndex(analysis.system, architecture).resolve_points([Waypoint("component", name) for name in ends])
     activities = {name: point.activities for name, point in zip(ends, points, strict=True)}
     arcs_by_port: dict[str, list[int]] = defaultdict(list)
     for index, arc in enumerate(analysis.system.arcs):
@@ -171,3 +177,51 @@ class _StepClock:
 
     def _step_costs(self, arc: Arc) -> tuple[TimingValue, ...]:
         return self._network.step_costs(arc, "bound")
+
+
+LIMIT_KEYS = ("deadline", "response")
+"""The keys of a composed component's `timing` that say how long it may take."""
+
+
+class WholeLimit(NamedTuple):
+    """How long (ns) a composed component may take, as it says itself; `name` is the key, or the indicator's title."""
+
+    name: str
+    duration: Quantity
+    at: Span
+
+
+class WholeBound(NamedTuple):
+    """The worst way through a composed component: its activities, and how long it takes (ns)."""
+
+    through: tuple[str, ...]
+    duration: TimingValue
+
+
+def list_limits(shell: Component) -> Iterator[WholeLimit]:
+    """Yield what a composed component says of how long it takes."""
+    for key in LIMIT_KEYS:
+        limit: Quantity | None = getattr(shell.timing, key, None)
+        if shell.timing and limit:
+            yield WholeLimit(key, limit, shell.timing.places[key])
+    for indicator in shell.performance:
+        if indicator.execution_time:
+            yield WholeLimit(indicator.title, indicator.execution_time, indicator.at)
+
+
+def bound_wholes(analysis: Analysis, architecture: Architecture) -> dict[str, WholeBound]:
+    """Return the worst ways through those composed components that say how long they take."""
+    shells = [shell for shell in architecture.shells.values() if next(list_limits(shell), None)]
+    if not shells:
+        return {}
+    network = CostNetwork.of_analysis(analysis)
+    waypoints = [Waypoint("component", shell.id) for shell in shells]
+    bounds = {}
+    for shell, point in zip(shells, network.index_elements(architecture).resolve_points(waypoints), strict=True):
+        # From the activation on, as a deadline counts: the bound of a chain also has the wait of the first sample.
+        extreme_path = find_extreme_path(network, chain_regions.lay_out_chain(network, (point,)), "reduced reaction")
+        if extreme_path is not None:
+            view, path, duration = extreme_path
+            through = (view.names[path.start], *(view.arcs[arc_index].target for arc_index in path.arcs))
+            bounds[shell.id] = WholeBound(through, duration)
+    return bounds

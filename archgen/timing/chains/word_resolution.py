@@ -35,12 +35,12 @@ def resolve_waypoint(architecture: Architecture, system: TimingSystem, word: str
 
 def resolve_activities(architecture: Architecture, system: TimingSystem, word: str) -> tuple[str, ...]:
     """Return the ids of the activities that a word means: one, all of a node, or all of a component."""
-    from archgen.timing.chains import chain_regions
+    from archgen.timing.chains.element_index import ElementIndex
 
     if word in system.activities:
         return (word,)
     point = resolve_waypoint(architecture, system, word)
-    return chain_regions.resolve_points(system, architecture, (point,))[0].activities
+    return ElementIndex(system, architecture).resolve_points((point,))[0].activities
 
 
 def ids_ending_in(ids: Iterable[str], word: str) -> list[str]:

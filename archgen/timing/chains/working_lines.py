@@ -10,7 +10,7 @@ from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
 from archgen.timing.figures import figure_wording
 from archgen.timing.load.work_terms import ANY_AMOUNT, FigureWorking, ThreadShare, WorkTerm
-from archgen.timing.rates.link_terms import LinkWorking
+from archgen.timing.rates.link_traffic import LinkWorking
 
 
 class ReasonLine(NamedTuple):
@@ -65,13 +65,7 @@ class WorkingLines:
             if working.is_hold
             else "the least t > 0 with A + B <= t"
         )
-        all_cores = f"all {working.core_count} cores"
-        if working.full_ids:
-            full_text = ", ".join(working.full_ids)
-            all_cores = (
-                f"all cores but those of {full_text}, which may be busy all the time ({working.core_count} are left),"
-            )
-        beside = f"B the time in which {all_cores} may be busy with others"
+        beside = f"B the time in which all {working.core_count} cores may be busy with others"
         if working.leads:
             beside, head = "F what others are served before it on its core", head.replace("B", "F")
         yield ReasonLine(

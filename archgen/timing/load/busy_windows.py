@@ -49,15 +49,6 @@ class SearchBudget:
         """Return how many terms were looked at."""
         return self._term_count - self._terms_left
 
-    def repeat_searches(self, term_count: int) -> bool:
-        """Spend what searches looked at whose results are known; nothing, and False, where they might not have ended."""
-        if term_count > min(self._terms_left, self._terms_per_search):
-            return False
-        self._terms_left -= term_count
-        if self._whole is not None:
-            self._whole._terms_left -= term_count  # noqa: SLF001 - it is one of these as well
-        return True
-
     def open_part(self, term_count: int) -> SearchBudget:
         """Return a budget of so many terms of this one, if there are so many left, for searches of any length."""
         part_count = min(term_count, max(self._terms_left, 0))

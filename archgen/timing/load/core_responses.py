@@ -31,8 +31,8 @@ from archgen.timing.load.event_streams import EventStreams, settles_at_full_load
 from archgen.timing.load.inner_core import InnerCore, urgency_of
 from archgen.timing.load.inner_triggers import FiringArc
 from archgen.timing.load.level_cascades import EventOrigin, LevelCascades
-from archgen.timing.load.ordered_cores import OrderedCore
 from archgen.timing.load.queue_orders import QueueBound
+from archgen.timing.load.queue_responses import OrderedCore
 from archgen.timing.load.run_ways import EntryWay, Priority
 from archgen.timing.load.storing_waits import hold_before_activation
 from archgen.timing.load.thread_work import (
@@ -41,6 +41,7 @@ from archgen.timing.load.thread_work import (
     ThreadWork,
     WorstResponse,
 )
+from archgen.timing.system.thread_pools import may_skip_ticks
 from archgen.timing.system.timing_system import samples_inputs
 
 
@@ -95,13 +96,6 @@ class LevelWindow(NamedTuple):
     closing_tick: int = 0
 
 
-class WaySum(NamedTuple):
-    """A delay that is the sum of that of the way before, and of the response of the last step."""
-
-    delay_before: int
-    response: int
-
-
 WayKey = tuple[str, ...]
 """The entry of a way, and its steps."""
 
@@ -142,7 +136,7 @@ class CoreSolver:
         self.budget = budget
         self.bounds: dict[Priority, LevelBound] = {}
         self.windows: dict[str, list[LevelWindow]] = {}
-        self.way_windows: dict[WayKey, list[LevelWindow | WaySum]] = {}
+        self.way_windows: dict[WayKey, list[LevelWindow]] = {}
         self.queue_bounds: dict[str, QueueBound] = {}
         self._waits_for_turn: dict[Priority, int | None] = {}
 
@@ -152,11 +146,9 @@ class CoreSolver:
             self.bounds[level] = self._bound_level(level, cascades)
         responses: dict[str, WorstResponse] = {}
         ways_to: dict[str, tuple[EntryWay, ...]] = {}
-        delays: dict[WayKey, int | None] = {}
         for name in self.core.inner_triggers.order:
             activity = self.core.system.activities[name]
             response = self._find_response(name)
-            # In the order of triggers: each way needs the delay of the way without its last step, which is found before.
             whole_delay = self._delay_of_only_way(name, self.core.ways_to[name])
             if whole_delay is not None and response.value is not None:
                 response = response._replace(
@@ -168,10 +160,10 @@ class CoreSolver:
             if self._is_idle(name):  # its work is not in the busy periods, nor has it any events
                 responses[name], ways_to[name] = response, self.core.ways_to[name]
                 continue
-            ways: list[EntryWay] = []
-            for way in self.core.ways_to[name]:
-                delay = delays[name_way(way)] = self._find_delay(name, way, whole_delay, response.value, delays)
-                ways.append(way._replace(delay=delay))
+            ways = [
+                way._replace(delay=self._find_delay(name, way, whole_delay, response.value))
+                for way in self.core.ways_to[name]
+            ]
             if ways and all(way.delay is not None for way in ways) and response.tier != "declared":
                 # The delay of a way begins at its event, the response at the activation, `best_before` later or more.
                 longest = max((way.delay or 0) - way.best_before for way in ways)
@@ -187,36 +179,24 @@ class CoreSolver:
         }
         return CoreResponses(responses, ways_to, waits)
 
-    def _find_delay(
-        self,
-        name: str,
-        way: EntryWay,
-        whole_delay: int | None,
-        response: int | None,
-        delays: Mapping[WayKey, int | None],
-    ) -> int | None:
-        """Return the longest time of a way: as a whole, at its level, or to the step before and the last response."""
-        key, level = name_way(way), self._level_of_steps(way.steps)
+    def _find_delay(self, name: str, way: EntryWay, whole_delay: int | None, response: int | None) -> int | None:
+        """Return the longest time of a way: as a whole, or at its level; of a single step, its response."""
+        level = self._level_of_steps(way.steps)
         period = self._period_of_level(name, level)
         if period is not None:
-            self._note_way(key, self._whole_period(name, level, period))
-        before = delays.get(key[:-1]) if len(way.steps) > 1 else 0
-        candidates = [whole_delay, period]
-        if response is not None and before is not None:
-            candidates.append(before + response)
-            if len(way.steps) > 1:
-                self._note_way(key, WaySum(before, response))
+            self._note_way(name_way(way), self._whole_period(name, level, period))
+        candidates = (whole_delay, period, response if len(way.steps) == 1 else None)
         return min((each for each in candidates if each is not None), default=None)
 
     def _limit_to_order(self, responses: dict[str, WorstResponse], ways_to: dict[str, tuple[EntryWay, ...]]) -> None:
         """Limit responses and delays to what an order that is written makes of them."""
-        busy_periods = [bound.busy_period for bound in self.bounds.values()]
-        if self.core.queue is not None and None not in busy_periods:
+        queue, busy_periods = self.core.queue, [bound.busy_period for bound in self.bounds.values()]
+        if queue is not None and (queue.works_in_rounds or None not in busy_periods):
             longest = max((each or 0 for each in busy_periods), default=0)
-            ordered_core = OrderedCore(self.core.queue, self.core.inner_triggers, self.find_model, ways_to)
+            ordered_core = OrderedCore(queue, self.core.inner_triggers, self.find_model, ways_to)
             self.queue_bounds = ordered_core.limit(responses, longest, self.budget)
 
-    def _note_way(self, key: WayKey, window: LevelWindow | WaySum) -> None:
+    def _note_way(self, key: WayKey, window: LevelWindow) -> None:
         """Note what bounds a way."""
         self.way_windows.setdefault(key, []).append(window)
 
@@ -234,6 +214,10 @@ class CoreSolver:
         busy_period = self.find_wait_for_turn(level)
         if busy_period is None:
             return WorstResponse(None, "host", cause if cause != UnknownCause() else DIVERGED_CAUSE)
+        activity = self.core.system.activities[name]
+        if may_skip_ticks(self.core.system, activity, busy_period):
+            # It is stored within the busy period, and the job before that does not read it has ended then.
+            return WorstResponse(busy_period - (activity.wcet or 0), "host")
         origin = EventOrigin("activity", name)
         if not self._enters(name) or self._is_idle(name) or not demand.level.volumes.get(origin):
             return WorstResponse(busy_period, "host")

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from types import MappingProxyType
 
 from archgen.frozen import dataclass
-from archgen.timing.load.core_responses import CoreSolver, LevelBound, LevelWindow, WayKey, name_way
+from archgen.timing.load.core_responses import CoreSolver, LevelBound, LevelWindow, name_way
 from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.queue_orders import QueueBound, QueueShare
@@ -19,8 +19,6 @@ from archgen.timing.load.work_terms import (
     FigureWorking,
     WorkTerm,
     add_counts,
-    add_last_step,
-    choose_working,
     describe_origin,
     group_terms,
     multiply_count,
@@ -102,21 +100,14 @@ class CoreTerms:
 
     def list_delays(self, way: EntryWay) -> Iterator[FigureWorking]:
         """Yield what bounds the longest time of a way, from the event on to the end of an activity."""
-        yield from self._list_way(name_way(way), way.steps)
+        if len(way.steps) == 1:
+            yield from self._list_own(way.steps[0], way.steps)
+        for window in self.solver.way_windows.get(name_way(way), ()):
+            yield self._explain_window(window, way.steps)
 
     def _list_own(self, name: str, steps: tuple[str, ...] = ()) -> Iterator[FigureWorking]:
         """Yield what bounds the response of an activity, whatever may be known of the steps before it."""
         yield from (self._explain_window(window, steps) for window in self.solver.windows.get(name, ()))
-
-    def _list_way(self, key: WayKey, steps: tuple[str, ...]) -> Iterator[FigureWorking]:
-        if len(steps) == 1:
-            yield from self._list_own(steps[0], steps)
-        for window in self.solver.way_windows.get(key, ()):
-            if isinstance(window, LevelWindow):
-                yield self._explain_window(window, steps)
-            else:
-                first = choose_working(self._list_way(key[:-1], steps[:-1]), window.delay_before)
-                yield from add_last_step(steps, first, choose_working(self._list_own(steps[-1]), window.response))
 
     def _explain_window(self, window: LevelWindow, steps: tuple[str, ...]) -> FigureWorking:
         bound, (count, arrival, finish), lead = self.solver.bounds[window.level], window.worst, window.lead

@@ -22,8 +22,17 @@ from archgen.timing.load.event_streams import (
 from archgen.timing.load.match_delays import combine_matched
 from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.run_ways import EntryWay
+from archgen.timing.load.thread_work import DIVERGED_CAUSE
 from archgen.timing.system.thread_pools import is_reentrant
-from archgen.timing.system.timing_system import Activity, Arc, TimingSystem, best_response, calls_per_activation
+from archgen.timing.system.timing_system import (
+    Activity,
+    Arc,
+    TimingSystem,
+    best_response,
+    calls_per_activation,
+    find_request,
+    is_taken_answer,
+)
 
 _DOWNSTREAM_WORDS = {"overload": "unbounded"}
 """What a note becomes for those who read the output: what reads from an overload is not overloaded itself."""
@@ -140,11 +149,21 @@ def arriving_model(state: PropagationState, arc: Arc) -> EventStreams | UnknownC
 
 def leaving_model(state: PropagationState, arc: Arc) -> EventStreams | UnknownCause:
     """Return the event model of what its source sends on an arc (data or a call), before any link."""
+    if is_taken_answer(arc):
+        return answer_model(state, arc)
     source, event_model = state.system.activities[arc.source], state.event_models[arc.source]
     calls = calls_per_activation(source, arc) if arc.role == "request" else None
     if isinstance(event_model, UnknownCause) or not event_model or (calls is not None and calls <= 0):
         return () if calls is not None and calls <= 0 else event_model
     response = state.responses[arc.source]
+    bounded_ways = (
+        (state.host_ways_to.get(arc.source, ()), state.transaction_ways.get(arc.source, ()))
+        if source.response is None
+        else ()
+    )
+    if arc.source in state.settled_ids and source.response is None:
+        known_ways = state.transaction_ways.get(arc.source, ())
+        return _stream_ways(state, source, known_ways, calls) if known_ways else DIVERGED_CAUSE
     if response.value is None:
         return _downstream_cause(response.cause)
     # What a declared response says goes for its output, whatever may be computed.
@@ -157,12 +176,33 @@ def leaving_model(state: PropagationState, arc: Arc) -> EventStreams | UnknownCa
         if ways
         else _complete_streams(state, source, event_model, calls, response.value)
     )
-    host_ways = state.host_ways_to.get(arc.source, ()) if source.response is None else ()
-    if not host_ways or isinstance(leaving, UnknownCause):
-        return leaving
-    # Over many cores delays add up on the way, while the host as a whole bounds all of them together.
-    leaving_host = _stream_ways(state, source, host_ways, calls)
-    return leaving if isinstance(leaving_host, UnknownCause) else min(leaving, leaving_host, key=_largest_jitter)
+    # Over many cores delays add up on the way, while the host, or the way as a whole, bounds all of them together.
+    others = [_stream_ways(state, source, each, calls) for each in bounded_ways if each]
+    models = [model for model in (leaving, *others) if not isinstance(model, UnknownCause)]
+    return min(models, key=_largest_jitter, default=leaving)
+
+
+def answer_model(state: PropagationState, answer: Arc) -> EventStreams | UnknownCause:
+    """Return the answers to one client: as many as it asked for, each at most as much later as the server needs."""
+    server, response = state.system.activities[answer.source], state.responses[answer.source]
+    request = find_request(state.system, answer)
+    request_model = leaving_model(state, request)
+    if isinstance(request_model, UnknownCause) or not request_model:
+        return request_model
+    if response.value is None:
+        return response.cause
+    if request.worst is None:
+        return UnknownCause((request.link or request.source,))
+    # A best latency that is not written is 0, as everywhere: the least there can be, so that the spread is a bound.
+    spread = max(response.value - best_response(server), 0) + request.worst - (request.best or 0)
+    # A periodic server looks for calls when it runs: an answer waits up to one more of its gaps.
+    if server.behaviour in {"event", "on_demand"}:
+        return delay_streams(request_model, spread)
+    return (
+        UnknownCause((server.id,))
+        if server.period is None
+        else delay_streams(request_model, spread + server.period + server.jitter)
+    )
 
 
 def _largest_jitter(streams: EventStreams) -> int:

@@ -7,16 +7,17 @@ point (K. Tindell, J. Clark 1994; compositional analysis as in pyCPA).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import TypeVar
 
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.figures.timing_values import UnknownCause, sum_ratios
 from archgen.timing.load.core_responses import CoreResponses
+from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.load_system import build_load_system, list_written_priorities
-from archgen.timing.load.lone_work import find_lone_wait
 from archgen.timing.load.propagation_state import PropagationState
+from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.load.step_updates import StepUpdates
 from archgen.timing.load.storing_waits import find_core_waits
@@ -27,6 +28,7 @@ from archgen.timing.system.core_placement import (
     ProcessingResource,
     find_resources,
 )
+from archgen.timing.system.thread_pools import may_skip_ticks
 from archgen.timing.system.timing_system import TimingSystem, samples_inputs
 from archgen.timing.system.trigger_graph import TriggerGraph, find_triggers, has_own_rate
 
@@ -68,6 +70,8 @@ def _restrict_state(load_state: PropagationState, system: TimingSystem, triggers
         diverged=load_state.diverged & system.activities.keys(),
         storing_waits=keep_written(load_state.storing_waits),
         ways_to=keep_written(load_state.ways_to),
+        transaction_ways=keep_written(load_state.transaction_ways),
+        transaction_arcs=keep_written(load_state.transaction_arcs),
         run_arcs=keep_written(load_state.run_arcs),
         leaving_models={},
         load_state=load_state,
@@ -79,7 +83,13 @@ class _Propagation(StepUpdates):
 
     def run_to_fixed_point(self) -> PropagationState:
         """Take the strong components of the dependencies in order, and iterate only those that are loops."""
-        all_steps = [*self.state.triggers.order, *self.whole_hosts, *self.resources, *self.joined_resources]
+        all_steps = [
+            *self.state.triggers.order,
+            *self.whole_hosts,
+            *self.transactions,
+            *self.resources,
+            *self.joined_resources,
+        ]
         for steps in find_strong_components(all_steps, self.successors.__getitem__):
             # The strong components come in the order of dependency: what is outside of loops is found once, in one
             # pass.
@@ -108,18 +118,80 @@ class _Propagation(StepUpdates):
                 waits = limit_responses(CoreResponses({}, {}, waits), self._limits_of(step)).storing_waits
                 responses = {name: state.responses[name] for name in resource.members}
                 state.storing_waits |= self._limit_to_fair(step, CoreResponses(responses, {}, waits), {}).storing_waits
+            if queue is not None and queue.works_in_rounds:
+                for name in names:
+                    wait = state.storing_waits[name]
+                    state.storing_waits[name] = queue.limit_storing_wait(state.system, name, wait)
         for name in sorted(readers.difference(self.resources_of)):
-            if state.system.activities[name].uses:
-                own_core = ProcessingResource(name, None, 1, ((name,),))
-                stores = find_waiting_stores(state, own_core, self.waiting_ids, (name,), self.budget_of[name])
+            own_core, budget = ProcessingResource(name, None, 1, ((name,),)), self.budget_of[name]
+            if state.system.activities[name].suspends:
+                stores = find_waiting_stores(state, own_core, self.waiting_ids, (name,), budget)
                 state.storing_waits[name] = self._limit_response(name, stores[name])
             else:
-                budget = self.budget_of[name]
-                state.storing_waits[name] = find_lone_wait(state.system, name, state.event_models, budget)
+                waits = find_core_waits(state.system, own_core, state.event_models, (name,), budget)
+                state.storing_waits[name] = waits[name]
+        self._add_skipped_ticks(readers)
+
+    def _add_skipped_ticks(self, readers: Iterable[str]) -> None:
+        """Add to waits on other resources than a single core that a tick which waits for its job skips the next ones."""
+        state = self.state
+        single_cores = {name for step in self._list_single_steps() for name in self.resources[step].members}
+        for name in sorted(set(readers) - single_cores):
+            activity, wait, response = state.system.activities[name], state.storing_waits[name], state.responses[name]
+            if wait.value and response.value and may_skip_ticks(state.system, activity, response.value):
+                state.storing_waits[name] = wait._replace(value=wait.value + response.value - (activity.wcet or 0))
+
+    def _list_single_steps(self) -> Iterator[str]:
+        """Yield the resources of one core: their waits end where a job begins, whatever is skipped."""
+        return (step for step, each in self.resources.items() if not each.waits and step not in self.shared_cores)
 
     def _iterate_steps(self, steps: tuple[str, ...]) -> None:
-        """Repeat until nothing changes. Started from the execution times, it approaches the truth from below."""
+        """Repeat until nothing changes: place by place, and then with what the ways over hosts say of all that leaves them."""
+        is_at_rest = self._begin_anew(steps)
+        settled_ids = {name for step in steps if step in self.transactions for name in self.transactions[step].place_of}
+        if settled_ids:
+            is_at_rest = self._settle_transactions(steps, settled_ids, is_at_rest=is_at_rest)
+        if not is_at_rest:
+            self._give_up_steps(steps)
+
+    def _settle_transactions(self, steps: tuple[str, ...], settled_ids: set[str], *, is_at_rest: bool) -> bool:
+        """Repeat with what the ways over hosts say of all that leaves them, and return whether all came to rest."""
+        state = self.state
+        place_responses = {name: state.responses[name] for name in settled_ids} if is_at_rest else {}
+        state.place_ways |= {name: self._list_place_ways(name) if is_at_rest else () for name in settled_ids}
+        state.settled_ids |= settled_ids
+        if not self._begin_anew(steps):
+            state.settled_ids -= settled_ids
+            return self._begin_anew(steps)
+        for name, response in place_responses.items():
+            value = state.responses[name].value
+            # Where a search did not end now, what was found place by place is as safe.
+            if response.value is not None and (value is None or response.value < value):
+                state.responses[name] = response
+        return True
+
+    def _list_place_ways(self, name: str) -> tuple[EntryWay, ...]:
+        """Return how long events stay on the cores of an activity at most, as it was found from these alone."""
+        state = self.state
+        entry = EntryWay(EventOrigin("activity", name), None, (name,), delay=state.responses[name].value)
+        core_ways = (*state.ways_to.get(name, ()), *state.host_ways_to.get(name, ()), entry)
+        return tuple(way for way in core_ways if way.delay is not None)
+
+    def _begin_anew(self, steps: tuple[str, ...]) -> bool:
+        """Repeat from below until nothing changes, and return whether it came to rest."""
+        for step in steps:
+            self.state.event_models.pop(step, None)
+            self.seen_models.pop(step, None)
+            self.window_inputs.pop(step, None)
+            for name in self.transactions[step].place_of if step in self.transactions else ():
+                self.state.transaction_ways.pop(name, None)
+        for name in self._activity_ids(steps):
+            self.state.responses.pop(name, None)
         self._start_from_below(steps)
+        return self._settle_steps(steps)
+
+    def _settle_steps(self, steps: tuple[str, ...]) -> bool:
+        """Repeat, and return whether it came to rest. Started from the execution times, it approaches the truth from below."""
         pending = set(steps)
         for _ in range(_MAX_SWEEPS):
             for step in steps:
@@ -128,12 +200,11 @@ class _Propagation(StepUpdates):
                     if self._update_step(step):
                         pending.update(self.successors[step])
                         if self._has_run_away(step):
-                            self._give_up_steps(steps)
-                            return
+                            return False
             pending.intersection_update(steps)
             if not pending:
-                return
-        self._give_up_steps(steps)
+                return True
+        return False
 
     def _has_run_away(self, step: str) -> bool:
         """Whether a response has grown so long that it is of no use to anybody, if it ends at all."""
@@ -159,7 +230,7 @@ class _Propagation(StepUpdates):
     def _activity_ids(self, steps: tuple[str, ...]) -> Iterator[str]:
         """Yield the activities whose figures some steps find."""
         for step in steps:
-            if step not in self.whole_hosts and step not in self.joined_resources:
+            if step not in self.whole_hosts and step not in self.joined_resources and step not in self.transactions:
                 yield from self.resources[step].members if step in self.resources else (step,)
 
     def _give_up_steps(self, steps: tuple[str, ...]) -> None:

@@ -9,12 +9,19 @@ from fractions import Fraction
 from archgen.timing.analysis import EventPace, HostLoad, Reason, ResponseTime, RunResponse
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
 from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue
-from archgen.timing.figures.value_arithmetic import add_values, is_boundless, replace_figure, unknown_value
+from archgen.timing.figures.value_arithmetic import (
+    add_values,
+    is_boundless,
+    multiply_value,
+    replace_figure,
+    unknown_value,
+)
 from archgen.timing.load.host_verdicts import HostJudge, rate_monotonic_bound
 from archgen.timing.load.propagation_state import PropagationState
+from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.thread_work import WorstResponse
 from archgen.timing.system.core_placement import ProcessingResource
-from archgen.timing.system.timing_system import Activity, TimingSystem, best_response
+from archgen.timing.system.timing_system import Activity, Arc, TimingSystem, best_response
 
 _ONE_CORE_ONLY = TimingValue(None, assumptions=("one core only",))
 _TIER_SENTENCES = {
@@ -30,6 +37,7 @@ _TIER_SENTENCES = {
     "edf": "all that may have an earlier deadline on {0}",
     "cores": "all work of its own thread, and a share of all other work on the {1} cores of {0}",
     "whole host": "the longest time for which all work on {0} can keep one core busy (while anything waits there, one works)",
+    "whole way": "its ways from the event on as wholes: own work, links, and what can hold up one event on all hosts there",
     "unknown": "no execution time is written",
 }
 _OWN_CORE_SENTENCE = "its own work: {0} has no more threads than cores"
@@ -70,12 +78,17 @@ def _build_response_time(
     )
 
 
-def build_run_responses(state: PropagationState, responses: Mapping[str, ResponseTime]) -> dict[str, RunResponse]:
-    """Return how long runs take, for each activity to which one leads from another of its core."""
+def build_run_responses(
+    state: PropagationState,
+    responses: Mapping[str, ResponseTime],
+    ways_to: Mapping[str, tuple[EntryWay, ...]],
+    run_arcs: Mapping[str, tuple[Arc, ...]],
+) -> dict[str, RunResponse]:
+    """Return how long runs take, for each activity to which one leads from another of its core, or of another."""
     runs: dict[str, RunResponse] = {}
-    for name, ways in state.ways_to.items():
+    for name, ways in ways_to.items():
         delays = [way.delay for way in ways if way.delay is not None]
-        arcs = state.run_arcs.get(name, ())
+        arcs = run_arcs.get(name, ())
         if len(delays) == len(ways) and arcs and responses[name].tier != "declared":
             step_notes = (note for way in ways for step in way.steps for note in responses[step].worst.assumptions)
             worst = responses[name].worst
@@ -149,7 +162,7 @@ def find_host_loads(
 ) -> dict[str, HostLoad]:
     """Return the load of every host, resource by resource."""
     shares = {
-        name: _add_storing_share(system, name, activity_share(system, name, pace), outputs)
+        name: _add_storing_share(system, name, activity_share(system, name, pace), pace.rate, outputs)
         for name, pace in paces.items()
         if name in system.activities
     }
@@ -182,20 +195,25 @@ def activity_share(system: TimingSystem, name: str, pace: EventPace) -> TimingVa
 
 
 def _add_storing_share(
-    system: TimingSystem, name: str, share: TimingValue, outputs: Mapping[tuple[str, str], EventPace]
+    system: TimingSystem,
+    name: str,
+    share: TimingValue,
+    own_rate: TimingValue,
+    outputs: Mapping[tuple[str, str], EventPace],
 ) -> TimingValue:
-    """Return the share of a core that an activity takes, with the callbacks that store its inputs."""
-    storing = system.activities[name].storing
-    if not any(callback.wcet for callback in storing.values()):
-        return share
-    storing_shares = [
-        replace_figure(pace.rate, pace.rate.value * storing[arc.input].wcet * system.tick / NS_PER_SECOND)
-        if (pace := outputs[arc.source, arc.output]).rate.value is not None
-        else pace.rate
-        for arc in system.arcs_into.get(name, ())
-        if arc.role == "data" and arc.input in storing and storing[arc.input].wcet
-    ]
-    return add_values((share, *storing_shares))
+    """Return the share of a core that an activity takes, with the callbacks that store its inputs and take answers."""
+    activity = system.activities[name]
+    storing_shares: list[TimingValue] = []
+    for arc in system.arcs_into.get(name, ()) if activity.storing else ():
+        callback = activity.storing.get(arc.input)
+        if callback is None or not callback.wcet or arc.role == "request":
+            continue
+        # An answer comes for each call.
+        is_answer = arc.role == "answer"
+        rate = own_rate if is_answer else outputs[arc.source, arc.output].rate
+        time = callback.wcet * (activity.calls.get(arc.input, 1) if is_answer else 1)
+        storing_shares.append(multiply_value(rate, Fraction(time * system.tick / NS_PER_SECOND)))
+    return add_values((share, *storing_shares)) if storing_shares else share
 
 
 def _build_host_load(
@@ -222,4 +240,5 @@ def _build_host_load(
         activity_shares=tuple(shares.items()),
         core_loads=loads,
         earliest_deadline_bound=TimingValue(Fraction(1)) if cores == 1 else _ONE_CORE_ONLY,
+        unproven=judge.find_unproven(shares),
     )

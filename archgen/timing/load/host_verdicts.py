@@ -9,7 +9,7 @@ from itertools import pairwise
 from typing import Literal
 
 from archgen.frozen import dataclass
-from archgen.timing.analysis import EventPace, ResponseTime
+from archgen.timing.analysis import EventPace, HostLoad, ResponseTime
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
 from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue
 from archgen.timing.system.fair_hosts import PREEMPTIVE_ORDERS
@@ -40,13 +40,28 @@ class HostJudge:
         is_full = any(load.value == cores for _, cores, load in loads)
         if any(not load.complete or load.value is None for _, _, load in loads):
             return "overload" if is_full else "unknown"
-        if all(is_done_in_time(self.system, name, self.paces[name], self.responses[name]) for name in members):
+        if not self.find_unproven(members):
             return "schedulable"
         if is_full:
             return "overload"
         one_core = len(loads) == 1 and loads[0][1] == 1
         fits = one_core and _fits_rate_monotonic(self.system, members, loads[0][2], self.paces)
         return "schedulable" if fits else "undecided"
+
+    def find_unproven(self, members: Iterable[str]) -> tuple[str, ...]:
+        """Return the activities that nothing proves to be done in time."""
+        return tuple(
+            name for name in members if not _is_done_in_time(self.system, name, self.paces[name], self.responses[name])
+        )
+
+
+def name_host_verdict(load: HostLoad) -> str:
+    """Return what people read as the verdict on a host."""
+    if load.verdict == "schedulable" and load.unproven:
+        return "in time with priorities by rate"
+    return {"schedulable": "in time", "overload": "overload", "undecided": "not proven in time"}.get(
+        load.verdict, load.verdict
+    )
 
 
 def _exceeds_cores(load: TimingValue, cores: int) -> bool:
@@ -88,7 +103,7 @@ def _fits_rate_monotonic(
     )
 
 
-def is_done_in_time(system: TimingSystem, name: str, pace: EventPace, response: ResponseTime) -> bool:
+def _is_done_in_time(system: TimingSystem, name: str, pace: EventPace, response: ResponseTime) -> bool:
     """Whether an activity is done by its deadline; before it is activated again, where none is written."""
     if pace.rate.value == 0:
         return True

@@ -33,10 +33,10 @@ from typing import NamedTuple
 
 from archgen.timing.load.busy_windows import DivergedError, SearchBudget, WorstActivation
 from archgen.timing.load.cascade_demand import CascadeDemand
+from archgen.timing.load.core_paths import SharedWork, WayWork
 from archgen.timing.load.event_streams import EventStreams, earliest_arrivals, max_arrivals
 from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.shared_cores import SharedCores, WayKey
-from archgen.timing.load.way_works import SharedWork, WayWork
 
 _MAX_ROUNDS = 25
 """Repetitions for the delays in threads that several ways share."""

@@ -14,7 +14,13 @@ from typing import NamedTuple
 from archgen.frozen import dataclass
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.system.core_placement import ProcessingResource
-from archgen.timing.system.timing_system import Activity, Arc, TimingSystem, calls_per_activation
+from archgen.timing.system.timing_system import (
+    Activity,
+    Arc,
+    TimingSystem,
+    calls_per_activation,
+    is_taken_answer,
+)
 from archgen.timing.system.trigger_graph import TriggerGraph, has_own_rate
 
 ONE_CALL = Fraction(1)
@@ -53,12 +59,13 @@ class InnerTriggers:
 
 
 def find_inner_triggers(
-    system: TimingSystem, triggers: TriggerGraph, resource: ProcessingResource
+    system: TimingSystem, triggers: TriggerGraph, resource: ProcessingResource, *, over_links: bool = False
 ) -> InnerTriggers | None:
     """Return the triggers inside a resource; None where each activity is looked at by itself.
 
     That is so where cores are joined, or nobody wrote how many there are, where one core has no trigger inside, and on a
-    core of some with priorities on which others may run too.
+    core of some with priorities on which others may run too. With `over_links` what takes a known time on its way is
+    inside as well, but no call: its caller may go on.
     """
     if resource.joined or resource.missing or resource.waits:
         return None
@@ -68,17 +75,16 @@ def find_inner_triggers(
         return None
     members = dict.fromkeys(resource.members)
     arcs_into = {
-        name: tuple(_firing_arcs(system, triggers, name))
+        name: _divide_arcs(system, _firing_arcs(system, triggers, name), members, over_links=over_links)
         for name in members
         if _is_fired_by_arcs(system, triggers, name)
         # While several cores work, what has come to a gate is never known: its own event model says what leaves it.
         and (resource.cores == 1 or not _is_gate(system, triggers, name))
     }
     successors: dict[str, list[str]] = {name: [] for name in members}
-    for name, firing_arcs in arcs_into.items():
-        for firing_arc in firing_arcs:
-            if _takes_no_time(system, firing_arc.arc, members):
-                successors[firing_arc.arc.source].append(name)
+    for name, (inner_arcs, _) in arcs_into.items():
+        for firing_arc in inner_arcs:
+            successors[firing_arc.arc.source].append(name)
     if resource.cores == 1 and not any(successors.values()):
         return None
     components = find_strong_components(members, successors.__getitem__)
@@ -101,10 +107,10 @@ def _build_inner_triggers(
     system: TimingSystem,
     triggers: TriggerGraph,
     inner_order: tuple[str, ...],
-    arcs_into: Mapping[str, tuple[FiringArc, ...]],
+    arcs_into: Mapping[str, tuple[tuple[FiringArc, ...], tuple[FiringArc, ...]]],
     ring_ids: Iterable[str],
 ) -> InnerTriggers:
-    """Divide what fires each activity, in order, into what comes from the core and from elsewhere."""
+    """Return what fires each activity, in order, from the core and from elsewhere."""
     members = dict.fromkeys(inner_order)
     entry_ids = frozenset(members).difference(arcs_into).union(ring_ids)
     fired_ids = [name for name in inner_order if name not in entry_ids]
@@ -117,14 +123,8 @@ def _build_inner_triggers(
     return InnerTriggers(
         inner_order,
         entry_ids,
-        {
-            name: tuple(each for each in arcs_into[name] if _takes_no_time(system, each.arc, members))
-            for name in fired_ids
-        },
-        {
-            name: tuple(each for each in arcs_into[name] if not _takes_no_time(system, each.arc, members))
-            for name in fired_ids
-        },
+        {name: arcs_into[name][0] for name in fired_ids},
+        {name: arcs_into[name][1] for name in fired_ids},
         {name: tuple(tuple(map(FiringArc, arcs)) for arcs in inputs.values()) for name, inputs in known_inputs.items()},
         frozenset(name for name, inputs in known_inputs.items() if len(inputs) == len(needed_inputs[name])),
         frozenset(
@@ -133,13 +133,24 @@ def _build_inner_triggers(
     )
 
 
-def _takes_no_time(system: TimingSystem, arc: Arc, members: Mapping[str, None]) -> bool:
+def _divide_arcs(
+    system: TimingSystem, firing_arcs: Iterable[FiringArc], members: Mapping[str, None], *, over_links: bool
+) -> tuple[tuple[FiringArc, ...], tuple[FiringArc, ...]]:
+    """Return the arcs that come from the core, and those from elsewhere."""
+    arcs = tuple(firing_arcs)
+    inner_arcs = tuple(each for each in arcs if _is_inside(system, each.arc, members, over_links=over_links))
+    return inner_arcs, tuple(each for each in arcs if not _is_inside(system, each.arc, members, over_links=over_links))
+
+
+def _is_inside(system: TimingSystem, arc: Arc, members: Mapping[str, None], *, over_links: bool) -> bool:
     """Whether an arc lies inside the core, and is taken at the very end of its source (or while that runs)."""
     # What a declared response ends with may have left the core in between. (What waits for a resource is no member of
     # a part with triggers inside.)
-    return (
-        arc.source in members and arc.link is None and arc.worst == 0 and system.activities[arc.source].response is None
-    )
+    if arc.source not in members or system.activities[arc.source].response is not None:
+        return False
+    if over_links:
+        return arc.role == "data" and arc.worst is not None
+    return arc.link is None and arc.worst == 0
 
 
 def _is_fired_by_arcs(system: TimingSystem, triggers: TriggerGraph, name: str) -> bool:
@@ -154,6 +165,8 @@ def _is_fired_by_arcs(system: TimingSystem, triggers: TriggerGraph, name: str) -
         return False
     outside_inputs = system.external_inputs.get(name, ())
     inputs = triggers.inputs[name]
+    if any(is_taken_answer(arc) for arcs in inputs.values() for arc in arcs):
+        return False  # as often as its client asks, and not as its server works
     if any(not arcs or key in outside_inputs for key, arcs in inputs.items()):
         return False
     return bool(inputs or triggers.requests[name])

@@ -54,7 +54,12 @@ class JoinedResources:
             if self.core is None
             else open_core_solver(self.core, model_of, budget).solve().response_of
         )
-        return {name: response.value for name, response in responses.items() if response.value is not None}
+        # What is declared says when an output leaves, and not how long it keeps a thread.
+        return {
+            name: response.value
+            for name, response in responses.items()
+            if response.value is not None and response.tier != "declared"
+        }
 
 
 def find_joined_resources(
@@ -65,7 +70,7 @@ def find_joined_resources(
     for step, part in parts.items():
         for name in (name for unit in (*part.units, *part.foreign_units) for name in unit):
             steps_of.setdefault(name, []).append(step)
-    user_ids = [activity.id for activity in system.activities.values() if activity.uses]
+    user_ids = [activity.id for activity in system.activities.values() if activity.suspends]
     neighbours: dict[str, list[str]] = {step: [] for step in parts}
     neighbours |= {name: [] for name in user_ids if name not in steps_of}
     last_user_of: dict[str, str] = {}
@@ -84,11 +89,11 @@ def find_joined_resources(
 
 
 def _list_uses(system: TimingSystem) -> dict[str, int]:
-    """Return how long each activation uses resources at most, without any wait."""
+    """Return how long each activation uses resources at most, without any wait for them, and waits for the world outside."""
     return {
-        activity.id: sum(use.worst for use in activity.uses.values())
+        activity.id: sum(use.worst for use in activity.uses.values()) + activity.wait
         for activity in system.activities.values()
-        if activity.uses
+        if activity.suspends
     }
 
 
@@ -109,7 +114,7 @@ def _list_groups(
         units = dict.fromkeys(unit for step in group if step in parts for unit in parts[step].units)
         units |= dict.fromkeys((step,) for step in group if step not in parts)
         is_open = any(step in parts and parts[step].missing for step in group)
-        users = [name for unit in units for name in unit if system.activities[name].uses]
+        users = [name for unit in units for name in unit if system.activities[name].suspends]
         if users and not is_open and all(name in use_times for name in users):
             yield _join_units(system, triggers, tuple(units), use_times)
 

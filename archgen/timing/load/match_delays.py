@@ -2,13 +2,68 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.event_streams import EventStream, EventStreams, collapse_streams, delay_streams
-from archgen.timing.load.match_windows import MatchedInput, find_match_windows
 from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.system.timing_system import Activity, Arc, best_response
+
+
+class MatchedInput(NamedTuple):
+    """An input that is matched, in ticks: the largest gap between the times of its messages, and how long they take."""
+
+    gap: int
+    best: int
+    worst: int
+
+
+class MatchWindows(NamedTuple):
+    """What is sure of matched inputs, in ticks.
+
+    `ages` are from the time of a message until the activation that uses it. `waits`, by input, are from the arrival of a
+    message until an activation that uses it or a newer one, None where no match is sure. `gap` is the largest between two
+    activations, None where no match is sure; `needed_within` is the least `within` for which one is.
+    """
+
+    ages: tuple[int, ...]
+    waits: tuple[int, ...] | None
+    gap: int | None
+    needed_within: int
+
+
+def find_match_windows(inputs: Sequence[MatchedInput], within: int, *, same_source: bool) -> MatchWindows:
+    """Return what is sure of matched inputs; `same_source`: each message has its partners of the very same job."""
+    if same_source or len(inputs) == 1:
+        latest = max(each.worst for each in inputs)
+        spread = latest - max(each.best for each in inputs)
+        return MatchWindows(
+            (latest,) * len(inputs),
+            tuple(latest - each.best for each in inputs),
+            max(each.gap for each in inputs) + spread,
+            0,
+        )
+    proof = max(each.gap + each.worst for each in inputs)
+    needed_within = sorted(each.gap for each in inputs)[-2]
+    ages = (within + proof,) * len(inputs)
+    # Equal times of different sources are a coincidence, however often they send.
+    if within < needed_within or within == 0:
+        return MatchWindows(ages, None, None, needed_within)
+    reaches = [_latest_pivot(inputs, index, within) + proof for index in range(len(inputs))]
+    return MatchWindows(
+        ages,
+        tuple(reach - each.best for reach, each in zip(reaches, inputs, strict=True)),
+        min(each.gap + reach - each.best for reach, each in zip(reaches, inputs, strict=True)),
+        needed_within,
+    )
+
+
+def _latest_pivot(inputs: Sequence[MatchedInput], index: int, within: int) -> int:
+    """Return how much later than a message of an input the pivot of the first set is that holds it or a newer one."""
+    other_gap = max(each.gap for number, each in enumerate(inputs) if number != index)
+    return other_gap + max(within, inputs[index].gap)
+
 
 DEFAULT_QUEUE = 10
 """How many messages of an input wait for those with which they are matched, where no depth is written."""

@@ -30,6 +30,14 @@ class PropagationState:
     """The ways on which events reach each activity of a core with triggers inside."""
     host_ways_to: dict[str, tuple[EntryWay, ...]] = field(default_factory=dict)
     """The same from where events enter a host of several cores, where that is bounded as a whole."""
+    transaction_ways: dict[str, tuple[EntryWay, ...]] = field(default_factory=dict)
+    """The same from where events enter a group of hosts that fire one another in turn."""
+    transaction_arcs: dict[str, tuple[Arc, ...]] = field(default_factory=dict)
+    """The arcs by which such ways go on to an activity."""
+    place_ways: dict[str, tuple[EntryWay, ...]] = field(default_factory=dict)
+    """How long events stay on the cores of activities of such a group, as far as these alone bound it."""
+    settled_ids: set[str] = field(default_factory=set)
+    """Activities of such groups of which these ways say what leaves them, once each place has been looked at by itself."""
     run_arcs: dict[str, tuple[Arc, ...]] = field(default_factory=dict)
     """The arcs by which ways go on to an activity from another of its core."""
     work_ends: dict[str, WorstResponse] = field(default_factory=dict)

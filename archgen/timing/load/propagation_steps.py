@@ -16,11 +16,12 @@ from archgen.timing.load.run_ways import EntryWay, begin_way, find_run_arcs
 from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.load.shared_cores import prepare_shared_cores
 from archgen.timing.load.single_cores import SingleCores, find_single_cores
+from archgen.timing.load.transactions import find_transactions
 from archgen.timing.load.waiting_threads import model_roaming_work
 from archgen.timing.load.whole_hosts import HostLimit, find_whole_hosts
 from archgen.timing.system.core_placement import ProcessingResource
 from archgen.timing.system.resource_division import split_resources
-from archgen.timing.system.timing_system import Arc
+from archgen.timing.system.timing_system import Arc, find_request, is_taken_answer
 from archgen.timing.system.trigger_graph import has_own_rate
 
 _MAX_WAITING_ACTIVATIONS = 200
@@ -78,6 +79,16 @@ class PropagationSteps:
         self.resources_of_host: dict[str, list[str]] = {}
         self.host_limits: dict[str, dict[str, HostLimit]] = {}
         self._prepare_whole_hosts()
+        self.transactions = {
+            f"transactions {index}": each
+            for index, each in enumerate(
+                find_transactions(state.system, state.triggers, self.resources, self._list_firing_arcs())
+            )
+        }
+        self.transaction_step_of = {name: step for step, each in self.transactions.items() for name in each.place_of}
+        for each in self.transactions.values():
+            state.transaction_arcs.update(find_run_arcs(each.inner_triggers, each.ways_to))
+        self.window_inputs: dict[str, tuple[object, object]] = {}
         self.single_cores = self._find_single_cores()
         # From below, as everything that is found by repetition.
         self.state.single_ends = {
@@ -101,6 +112,7 @@ class PropagationSteps:
             for name in joined.processor.members:
                 self.joined_steps_of.setdefault(name, []).append(step)
         self.successors = self._find_successors()
+        self.group_budgets = group_budgets
         self.budget_of = group_budgets.assign_budgets(state.system, self.successors)
 
     def _prepare_inner_cores(self) -> None:
@@ -155,21 +167,46 @@ class PropagationSteps:
 
     def _find_successors(self) -> dict[str, list[str]]:
         """Return the steps that must be looked at again when a step has changed."""
-        system, triggers = self.state.system, self.state.triggers
+        system = self.state.system
         successors: dict[str, list[str]] = {
-            step: [] for step in (*system.activities, *self.whole_hosts, *self.resources, *self.joined_resources)
+            step: []
+            for step in (
+                *system.activities,
+                *self.whole_hosts,
+                *self.transactions,
+                *self.resources,
+                *self.joined_resources,
+            )
         }
         self._add_resource_steps(successors)
+        self._add_transaction_steps(successors)
         self._add_shared_uses(successors)
         self._add_joined_steps(successors)
-        for name, activity in system.activities.items():
-            if not has_own_rate(activity) and name not in triggers.unknown_rates:
-                for arc in self._trigger_arcs(name):
-                    successors[arc.source].append(name)
-                    # What arrives rests on the source's response as well, and that is found by its resource.
-                    for step in self._response_steps(arc.source):
-                        successors[step].append(name)
+        for arc in self._list_firing_arcs():
+            successors[arc.source].append(arc.target)
+            # What arrives rests on the source's response as well, and that is found by its resource.
+            for step in self._response_steps(arc.source):
+                successors[step].append(arc.target)
         return successors
+
+    def _list_firing_arcs(self) -> Iterator[Arc]:
+        """Yield the arcs on which event models rest."""
+        for name, activity in self.state.system.activities.items():
+            if not has_own_rate(activity) and name not in self.state.triggers.unknown_rates:
+                yield from self._trigger_arcs(name)
+
+    def _add_transaction_steps(self, successors: dict[str, list[str]]) -> None:
+        """Add what transactions rest on, and the cores that they bound."""
+        for step, transactions in self.transactions.items():
+            # What has a core of its own is found with its event model.
+            successors[step] += transactions.places
+            for place in transactions.places:
+                successors[place].append(step)
+            for name in sorted(transactions.inner_triggers.entry_ids):
+                successors[name].append(step)
+            for name in transactions.outer_ids:
+                for source_step in (name, *self._response_steps(name)):
+                    successors[source_step].append(step)
 
     def _add_resource_steps(self, successors: dict[str, list[str]]) -> None:
         """Add what the responses on each resource rest on."""
@@ -203,6 +240,8 @@ class PropagationSteps:
         whole_step = f"whole {self.state.system.activities[name].host}"
         if whole_step in self.whole_hosts:
             yield whole_step
+        if name in self.transaction_step_of:
+            yield self.transaction_step_of[name]
 
     def _add_shared_uses(self, successors: dict[str, list[str]]) -> None:
         """Add what the waits for resources rest on: the event models and responses of all that use them."""
@@ -241,4 +280,6 @@ class PropagationSteps:
         for key, arcs in triggers.inputs[name].items():
             if (name, key) not in triggers.open_inputs:
                 yield from arcs
+                # Answers come as often as their client asks.
+                yield from (find_request(self.state.system, arc) for arc in arcs if is_taken_answer(arc))
         yield from triggers.requests[name]

@@ -9,7 +9,8 @@ changes but `a`, so that only these are looked at. Windows are closed: what come
   that has just begun, own jobs, and all more urgent ones that come until the job begins.
 - `edf`: M. Spuri 1996 where a job may be preempted, George et al. 1996 where not: what has a deadline up to a + D.
 - `ros2_executor`: the round that is under way when it comes, and one round for each job of its own that waits, in which
-  nothing works twice (D. Casini et al. 2019; Y. Tang et al. 2020; T. Blass et al. 2021 for the rounds).
+  nothing works twice (D. Casini et al. 2019; Y. Tang et al. 2020; T. Blass et al. 2021 for the rounds). It holds at any
+  load: ticks that come while one waits are skipped, and queues keep no more messages than their depth (H. Teper et al. 2022).
 """
 
 from __future__ import annotations
@@ -27,8 +28,7 @@ Spend = Callable[[int], None]
 class QueuedTask(NamedTuple):
     """What waits in the queue. `priority` None is after all others; `deadline` None: nobody knows how urgent it is.
 
-    `rank` is its place in a round of rclcpp's executor: timers 0, subscriptions 1, services 2, clients 3; `entities` is
-    how often it may work in one round.
+    `entities` is how often it may work in one round of an executor of ROS 2; each keeps `depth` messages, None all.
     """
 
     name: str
@@ -36,8 +36,9 @@ class QueuedTask(NamedTuple):
     streams: EventStreams
     priority: int | None = None
     deadline: int | None = None
-    rank: int = 1
     entities: int = 1
+    depth: int | None = None
+    is_timer: bool = False
 
     def count_until(self, time: int) -> int:
         """Return how many activations come in a closed window of a length (ticks), none where that is negative."""
@@ -85,29 +86,30 @@ def bound_fifo(tasks: Sequence[QueuedTask], busy_period: int, budget: SearchBudg
     )
 
 
-def bound_round(
-    task: QueuedTask, tasks: Sequence[QueuedTask], busy_period: int, budget: SearchBudget
-) -> QueueBound | None:
-    """Return the response in rclcpp's executor of one thread, None where it is above the busy period."""
-    spend, last_tasks = budget.start_search(), [each for each in tasks if each.rank <= task.rank]
-    round_work, last_round = _work_of_round(tasks), _work_of_round(last_tasks)
-    waiting = 1
+def bound_rounds(task: QueuedTask, tasks: Sequence[QueuedTask], budget: SearchBudget) -> QueueBound | None:
+    """Return the response in an executor of ROS 2 of one thread; None where more messages may wait than queues keep."""
+    spend, round_work, waiting = budget.start_search(), work_of_round(tasks), 1
+    if task.depth is None and not task.is_timer and sum(each.max_rate for each in task.streams) * round_work >= 1:
+        return None
     while True:
         spend(2)
-        response = waiting * round_work + last_round
-        # All own jobs that may wait when this one comes: those that came up to a response before.
-        count = task.count_until(response)
-        if response >= busy_period:
+        # All own jobs that may wait when this one comes: those that came up to a response before. Of ticks one waits.
+        count = 1 if task.is_timer else task.count_until((waiting + 1) * round_work)
+        if task.depth is not None and count > task.depth:
             return None
         if count <= waiting:
-            rounds = [QueueShare(each, each.cost * each.entities, waiting, "in the rounds before") for each in tasks]
-            rounds += [QueueShare(each, each.cost * each.entities, 1, "in its own round") for each in last_tasks]
-            return QueueBound(response, 0, tuple(rounds))
+            return share_rounds(tasks, waiting + 1)
         waiting = count
 
 
-def _work_of_round(tasks: Iterable[QueuedTask]) -> int:
-    """Return the work of a round of rclcpp's executor in which everything is ready."""
+def share_rounds(tasks: Iterable[QueuedTask], number: int) -> QueueBound:
+    """Return the bound of so many rounds in which everything is ready: the one under way, and up to one's own."""
+    shares = tuple(QueueShare(each, each.cost * each.entities, number, "in each round") for each in tasks)
+    return QueueBound(sum(each.work * number for each in shares), 0, shares)
+
+
+def work_of_round(tasks: Iterable[QueuedTask]) -> int:
+    """Return the work of a round of an executor of ROS 2 in which everything is ready."""
     return sum(each.cost * each.entities for each in tasks)
 
 

@@ -74,7 +74,7 @@ def _find_wait(state: PropagationState, name: str, resource_id: str, budget: Sea
 
 
 def explain_waits(load_of: Mapping[str, ResourceLoad], activity: Activity, tick: Fraction) -> tuple[Reason, ...]:
-    """Return the reasons that the waits of an activity for resources are: one for each."""
+    """Return the reasons that the waits of an activity are: one for each resource, and one for what it waits beside that."""
     reasons: list[Reason] = []
     for resource_id, use in activity.uses.items():
         span = activity.places.get(f"uses {resource_id}", activity.places.get("uses", activity.at))
@@ -90,4 +90,9 @@ def explain_waits(load_of: Mapping[str, ResourceLoad], activity: Activity, tick:
                     "waits for {0}{3}, and uses it for {1}: {2} at most", span, (resource_id, own, wait.value, others)
                 )
             )
+    if activity.wait:
+        span, own_wait = activity.places.get("response", activity.at), Fraction(activity.wait * tick)
+        reasons.append(
+            Reason("waits for {0} in its callback, as its `response` says, and keeps its thread", span, (own_wait,))
+        )
     return tuple(reasons)

@@ -47,10 +47,15 @@ def find_users(system: TimingSystem, resource_id: str) -> tuple[str, ...]:
 
 
 def find_use_times(state: PropagationState, name: str, budget: SearchBudget) -> int | UnknownCause:
-    """Return how long an activation waits for all resources that it uses, and uses them, in ticks."""
+    """Return how long an activation waits for all resources and uses them, and waits for the world outside, in ticks."""
     times = [find_use_time(state, name, resource_id, budget) for resource_id in state.system.activities[name].uses]
     causes = [time for time in times if isinstance(time, UnknownCause)]
-    return unite_causes(causes) if causes else sum(time for time in times if not isinstance(time, UnknownCause))
+    own_wait = state.system.activities[name].wait
+    return (
+        unite_causes(causes)
+        if causes
+        else sum((time for time in times if not isinstance(time, UnknownCause)), own_wait)
+    )
 
 
 def find_use_time(state: PropagationState, name: str, resource_id: str, budget: SearchBudget) -> int | UnknownCause:
@@ -62,16 +67,12 @@ def find_use_time(state: PropagationState, name: str, resource_id: str, budget: 
     if order == "fifo" and (resource_id, users) not in state.turn_times:
         state.turn_times[resource_id, users] = bound_in_turn(state.system, resource_id, users)
     in_turn = state.turn_times[resource_id, users].get(name) if order == "fifo" else None
-    # In any order each of these uses may come first as well, but for those of several activations at once.
-    if in_turn is not None and not any(_may_overlap(state.system.activities[user]) for user in users):
+    if in_turn is not None:
         return in_turn
     try:
-        by_arrivals = _bound_by_arrivals(state, name, resource_id, budget)
+        return _bound_by_arrivals(state, name, resource_id, budget)
     except DivergedError:
-        by_arrivals = DIVERGED_CAUSE
-    if in_turn is None:
-        return by_arrivals
-    return in_turn if isinstance(by_arrivals, UnknownCause) else min(in_turn, by_arrivals)
+        return DIVERGED_CAUSE
 
 
 def find_load(state: PropagationState, resource_id: str) -> Fraction:
@@ -95,12 +96,12 @@ def _find_order(system: TimingSystem, resource_id: str) -> SchedulingOrder | Non
 
 
 def thread_key(activity: Activity) -> str:
-    """Return what runs an activity: its executor, its container, or itself."""
-    return activity.executor or activity.container or activity.id
+    """Return what runs an activity: its executor, or itself."""
+    return activity.executor or activity.id
 
 
 def find_turn_times(system: TimingSystem) -> dict[str, int | None]:
-    """Return how long the uses of each activation take if each comes in the order of arrival; None where one does not."""
+    """Return how long each activation waits where each use comes in the order of arrival; None where one does not."""
     in_turn = {
         resource_id: bound_in_turn(system, resource_id, find_users(system, resource_id))
         if _find_order(system, resource_id) == "fifo"
@@ -108,9 +109,9 @@ def find_turn_times(system: TimingSystem) -> dict[str, int | None]:
         for resource_id in dict.fromkeys(key for activity in system.activities.values() for key in activity.uses)
     }
     times_of = {
-        activity.id: [in_turn[resource_id].get(activity.id) for resource_id in activity.uses]
+        activity.id: [activity.wait, *(in_turn[resource_id].get(activity.id) for resource_id in activity.uses)]
         for activity in system.activities.values()
-        if activity.uses
+        if activity.suspends
     }
     return {name: None if None in times else sum(each or 0 for each in times) for name, times in times_of.items()}
 
@@ -154,10 +155,8 @@ def _sum_longest(groups: Mapping[str | None, int], threads: int | None) -> int |
 
 
 def _count_threads(system: TimingSystem, key: str) -> int | None:
-    """Return the threads of an executor or container; None where there is one for each member."""
-    if key in system.executors:
-        return system.executors[key].threads
-    return system.threads.get(key) if key in system.threads else 1
+    """Return the threads of an executor; None where there is one for each member."""
+    return system.executors[key].threads if key in system.executors else 1
 
 
 def _bound_by_arrivals(

@@ -13,15 +13,15 @@ from archgen.timing.load.core_responses import CoreResponses, CoreSolver
 from archgen.timing.load.core_terms import CoreTerms, explain_core_hold, explain_core_window, explain_queue_bound
 from archgen.timing.load.fair_terms import FairTerms
 from archgen.timing.load.load_system import list_written_priorities
-from archgen.timing.load.lone_work import find_lone_response
 from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.queue_responses import QUEUE_TIERS
-from archgen.timing.load.response_times import AnalysisEffort, find_responses
+from archgen.timing.load.response_times import AnalysisEffort, find_lone_activation, find_responses
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.load.shared_core_terms import SharedCoreTerms
 from archgen.timing.load.step_updates import StepUpdates
 from archgen.timing.load.thread_work import CoreWindow, EventModels, WorstResponse, build_core_threads, find_work
+from archgen.timing.load.transaction_windows import ENDLESS, TransactionWindows, explain_way_window
 from archgen.timing.load.whole_hosts import list_host_limits
 from archgen.timing.load.work_terms import (
     CountFormulas,
@@ -127,7 +127,7 @@ class ResponseTerms:
         if isinstance(work, UnknownCause):
             return
         in_order = works_in_order(system, system.activities[name])
-        count, arrival, finish = find_lone_response(work, SearchBudget(), in_order=in_order)
+        count, arrival, finish = find_lone_activation(work, SearchBudget(), in_order=in_order)
         events = EventCount(count, str(count)) if in_order else self.formulas.count_events(work.streams, finish)
         term = WorkTerm(((name, work.cost),), events, "its own")
         yield FigureWorking(finish - arrival, finish, group_terms([term]), count, arrival)
@@ -168,7 +168,7 @@ class ResponseTerms:
     def _list_holds(self, name: str, hold: int, tier: ResponseTier) -> Iterator[FigureWorking]:
         step = self._find_step(name)
         resource = ProcessingResource(name, None, 1, ((name,),)) if step is None else self._steps.resources[step]
-        if resource.waits or self.state.system.activities[name].uses:
+        if resource.waits or self.state.system.activities[name].suspends:
             return
         terms: CoreTerms | SharedCoreTerms | FairTerms | None = None
         if step is not None and tier == "fair":
@@ -185,6 +185,29 @@ class ResponseTerms:
             thread = next(each for each in threads if name in each.unit)
             window = CoreWindow(thread, threads, WorstActivation(0, 0, hold))
             yield explain_core_hold(window, name, hold, self.formulas)
+
+    def open_windows(self, name: str) -> TransactionWindows | None:
+        """Return what bounds the ways over hosts of an activity's group, with the delays that came out."""
+        step = self._steps.transaction_step_of.get(name)
+        if step is None:
+            return None
+        windows = self._steps.open_windows(step)
+        for key in windows.delays:
+            ways = self.state.transaction_ways.get(key[0])
+            windows.delays[key] = (ways[key[1]].delay or 0) if ways else ENDLESS
+        return windows
+
+    def find_host_run(self, name: str) -> tuple[EntryWay, FigureWorking] | None:
+        """Return the way over hosts to an activity that takes longest, and how its time comes about."""
+        windows, ways = self.open_windows(name), self.state.transaction_ways.get(name, ())
+        if windows is None or not ways:
+            return None
+        number = max(range(len(ways)), key=lambda each: ways[each].delay or 0)
+        found = ((each, windows.find_delay(each)) for each in windows.list_windows((name, number)))
+        # Place by place each response is explained for itself.
+        window = next((each for each, delay in found if delay == ways[number].delay and each.steps), None)
+        working = None if window is None else explain_way_window(window, windows, (name, number), self.formulas)
+        return (ways[number], working) if working is not None and working.is_consistent else None
 
     def find_run(self, name: str) -> tuple[EntryWay, FigureWorking] | None:
         """Return the run to an activity that takes longest, and how its time comes about."""

@@ -6,13 +6,18 @@ strictly periodic (Burns and Wellings' process set C). No result rests on a figu
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterable, Sequence
+from fractions import Fraction
+from itertools import accumulate
+from math import lcm
 from typing import NamedTuple
 
 from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, unite_causes
 from archgen.timing.load.busy_windows import (
     NO_DEMAND,
+    ActivityWork,
     DemandFunction,
     DivergedError,
     GrowingLoad,
@@ -25,8 +30,6 @@ from archgen.timing.load.busy_windows import (
     subtract_demand,
 )
 from archgen.timing.load.event_streams import settles_at_full_load
-from archgen.timing.load.lone_work import find_lone_response
-from archgen.timing.load.ranked_threads import RankedThreads
 from archgen.timing.load.thread_work import (
     DIVERGED_CAUSE,
     OVERLOAD_CAUSE,
@@ -41,6 +44,71 @@ from archgen.timing.load.thread_work import (
 from archgen.timing.system.core_placement import ProcessingResource
 from archgen.timing.system.thread_pools import works_in_order
 from archgen.timing.system.timing_system import TimingSystem
+
+
+class RankedThreads:
+    """Threads by falling priority, and what the first of them demand together.
+
+    Any count may be asked for at any time. Growing counts are cheap, since each builds on the one before; a smaller one
+    begins anew.
+    """
+
+    def __init__(self, threads: Iterable[ThreadWork]) -> None:
+        """Rank the threads; those without a priority are left out."""
+        self.threads = sorted((t for t in threads if t.highest_priority is not None), key=_rank_key)
+        pairs = [thread.share.as_integer_ratio() for thread in self.threads]
+        self._common_denominator = lcm(*[denominator for _, denominator in pairs])
+        self._cumulated_shares = tuple(
+            accumulate(
+                (numerator * (self._common_denominator // own_denominator) for numerator, own_denominator in pairs),
+                initial=0,
+            )
+        )
+        self._load, self._loaded_count = GrowingLoad(), 0
+        self._busy_period, self._searched_count = 0, 0
+        self._cause: UnknownCause | None = None
+        self._cause_count = 0
+
+    def count_down_to(self, priority: int) -> int:
+        """Return how many threads may have this priority or a higher one."""
+        return bisect_right(self.threads, -priority, key=_rank_key)
+
+    def share_of_first(self, count: int) -> Fraction:
+        """Return the share of a core that the first threads take."""
+        return Fraction(self._cumulated_shares[count], self._common_denominator)
+
+    def cause_of_first(self, count: int) -> UnknownCause | None:
+        """Return what is missing of the first threads, None where nothing is."""
+        if count < self._cause_count:
+            self._cause, self._cause_count = None, 0
+        new_causes = [thread.cause for thread in self.threads[self._cause_count : count] if thread.cause]
+        if new_causes:
+            self._cause = unite_causes((*filter(None, (self._cause,)), *new_causes))
+        self._cause_count = count
+        return self._cause
+
+    def demand_of_first(self, count: int) -> DemandFunction:
+        """Return the demand of the first threads; it is good until another count is asked for."""
+        if count < self._loaded_count:
+            self._load, self._loaded_count = GrowingLoad(), 0
+        for thread in self.threads[self._loaded_count : count]:
+            self._load.add_work(thread.works)
+        self._loaded_count = count
+        return self._load.demand_function()
+
+    def busy_period_of_first(self, count: int, budget: SearchBudget) -> int:
+        """Return the busy period of the first threads; that of fewer is a lower bound, where the search begins."""
+        if count != self._searched_count:
+            lower_bound = self._busy_period if self._searched_count < count else 0
+            self._busy_period = longest_busy_period(self.demand_of_first(count), budget, lower_bound)
+            # Only now: a search that ended with `DivergedError` has found nothing for this count.
+            self._searched_count = count
+        return self._busy_period
+
+
+def _rank_key(thread: ThreadWork) -> int:
+    """Sort key: threads by falling greatest priority."""
+    return -(thread.highest_priority or 0)
 
 
 class AnalysisEffort(NamedTuple):
@@ -74,10 +142,17 @@ def find_dedicated_response(
     if work_utilisation(work.cost, work.streams) >= 1:
         return WorstResponse(None, "dedicated", OVERLOAD_CAUSE)
     try:
-        in_order = works_in_order(system, activity)
-        return WorstResponse(find_lone_response(work, budget, in_order=in_order).response, "dedicated")
+        worst = find_lone_activation(work, budget, in_order=works_in_order(system, activity))
+        return WorstResponse(worst.response, "dedicated")
     except DivergedError:
         return WorstResponse(None, "dedicated", DIVERGED_CAUSE)
+
+
+def find_lone_activation(work: ActivityWork, budget: SearchBudget, *, in_order: bool) -> WorstActivation:
+    """Return what takes longest on a core of its own; `in_order` where activations begin in the order in which they come."""
+    if in_order:
+        return find_worst_activation(work, NO_DEMAND, budget)
+    return WorstActivation(0, 0, longest_busy_period(GrowingLoad((work,)).demand_function(), budget))
 
 
 def find_responses(
@@ -192,7 +267,7 @@ def _bound_any_order(
     works = [work for thread in threads for work in thread.works]
     try:
         if len(works) == 1 and works[0].streams and threads[0].in_order:
-            worst = find_worst_activation(works[0], NO_DEMAND, budget)
+            worst = find_lone_activation(works[0], budget, in_order=True)
         else:
             demand = add_demands(GrowingLoad(works).demand_function(), DemandFunction(lambda _: once_cost))
             worst = WorstActivation(0, 0, search(demand, budget, once_cost))

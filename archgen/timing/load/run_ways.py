@@ -20,6 +20,7 @@ class EntryWay(NamedTuple):
     `steps` are the activities, the last one included. Each event comes `multiplicity` times. The last activity starts
     `best_before` (ticks) after the event at the earliest, and ends `delay` (ticks) after it at the latest: None where
     that is not bounded. `entry_arc` is the arc by which the event comes, None where the first step has events of its own.
+    Of a way over hosts the links take `link_time` at most, all together.
     """
 
     entry: EventOrigin
@@ -28,6 +29,7 @@ class EntryWay(NamedTuple):
     multiplicity: int = 1
     best_before: int = 0
     delay: int | None = None
+    link_time: int = 0
 
 
 def begin_way(name: str) -> EntryWay:
@@ -63,12 +65,13 @@ def _find_ways_to(
         if arc.source in inner_triggers.silent_ids:
             continue
         # A call may come as soon as its caller starts, data at its end.
-        best_case = 0 if arc.role == "request" else system.activities[arc.source].bcet or 0
+        best_case = 0 if arc.role == "request" else (system.activities[arc.source].bcet or 0) + (arc.best or 0)
         ways += [
             way._replace(
                 steps=(*way.steps, name),
                 multiplicity=way.multiplicity * int(calls),
                 best_before=way.best_before + best_case,
+                link_time=way.link_time + (arc.worst or 0),
             )
             for way in ways_to[arc.source]
         ]

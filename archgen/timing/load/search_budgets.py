@@ -14,6 +14,8 @@ in each of 25 random hosts of 60 activities at a load of 55 %."""
 _TERMS_PER_MEMBER = 20_000
 """Terms that each activity of a group adds: larger hosts need more, and have more that is worth them."""
 
+_TERMS_PER_WAY = 20_000
+"""Terms for each way of transactions: those that come to rest in 1,000 random systems take a quarter of it."""
 _SEARCHES_PER_GROUP = 6
 """How many searches that do not end it takes to spend a budget."""
 
@@ -25,11 +27,18 @@ class GroupBudgets:
         """Start with no group."""
         # By the group's first step: a search that never ends must not begin anew with each turn.
         self._budgets: dict[str, SearchBudget] = {}
+        self._transaction_budgets: dict[str, SearchBudget] = {}
 
     @property
     def spent_terms(self) -> int:
         """Return how many terms all groups have looked at."""
-        return sum(budget.spent_terms for budget in self._budgets.values())
+        budgets = (*self._budgets.values(), *self._transaction_budgets.values())
+        return sum(budget.spent_terms for budget in budgets)
+
+    def open_transactions(self, step: str, way_count: int) -> SearchBudget:
+        """Return the budget of transactions, a small one: where it ends there are the bounds of each place alone."""
+        term_count = _TERMS_PER_WAY * way_count
+        return self._transaction_budgets.setdefault(step, SearchBudget(term_count, term_count))
 
     def assign_budgets(self, system: TimingSystem, successors: Mapping[str, Sequence[str]]) -> dict[str, SearchBudget]:
         """Return the budget of each step (activity or resource); `successors` say what a change of it changes."""

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from fractions import Fraction
 
+from archgen.timing.figures.timing_values import sum_fractions
+from archgen.timing.load.busy_cores import find_blocked_time
 from archgen.timing.load.busy_windows import SearchBudget
-from archgen.timing.load.core_paths import CorePaths
+from archgen.timing.load.cascade_demand import CascadeDemand
+from archgen.timing.load.core_paths import CorePath, CorePaths
 from archgen.timing.load.core_responses import CoreResponses
 from archgen.timing.load.idle_backlogs import IdleBacklog
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.shared_cores import SharedCores, WayKey
 from archgen.timing.load.whole_hosts import HostLimit
+from archgen.timing.system.core_sets import ThreadUnit
 
 _REFINING_TERMS = 80_000
 """Terms for which bounds in any order are looked for below the limits that a backlog gives: some 50 ms' worth."""
@@ -20,6 +25,7 @@ _RANKED_TERMS = 300_000
 """The same where there are priorities, for what is urgent has far less in its way than in any order, and without limits."""
 _TERMS_PER_CALM_WAY = 16
 """Terms that a way takes where nothing comes twice in its windows."""
+_SHARE_BITS = 64
 
 
 class SharedCoreLimits:
@@ -62,7 +68,7 @@ class SharedCoreLimits:
         """Return the limit of a way."""
         if key not in self._delays:
             limit = self.of_host.get(key[0])
-            delays = [limit.delay] if limit else []
+            delays = [limit.delay] if limit and limit.delay is not None else []
             if key[0] in self.found_ways:
                 delays.append(self.found_ways[key[0]][key[1]].delay or 0)
             if self.backlog and key in self.backlog.delays:
@@ -82,6 +88,53 @@ class SharedCoreLimits:
                 responses.append(max(self.backlog.delays[name, number] - way.best_before for number, way in ways))
             self._responses[name] = min(responses, default=None)
         return self._responses[name]
+
+
+class CoreShares:
+    """The shares of all threads of some cores, for given event models."""
+
+    def __init__(self, cores: SharedCores, demand: CascadeDemand) -> None:
+        """Add up what each thread does."""
+        self.cores = cores
+        self._job_shares = [demand.rate_of(job.origin) * job.work for job in cores.jobs]
+        self._unit_shares = {unit: self._sum_jobs(numbers) for unit, numbers in cores.job_numbers.items()}
+        # Whole numbers, rounded up, for what is asked of each path: most are far from filling a core.
+        self._rough_shares = {unit: _round_up(share) for unit, share in self._unit_shares.items()}
+        self._rough_total = sum(self._rough_shares.values())
+
+    def _sum_jobs(self, job_numbers: Iterable[int]) -> Fraction:
+        return sum_fractions([Fraction(0), *(self._job_shares[number] for number in job_numbers)])
+
+    def fills_thread(self, unit: ThreadUnit) -> bool:
+        """Whether a thread is busy all the time."""
+        return self._unit_shares[unit] >= self.cores.reentrant_units.get(unit, 1)
+
+    def fills_core(self, steps: tuple[str, ...], path: CorePath) -> bool:
+        """Whether the threads of some steps, and what keeps all cores busy beside them, fill a core in the long run."""
+        units = {unit: None for step in steps if (unit := self.cores.unit_of[step]) not in self.cores.reentrant_units}
+        core_count = self.cores.core_count
+        rough_share = sum([self._rough_shares[unit] for unit in units])
+        if not path.crowds and rough_share * (core_count - 1) + self._rough_total < core_count << _SHARE_BITS:
+            return False
+        own_share = sum_fractions(
+            [
+                *(self._unit_shares[unit] for unit in units),
+                *(self._sum_jobs(numbers) / threads for numbers, threads in path.crowds),
+            ]
+        )
+        other_shares = [
+            self._unit_shares[self.cores.jobs[lane[0]].unit] / width
+            for lane, width in zip(path.other_lanes, path.lane_widths, strict=True)
+            for _ in range(width)
+        ]
+        if path.crowds:
+            return own_share + sum_fractions([Fraction(0), *other_shares]) / core_count >= 1
+        numerator, denominator = find_blocked_time(other_shares, Fraction(0), core_count)
+        return own_share + numerator / denominator >= 1
+
+
+def _round_up(share: Fraction) -> int:
+    return -((-share.numerator << _SHARE_BITS) // share.denominator)
 
 
 def has_priorities(cores: SharedCores) -> bool:

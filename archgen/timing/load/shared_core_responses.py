@@ -25,7 +25,7 @@ from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import UnknownCause, unite_causes
 from archgen.timing.load.busy_windows import DivergedError, SearchBudget, WorstActivation
 from archgen.timing.load.cascade_demand import CascadeDemand
-from archgen.timing.load.core_paths import CorePath, CorePaths, LastStep
+from archgen.timing.load.core_paths import CorePath, CorePaths, LastStep, build_thread_work
 from archgen.timing.load.core_responses import CoreResponses
 from archgen.timing.load.event_streams import (
     EventStream,
@@ -34,18 +34,21 @@ from archgen.timing.load.event_streams import (
     earliest_arrivals,
     streams_of_calls,
 )
-from archgen.timing.load.full_threads import CoreShares, find_demand_left, find_full_ids, leave_out_threads
 from archgen.timing.load.idle_backlogs import find_idle_backlog
 from archgen.timing.load.inner_triggers import FiringArc
 from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.load_system import list_storing_ids
 from archgen.timing.load.path_work import PathWork
 from archgen.timing.load.run_ways import EntryWay
-from archgen.timing.load.shared_core_limits import SharedCoreLimits, has_priorities, open_refining_budget
+from archgen.timing.load.shared_core_limits import (
+    CoreShares,
+    SharedCoreLimits,
+    has_priorities,
+    open_refining_budget,
+)
 from archgen.timing.load.shared_cores import WayKey
 from archgen.timing.load.storing_waits import hold_beside_others
 from archgen.timing.load.thread_work import DIVERGED_CAUSE, OVERLOAD_CAUSE, WorstResponse
-from archgen.timing.load.way_works import build_thread_work
 from archgen.timing.load.whole_hosts import HostLimit
 from archgen.timing.system.timing_system import samples_inputs
 
@@ -98,7 +101,6 @@ class SharedCoreSolver:
         self.step_responses: dict[str, int] = {}
         self.cause_of: dict[str, UnknownCause] = {}
         self.raised_names: set[str] = set()
-        self.rest_solver: SharedCoreSolver | None = None
         self.way_before = {
             (name, number): self._find_way_before(way)
             for name, ways in self.cores.ways_to.items()
@@ -123,40 +125,6 @@ class SharedCoreSolver:
         )
 
     def solve(self) -> CoreResponses:
-        """Find the responses of all runs together, and those of the activities, where need be without full threads."""
-        core_responses = self._solve_together()
-        if self.cause_of and not self._find_unknown_causes():
-            self.rest_solver = self._open_rest_solver()
-        if self.rest_solver is not None:
-            self._take_over(core_responses, self.rest_solver.solve())
-        return core_responses
-
-    def _take_over(self, core_responses: CoreResponses, rest_responses: CoreResponses) -> None:
-        """Take the bounds that the cores left beside full threads give to what has none."""
-        for name, response in rest_responses.response_of.items():
-            # Without one, the cause stays: what fills the cores that are left need not fill all of them.
-            if name in self.cause_of and response.value is not None:
-                core_responses.response_of[name] = response
-                core_responses.ways_to[name] = rest_responses.ways_to[name]
-                if name in rest_responses.storing_waits:
-                    core_responses.storing_waits[name] = rest_responses.storing_waits[name]
-
-    def _open_rest_solver(self) -> SharedCoreSolver | None:
-        """Return a solver for the cores that full threads leave to all others, None where nothing is full or left."""
-        full_units = CoreShares(self.cores, self.demand).choose_full_units()
-        boundless_units = [self.cores.unit_of[name] for name in self._list_boundless_foreign()]
-        full_ids = find_full_ids(self.cores, [*full_units, *boundless_units])
-        rest_cores = leave_out_threads(self.cores, full_ids) if full_ids else None
-        if rest_cores is None:
-            return None
-        return SharedCoreSolver(
-            CorePaths(rest_cores),
-            find_demand_left(rest_cores, self.demand),
-            KnownBounds(self.known_responses, self.limits.of_host),
-            self.whole_budget,
-        )
-
-    def _solve_together(self) -> CoreResponses:
         """Find the responses of all runs together, from below."""
         cause = self._find_common_cause()
         if cause is not None:
@@ -314,8 +282,10 @@ class SharedCoreSolver:
         response_limit = self.limits.limit_response(name)
         if response_limit is not None and name in self.raised_names:
             self.step_responses[name] = response_limit
-            for number in range(len(self.cores.ways_to[name])):
-                delays[name, number] = self.limits.limit_delay((name, number)) or 0
+            for number, way in enumerate(self.cores.ways_to[name]):
+                before = delays[self.way_before[name, number]] if len(way.steps) > 1 else 0
+                limit = self.limits.limit_delay((name, number))
+                delays[name, number] = before + response_limit if limit is None else limit
             return
         response = self.find_worst(self.paths.look_up((name,)), spend, response_limit).response
         # What a declared response says may be more than is computed: so long it may be pending.
@@ -459,5 +429,5 @@ class SharedCoreSolver:
         response = min(self.step_responses[name], max((way.delay or 0) - way.best_before for way in ways))
         if self.found and response == self.found.response_of[name].value:
             return self.found.response_of[name]
-        is_limited = name in self.limits.of_host and response >= self.limits.of_host[name].response
-        return WorstResponse(response, "whole host" if is_limited else tier)
+        limit = self.limits.of_host.get(name)
+        return WorstResponse(response, tier if limit is None or response < limit.response else limit.tier)

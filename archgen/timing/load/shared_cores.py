@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -14,7 +14,7 @@ from archgen.timing.load.run_ways import EntryWay, find_entry_ways
 from archgen.timing.load.thread_work import ThreadWork
 from archgen.timing.system.core_placement import ProcessingResource
 from archgen.timing.system.core_sets import ThreadUnit
-from archgen.timing.system.thread_pools import find_crowded_pools, find_thread_count, is_reentrant
+from archgen.timing.system.thread_pools import fills_cores, find_crowded_pools, find_thread_count
 from archgen.timing.system.timing_system import TimingSystem
 
 WayKey = tuple[str, int]
@@ -64,13 +64,8 @@ def prepare_shared_cores(
     """Find the threads of some cores, and the cascades of what enters them."""
     all_units = (*resource.units, *resource.foreign_units)
     foreign_ids = tuple(name for unit in resource.foreign_units for name in unit)
+    inner_triggers, ways_to = find_ways_anew(system, inner_triggers)
     arc_numbers, entering_arcs = number_arcs(inner_triggers)
-    ways_to = find_entry_ways(system, inner_triggers, arc_numbers)
-    crowded_ids = _find_crowded_ids(inner_triggers, ways_to)
-    if crowded_ids:
-        inner_triggers = _begin_anew(inner_triggers, crowded_ids)
-        arc_numbers, entering_arcs = number_arcs(inner_triggers)
-        ways_to = find_entry_ways(system, inner_triggers, arc_numbers)
     cascades = build_level_cascades(system, inner_triggers, arc_numbers, (*resource.members, *foreign_ids), foreign_ids)
     unit_of = {name: unit for unit in all_units for name in unit}
     jobs = tuple(_list_jobs(system, cascades, ways_to, unit_of, foreign_ids))
@@ -99,9 +94,21 @@ def prepare_shared_cores(
         {
             unit: min(find_thread_count(system, unit[0]) or resource.cores, resource.cores)
             for unit in all_units
-            if is_reentrant(system, system.activities[unit[0]])
+            if fills_cores(system, system.activities[unit[0]])
         },
     )
+
+
+def find_ways_anew(
+    system: TimingSystem, inner_triggers: InnerTriggers
+) -> tuple[InnerTriggers, dict[str, tuple[EntryWay, ...]]]:
+    """Return the ways to each activity, and the triggers without those into what too many ways lead to."""
+    ways_to = find_entry_ways(system, inner_triggers, number_arcs(inner_triggers)[0])
+    crowded_ids = _find_crowded_ids(inner_triggers, ways_to)
+    if crowded_ids:
+        inner_triggers = begin_anew(inner_triggers, crowded_ids)
+        ways_to = find_entry_ways(system, inner_triggers, number_arcs(inner_triggers)[0])
+    return inner_triggers, ways_to
 
 
 def _find_crowded_ids(inner_triggers: InnerTriggers, ways_to: Mapping[str, tuple[EntryWay, ...]]) -> frozenset[str]:
@@ -113,11 +120,11 @@ def _find_crowded_ids(inner_triggers: InnerTriggers, ways_to: Mapping[str, tuple
     )
 
 
-def _begin_anew(inner_triggers: InnerTriggers, crowded_ids: frozenset[str]) -> InnerTriggers:
+def begin_anew(inner_triggers: InnerTriggers, crowded_ids: Collection[str]) -> InnerTriggers:
     """Let some activities be fired as their own event models say."""
     return replace(
         inner_triggers,
-        entry_ids=inner_triggers.entry_ids | crowded_ids,
+        entry_ids=inner_triggers.entry_ids.union(crowded_ids),
         inner_arcs={name: arcs for name, arcs in inner_triggers.inner_arcs.items() if name not in crowded_ids},
         outer_arcs={name: arcs for name, arcs in inner_triggers.outer_arcs.items() if name not in crowded_ids},
     )
@@ -131,7 +138,7 @@ def _find_crowds(system: TimingSystem, names: Iterable[str], core_count: int) ->
     activities = [system.activities[name] for name in names]
     crowd_of = {name: (pool.key, pool.threads or 1) for name, pool in find_crowded_pools(system, activities).items()}
     for activity in activities:
-        if is_reentrant(system, activity):
+        if fills_cores(system, activity):
             crowd_of.setdefault(activity.id, (f"activity {activity.id}", core_count))
     return crowd_of
 

@@ -17,7 +17,9 @@ from archgen.timing.load.queue_responses import CoreQueue
 from archgen.timing.load.response_times import AnalysisEffort, find_dedicated_response, find_responses
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.shared_core_responses import KnownBounds, SharedCoreSolver, open_shared_solver
+from archgen.timing.load.single_cores import delay_by_response
 from archgen.timing.load.thread_work import EventModels, WorstResponse
+from archgen.timing.load.transaction_windows import ENDLESS, TransactionWindows
 from archgen.timing.load.waiting_threads import find_waiting_responses
 from archgen.timing.load.whole_hosts import HostLimit, limit_responses, list_host_limits
 from archgen.timing.system.core_placement import (
@@ -35,6 +37,8 @@ class StepUpdates(PropagationSteps):
         """Find the figures of one step anew, and return whether they changed."""
         if step in self.whole_hosts:
             return self._update_whole_host(step)
+        if step in self.transactions:
+            return self._update_transactions(step)
         if step in self.joined_resources:
             return self._update_joined_resources(step)
         if step in self.inner_triggers:
@@ -62,18 +66,20 @@ class StepUpdates(PropagationSteps):
         state = self.state
         event_model = activation_model(state, step)
         is_same_model = step in state.responses and _is_unchanged(state.event_models.get(step), event_model)
-        is_waiting = step not in self.resources_of and bool(state.system.activities[step].uses)
-        if is_same_model and not is_waiting:
+        is_waiting = step not in self.resources_of and state.system.activities[step].suspends
+        if is_same_model and not is_waiting and step not in self.transaction_step_of:
             return False
         state.event_models[step] = event_model
         if is_waiting:
             return self._update_dedicated_user(step) or not is_same_model
-        # On no resource: a core of its own, so that its response rests on nothing but its own events.
-        if step not in self.resources_of:
-            state.responses[step] = find_dedicated_response(
-                state.system, step, state.event_models, self.budget_of[step]
-            )
-        return True
+        if step in self.resources_of:
+            return not is_same_model
+        # On no resource: a core of its own, so that its response rests on its own events, and on the ways that lead to it.
+        response = find_dedicated_response(state.system, step, state.event_models, self.budget_of[step])
+        found = limit_responses(CoreResponses({step: response}, {}, {}), self._limits_of(step)).response_of[step]
+        changed = not is_same_model or _has_changed(state.responses.get(step), found)
+        state.responses[step] = found
+        return changed
 
     def _update_joined_resources(self, step: str) -> bool:
         """Find the bounds of joined resources, and return whether they changed."""
@@ -127,12 +133,22 @@ class StepUpdates(PropagationSteps):
         queue: CoreQueue, models: EventModels, responses: Mapping[str, WorstResponse], budget: SearchBudget
     ) -> dict[str, QueueBound]:
         """Return what the order of a queue makes of the responses in any order."""
-        busy_period = max((each.value or 0 for each in responses.values() if each.tier != "declared"), default=0)
+        values = [each.value for each in responses.values() if each.tier != "declared"]
+        if None in values and not queue.works_in_rounds:
+            return {}
+        busy_period = max((value or 0 for value in values), default=0)
         return queue.bound_responses(models.__getitem__, busy_period, budget)
 
     def _limits_of(self, step: str) -> dict[str, HostLimit]:
-        """Return what bounds the activities of a resource on its host as a whole."""
-        return self.host_limits.get(f"whole {self.resources[step].host}", {})
+        """Return what bounds the activities of a resource on its host as a whole, and on ways over hosts."""
+        resource = self.resources.get(step)
+        limits = dict(self.host_limits.get(f"whole {resource.host}", {})) if resource else {}
+        for name in resource.members if resource else (step,):
+            ways = self.state.transaction_ways.get(name)
+            if ways:
+                limit = HostLimit(max((way.delay or 0) - way.best_before for way in ways), None, None, "whole way")
+                limits[name] = limits[name].limit_to(limit) if name in limits else limit
+        return limits
 
     def _model_finder(
         self, step: str, entering_models: dict[int, EventStreams | UnknownCause]
@@ -159,6 +175,43 @@ class StepUpdates(PropagationSteps):
         self.host_limits[step] = limits
         self.state.host_ways_to.update({name: core_responses.ways_to[name] for name in limits})
         return changed
+
+    def _update_transactions(self, step: str) -> bool:
+        """Find how long the ways of transactions take, and return whether anything changed."""
+        state, transactions = self.state, self.transactions[step]
+        if state.settled_ids.isdisjoint(transactions.place_of):
+            return False
+        windows = self.open_windows(step)
+        inputs = (windows.models, windows.foreign_models)
+        if self.window_inputs.get(step) == inputs:
+            return False
+        self.window_inputs[step] = inputs
+        windows.solve()
+        old_ways = {name: state.transaction_ways.pop(name, None) for name in transactions.ways_to}
+        for name, ways in transactions.ways_to.items():
+            delays = [windows.delays[name, number] for number in range(len(ways))]
+            if max(delays) < ENDLESS and name not in transactions.inner_triggers.silent_ids:
+                state.transaction_ways[name] = tuple(
+                    way._replace(delay=delay) for way, delay in zip(ways, delays, strict=True)
+                )
+        return any(state.transaction_ways.get(name) != ways for name, ways in old_ways.items())
+
+    def open_windows(self, step: str) -> TransactionWindows:
+        """Return what finds how long the ways of transactions take."""
+        find_model, transactions = self._model_finder(step, {}), self.transactions[step]
+
+        def find_entering(origin: EventOrigin) -> EventStreams | UnknownCause:
+            return find_model(origin, transactions.entering_arcs[int(origin.key)] if origin.kind == "arc" else None)
+
+        budget = self.group_budgets.open_transactions(step, len(transactions.paths))
+        return TransactionWindows(transactions, find_entering, self._find_foreign_model, self.state.place_ways, budget)
+
+    def _find_foreign_model(self, step: str, name: str) -> EventStreams | UnknownCause:
+        """Return the event model of what works at a place from elsewhere, as it may have come up to its response ago."""
+        model = self.models_of(step)[name]
+        if name in self.roaming_ids.get(step, ()):
+            return model
+        return delay_by_response(model, self.state.responses.get(name))
 
     def open_solver(
         self, step: str, entering_models: dict[int, EventStreams | UnknownCause], found: CoreResponses | None = None

@@ -21,7 +21,7 @@ from archgen.timing.load.busy_windows import (
 )
 from archgen.timing.load.event_streams import EventStreams, max_arrivals
 from archgen.timing.load.inner_core import urgency_of
-from archgen.timing.load.ranked_threads import RankedThreads
+from archgen.timing.load.response_times import RankedThreads
 from archgen.timing.load.thread_work import (
     DIVERGED_CAUSE,
     OVERLOAD_CAUSE,
@@ -32,6 +32,7 @@ from archgen.timing.load.thread_work import (
     lower_crowded_threads,
 )
 from archgen.timing.system.core_placement import ProcessingResource
+from archgen.timing.system.thread_pools import may_skip_ticks
 from archgen.timing.system.timing_system import TimingSystem
 
 
@@ -103,7 +104,7 @@ def find_core_waits(
     reader_list = list(reader_ids)
     if resource.missing:
         return {name: _leave_wait_open(resource, threads, thread_of[name]) for name in reader_list}
-    core = _SearchedCore(threads, budget)
+    core = _SearchedCore(system, threads, budget)
     # By falling priority: what is found for one level is where the search of the next begins.
     ranked_readers = sorted(reader_list, key=lambda name: urgency_of(thread_of[name].lowest_priority), reverse=True)
     waits = {name: core.find_wait(thread_of[name], name) for name in ranked_readers}
@@ -128,8 +129,8 @@ def _list_causes(threads: Iterable[ThreadWork], level: int | None) -> list[Unkno
 class _SearchedCore:
     """A core of which waits are found, those of urgent threads first."""
 
-    def __init__(self, threads: Sequence[ThreadWork], budget: SearchBudget) -> None:
-        self.threads, self.budget = threads, budget
+    def __init__(self, system: TimingSystem, threads: Sequence[ThreadWork], budget: SearchBudget) -> None:
+        self.system, self.threads, self.budget = system, threads, budget
         self.ranked = RankedThreads(threads)
         self.longest_wait = 0
 
@@ -150,6 +151,9 @@ class _SearchedCore:
         own_work = thread.works[thread.unit.index(name)]
         try:
             self.longest_wait = longest_wait_for_turn(demand, self.budget, self.longest_wait)
+            if may_skip_ticks(self.system, self.system.activities[name], self.longest_wait):
+                # It is stored within the busy time, and the job before that does not read it has ended then.
+                return WorstResponse(self.longest_wait - own_work.cost, "host")
             hold = hold_before_activation(demand, own_work.cost, own_work.streams, self.longest_wait, self.budget)
         except DivergedError:
             return WorstResponse(None, "host", OVERLOAD_CAUSE if share == 1 else DIVERGED_CAUSE)

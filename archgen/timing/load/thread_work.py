@@ -28,8 +28,9 @@ class WorstResponse(NamedTuple):
     cause: UnknownCause = UnknownCause()
 
     def limit_to(self, bound: int | None, tier: ResponseTier) -> WorstResponse:
-        """Return the response of another tier where that is the smaller bound; what is declared stays."""
-        if bound is None or self.value is None or self.value <= bound or self.tier in {"declared", "unknown"}:
+        """Return the response of another tier where that is the smaller bound, or the only one; what is declared stays."""
+        is_smaller = bound is not None and (self.value is None or bound < self.value)
+        if not is_smaller or self.tier in {"declared", "unknown"}:
             return self
         return WorstResponse(bound, tier)
 

@@ -30,6 +30,7 @@ from archgen.timing.load.busy_windows import (
     worst_response,
 )
 from archgen.timing.load.event_streams import EventStreams, delay_streams, max_arrivals
+from archgen.timing.load.inner_core import urgency_of
 from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.resource_waits import Rivals, find_load, find_rivals, find_use_times
 from archgen.timing.load.single_cores import delay_by_response
@@ -46,7 +47,7 @@ from archgen.timing.load.thread_work import (
 from archgen.timing.system.core_placement import ProcessingResource
 from archgen.timing.system.core_sets import ThreadUnit
 from archgen.timing.system.fair_hosts import PREEMPTIVE_ORDERS
-from archgen.timing.system.thread_pools import find_pool, is_reentrant, works_in_order
+from archgen.timing.system.thread_pools import find_pool, find_serial_process, is_reentrant, works_in_order
 from archgen.timing.system.timing_system import TimingSystem
 
 ServedWork = Callable[[], "Interference | None"]
@@ -74,8 +75,9 @@ def find_waiting_responses(
         responses[name] = response
         if activity.response is not None:
             # What is declared may hold a wait for the world outside; to others it matters when the work is done.
-            state.work_ends[name] = response
             responses[name] = WorstResponse(activity.response, "declared")
+            is_earlier = response.value is not None and response.value <= activity.response
+            state.work_ends[name] = response if is_earlier else responses[name]
         elif activity.wcet is None:
             responses[name] = WorstResponse(None, "unknown", unite_causes((UnknownCause((name,)), response.cause)))
     return responses
@@ -151,7 +153,13 @@ def _bound_unit(
     causes = [thread.cause for thread in others if thread.cause]
     if causes:
         return WorstResponse(None, tier, unite_causes(causes))
-    interference = _divide_demand(others, 1 if resource.joined else resource.cores)
+    interference = _divide_demand(
+        [thread for thread in others if not _computes_in_turn(system, resource, thread)],
+        1 if resource.joined else resource.cores,
+    )
+    mates = [thread for thread in others if _computes_in_turn(system, resource, thread)]
+    if mates:  # they hold one another up for all that they compute, on however many cores
+        interference = interference.add(_divide_demand(mates, 1))
     is_in_order = not any_order and len(own_ids) == 1 and works_in_order(system, system.activities[own_ids[0]])
     waits = _waits_by_use(state, own_ids, budget)
     candidates = [_bound_with(waits, interference, budget, in_order=is_in_order)]
@@ -181,6 +189,14 @@ class Interference(NamedTuple):
     demand: DemandFunction
     share: Fraction
 
+    def add(self, other: Interference) -> Interference:
+        """Return both together."""
+        first, second = self.demand, other.demand
+        total = DemandFunction(
+            lambda window: first.within(window) + second.within(window), first.term_count + second.term_count
+        )
+        return Interference(total, self.share + other.share)
+
 
 def _waits_by_use(state: PropagationState, own_ids: Sequence[str], budget: SearchBudget) -> _Waits | UnknownCause:
     """Return the work of a thread with the longest wait for each use."""
@@ -199,8 +215,9 @@ def _waits_together(state: PropagationState, own_ids: Sequence[str]) -> _Waits |
         return unite_causes(causes)
     known_rivals = {key: each for key, each in rivals.items() if isinstance(each, Rivals)}
     use_times: dict[str, int | UnknownCause] = {
-        name: sum(use.worst + known_rivals[key].blocking for key, use in state.system.activities[name].uses.items())
+        name: sum(use.worst + known_rivals[key].blocking for key, use in activity.uses.items()) + activity.wait
         for name in own_ids
+        if (activity := state.system.activities[name])
     }
     waits = _add_waits(state, use_times)
     return waits if isinstance(waits, UnknownCause) else waits._replace(rivals=tuple(known_rivals.values()))
@@ -282,7 +299,7 @@ def _fills_thread(state: PropagationState, own_ids: Sequence[str]) -> bool:
     if is_reentrant(system, first) or (len(own_ids) > 1 and pool is not None and pool.threads != 1):
         return False
     shares = [
-        work_utilisation((activity.wcet or 0) + sum(use.worst for use in activity.uses.values()), model)
+        work_utilisation((activity.wcet or 0) + sum(use.worst for use in activity.uses.values()) + activity.wait, model)
         for activity in (system.activities[name] for name in own_ids)
         if not isinstance(model := state.event_models[activity.id], UnknownCause)
     ]
@@ -315,7 +332,10 @@ def _list_others(
         for unit in other_units
     ]
     threads = lower_crowded_threads(system, [build_thread(system, resource.units[0], models), *others], models)
-    level = None if _ignores_priorities(system, resource) else threads[0].lowest_priority
+    mates = [thread for thread in threads[1:] if _computes_in_turn(system, resource, thread)]
+    # Who computes in turn with something less urgent waits for whatever keeps that from its core.
+    lowest = min((each.lowest_priority for each in (threads[0], *mates)), key=urgency_of)
+    level = None if _ignores_priorities(system, resource) else lowest
     for thread in threads[1:]:
         if level is None or (thread.highest_priority is not None and thread.highest_priority >= level):
             yield thread
@@ -338,6 +358,12 @@ def _build_late_thread(
         known = state.late_threads[unit] = found_from, build_thread(state.system, unit, late)
     models.update((name, state.event_models[name]) for name in unit)
     return known[1]
+
+
+def _computes_in_turn(system: TimingSystem, resource: ProcessingResource, thread: ThreadWork) -> bool:
+    """Whether a thread is of the process that waits, and computes only while no other thread of it does."""
+    process = find_serial_process(system, resource.units[0][0])
+    return process is not None and find_serial_process(system, thread.unit[0]) == process
 
 
 def _ignores_priorities(system: TimingSystem, resource: ProcessingResource) -> bool:

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
+from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.load.core_responses import CoreResponses
 from archgen.timing.load.inner_core import InnerCore, prepare_inner_core
 from archgen.timing.load.inner_triggers import find_inner_triggers
@@ -24,12 +25,20 @@ from archgen.timing.system.trigger_graph import TriggerGraph
 class HostLimit(NamedTuple):
     """What bounds an activity on a host taken as one core, in ticks: from its activation, and from the host's event on.
 
-    `storing_wait` bounds how long a message may wait to be stored that it only reads.
+    `storing_wait` bounds how long a message may wait to be stored that it only reads. What bounds a way over hosts (`tier`)
+    bounds a response alone.
     """
 
     response: int
-    delay: int
+    delay: int | None
     storing_wait: int | None = None
+    tier: ResponseTier = "whole host"
+
+    def limit_to(self, other: HostLimit | None) -> HostLimit:
+        """Return the smaller limits of two."""
+        if other is None or self.response <= other.response:
+            return self
+        return self._replace(response=other.response, tier=other.tier)
 
 
 def find_whole_hosts(
@@ -42,7 +51,7 @@ def find_whole_hosts(
     for resource in resources:
         if resource.host is None or resource.missing:
             continue
-        if any(system.activities[name].uses for name in resource.members):
+        if any(system.activities[name].suspends for name in resource.members):
             hosts_with_waits.add(resource.host)
         if resource.host not in units_by_host and resource.cores == 1 and not resource.undisturbed:
             hosts_of_one_core.add(resource.host)
@@ -92,9 +101,11 @@ def limit_responses(core_responses: CoreResponses, limits: Mapping[str, HostLimi
         if limit is None or response.tier in {"declared", "unknown"}:
             continue
         if response.value is None or response.value > limit.response:
-            response_of[name] = WorstResponse(limit.response, "whole host")
+            response_of[name] = WorstResponse(limit.response, limit.tier)
         ways_to[name] = tuple(
-            way if way.delay is not None and way.delay <= limit.delay else way._replace(delay=limit.delay)
+            way
+            if limit.delay is None or (way.delay is not None and way.delay <= limit.delay)
+            else way._replace(delay=limit.delay)
             for way in core_responses.ways_to.get(name, ())
         )
     return CoreResponses(response_of, ways_to, storing_waits)

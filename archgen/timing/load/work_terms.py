@@ -177,8 +177,6 @@ class FigureWorking:
     """Whether all cores may be busy with `beside_terms` and what was pending, less `unfinished` and the own terms."""
     leads: tuple[int, ...] = ()
     """On cores that are shared fairly: what no other thread is served before it beyond its own work."""
-    full_ids: tuple[str, ...] = ()
-    """What may be busy all the time, on cores that are not among `core_count`."""
     core: int | None = None
     """The core that alone gives the figure of what may run on several."""
     is_queue: bool = False

@@ -1,1 +1,1 @@
-"""What is found by trying: the change that would prove a chain, and how much each element may take."""
+"""What is found by trying: how things would have to run for chains to be in time, and how much each element may take."""

@@ -1,20 +1,21 @@
 """How much each element may take, how rarely it may work, and by what a host may slow down, until a chain is late.
 
-Each figure is looked at alone, all others as they are; and all together, grown by one common factor.
+Each figure is looked at alone, all others as they are; and all together, grown by one common factor. It is tried in steps, each
+a tick of its own; the largest one is found in few looks, by a secant of exact figures, or by halves.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from fractions import Fraction
 
 from archgen.frozen import dataclass
-from archgen.timing.analysis import ChainResult
-from archgen.timing.figures.tick_unit import NS_PER_SECOND
-from archgen.timing.search.chain_surroundings import list_chain_elements, list_neighbours
-from archgen.timing.search.change_trials import Changes, ChangeTrials, TriesSpentError
-from archgen.timing.search.largest_step import SlackFunction, climb_steps, find_largest_step
-from archgen.timing.search.tried_figures import TriedFigure, find_execution_time, find_own_period
+from archgen.model.architecture import Architecture
+from archgen.timing.analysis import Analysis, ChainResult, ChainTerm
+from archgen.timing.figures.figure_wording import write_exact_duration
+from archgen.timing.figures.tick_unit import NS_PER_SECOND, written_period
+from archgen.timing.search.change_trials import Changes, ChangeTrials, TriedChange, TriesSpentError
+from archgen.timing.system.timing_system import Activity
 
 MAX_TRIES = 1_000
 """How many figures are tried for the budget of one chain."""
@@ -23,6 +24,8 @@ MAX_SHARE_TRIES = 300
 FACTOR_STEPS = 1_000
 """Factors are found in thousandths."""
 _LARGEST_FACTOR = 1_000
+SlackFunction = Callable[[int], Fraction | None]
+"""How much is left of a deadline at a step; None where nothing is known to be left. It grows with no step."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -259,3 +262,140 @@ def _is_left(slack: Fraction | None) -> bool:
 
 def _list_figures(figures: Iterable[TriedFigure | None]) -> list[TriedFigure]:
     return [figure for figure in figures if figure is not None and figure.written]
+
+
+_TICK = 1_000
+"""What a figure is tried in, in ns: a microsecond."""
+_FINE_TICK, _MAX_FINE = 1, 100_000
+"""What figures below the latter are tried in: a nanosecond."""
+
+
+@dataclass(frozen=True, slots=True)
+class TriedFigure:
+    """A written duration of one activity (`wcet`, `response`, `period`), and what it is counted in; both in ns."""
+
+    activity: Activity
+    key: str
+    written: Fraction
+    tick: int
+    least: Fraction = Fraction(0)
+    """What it cannot be below: an execution time is not less than the best one."""
+
+    @property
+    def written_step(self) -> int:
+        """Return the written value in whole ticks, rounded down."""
+        return int(self.written // self.tick)
+
+    @property
+    def least_step(self) -> int:
+        """Return the least value in whole ticks, at least one."""
+        return max(1, int(-(-self.least // self.tick)))
+
+    def grow_by(self, factor: Fraction) -> Fraction:
+        """Return what is written times a factor, in ns; not less than it can be."""
+        return max(self.written * factor, self.least)
+
+    def change_to(self, step: int) -> TriedChange:
+        """Return the change that sets the figure to a number of ticks."""
+        return self.change_to_duration(Fraction(step * self.tick))
+
+    def change_to_duration(self, duration: Fraction) -> TriedChange:
+        """Return the change that sets the figure to a duration in ns."""
+        return TriedChange(self.activity.id, f"timing.{self.key}", write_exact_duration(duration).replace(" ", ""))
+
+
+def find_execution_time(architecture: Architecture, activity: Activity) -> TriedFigure | None:
+    """Return the execution time of an activity, or the response that is written instead; None where neither is."""
+    timing = architecture.nodes[activity.node].timing.get(activity.component or "")
+    if timing is None:
+        return None
+    if timing.response is not None:
+        return _make_figure(activity, "response", timing.response.value)
+    least = timing.bcet.value if timing.bcet else Fraction(0)
+    return _make_figure(activity, "wcet", timing.wcet.value, least) if timing.wcet else None
+
+
+def find_own_period(architecture: Architecture, activity: Activity) -> TriedFigure | None:
+    """Return the period of an activity that works by its own clock, written as a period or as a rate."""
+    timing = architecture.nodes[activity.node].timing.get(activity.component or "")
+    period = written_period(timing) if timing and activity.behaviour == "periodic" else None
+    return _make_figure(activity, "period", period) if period else None
+
+
+def _make_figure(activity: Activity, key: str, written: Fraction, least: Fraction = Fraction(0)) -> TriedFigure:
+    return TriedFigure(activity, key, written, _FINE_TICK if written < _MAX_FINE else _TICK, least)
+
+
+def list_chain_elements(analysis: Analysis, result: ChainResult) -> list[Activity]:
+    """Return the elements of a chain, the one that adds most first, those without a bound before all."""
+    terms = sorted(result.terms, key=_part_order)
+    return [analysis.system.activities[name] for name in dict.fromkeys(term.activity for term in terms)]
+
+
+def _part_order(term: ChainTerm) -> tuple[bool, Fraction]:
+    parts = (term.sampling, term.response, term.link)
+    return all(part.value is not None for part in parts), -sum(
+        (part.value or Fraction(0) for part in parts), Fraction(0)
+    )
+
+
+def list_neighbours(analysis: Analysis, elements: Iterable[Activity]) -> list[Activity]:
+    """Return what else works on the hosts of some elements, what takes most of them first."""
+    names = {activity.id for activity in elements}
+    hosts = dict.fromkeys(activity.host for activity in elements if activity.host)
+    shares = [
+        (-(share.value or Fraction(0)), name)
+        for host in hosts
+        for name, share in (analysis.hosts[host].activity_shares if host in analysis.hosts else ())
+        if name not in names
+    ]
+    return [analysis.system.activities[name] for _, name in sorted(shares)]
+
+
+def find_largest_step(
+    slack_at: SlackFunction, low: int, high: int, low_slack: Fraction | None = None, high_slack: Fraction | None = None
+) -> int:
+    """Return the largest step from `low` to `high` - 1 at which slack is left.
+
+    It is left at `low`, and not at `high`, neither of which is looked at again.
+    """
+    side, repeats = 0, 0
+    while high - low > 1:
+        middle = _choose_step(low, high, low_slack, high_slack if repeats < 1 else None)
+        slack = slack_at(middle)
+        new_side = 1 if _is_left(slack) else -1
+        # A secant that always moves the same end comes closer in ever smaller steps: then a half does more.
+        repeats = repeats + 1 if new_side == side else 0
+        side = new_side
+        if new_side > 0:
+            low, low_slack = middle, slack
+        else:
+            high, high_slack = middle, slack
+    return low
+
+
+def climb_steps(slack_at: SlackFunction, start: int, limit: int, start_slack: Fraction, fall: Fraction) -> int | None:
+    """Return the largest step from `start` up to `limit` at which slack is left; None where it is left at `limit`.
+
+    `fall` is the slack that each step takes at least, where it takes any: so far the first look goes.
+    """
+    low, slack, stride = start, start_slack, 0
+    while True:
+        stride = max(1, 2 * stride, int(slack / fall)) if slack else max(1, 2 * stride)
+        step = min(low + stride, limit)
+        new_slack = slack_at(step)
+        if not _is_left(new_slack):
+            return find_largest_step(slack_at, low, step, slack, new_slack)
+        if step == limit:
+            return None
+        # Where the first look was right, nothing is left for another one: the next step decides.
+        stride = stride if new_slack == slack else 0
+        low, slack = step, new_slack or Fraction(0)
+
+
+def _choose_step(low: int, high: int, low_slack: Fraction | None, high_slack: Fraction | None) -> int:
+    """Return where a straight line through both ends leaves nothing, else the middle."""
+    if low_slack is None or high_slack is None or low_slack <= high_slack:
+        return (low + high) // 2
+    step = low + int(low_slack * (high - low) / (low_slack - high_slack))
+    return min(max(step, low + 1), high - 1)

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from fractions import Fraction
 
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
-from archgen.timing.analysis import Analysis, ChainResult, ChainVerdict
-from archgen.timing.chains.chain_bounds import bound_chain, find_chain_slack
+from archgen.timing.analysis import Analysis
+from archgen.timing.chains.chain_bounds import find_chain_slack
 from archgen.timing.chains.cost_network import CostNetwork
-from archgen.timing.run_analysis import analyse_for_chains
+from archgen.timing.run_analysis import analyse_for_chains, analyse_system
+from archgen.timing.system.timing_system import Activity, TimingSystem
 
 OverrideLayer = Callable[[Architecture, Sequence[str]], Architecture]
 """Lays changes over an architecture, as `--set` writes them."""
-_TERMS_PER_TRY = 25_000
+_TERMS_PER_TRY = 250_000
 """Terms of a search that count as one more try: an analysis of a large host costs as much as many of small ones."""
-_VERDICT_RANKS: Mapping[ChainVerdict, int] = {"met": 2, "open": 1, "not proven": 1, "missed": 0}
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,18 +62,7 @@ class ChangeTrials:
         self._networks: dict[Changes, tuple[Architecture, CostNetwork]] = {
             (): (architecture, CostNetwork.of_analysis(analysis))
         }
-        self._results: dict[tuple[Changes, str], ChainResult] = {}
         self._slacks: dict[tuple[Changes, str], Fraction | None] = {}
-
-    def bound_chain(self, chain_id: str, changes: Changes = ()) -> ChainResult:
-        """Return what a chain takes with some changes. Raise TriesSpentError where no try is left for it."""
-        result = self._results.get((changes, chain_id))
-        if result is None:
-            changed_architecture, network = self._analyse(changes)
-            asked_chain = changed_architecture.chains[chain_id]
-            result = bound_chain(network.steps.analysis, changed_architecture, asked_chain, network)
-            self._results[changes, chain_id] = result
-        return result
 
     def find_slack(self, chain_id: str, changes: Changes) -> Fraction | None:
         """Return what some changes leave of a chain's deadline, in ns; None where nothing proves that it is kept."""
@@ -85,14 +75,13 @@ class ChangeTrials:
             self._slacks[changes, chain_id] = find_chain_slack(network, changed_architecture, asked_chain)
         return self._slacks[changes, chain_id]
 
-    def harms_others(self, chain_id: str, changes: Changes) -> bool:
-        """Whether some changes make the verdict on any other chain worse."""
-        return any(
-            _VERDICT_RANKS[self.bound_chain(other_id, changes).verdict]
-            < _VERDICT_RANKS[self.bound_chain(other_id).verdict]
-            for other_id in self.architecture.chains
-            if other_id != chain_id
-        )
+    def find_floors(self, changes: Changes) -> dict[str, Fraction]:
+        """Return the floors of the chains with some changes, in ns."""
+        try:
+            changed_architecture, network = self._analyse(changes)
+        except SenselessChangeError:
+            return {}
+        return find_floors(network.steps.analysis, changed_architecture)
 
     def _analyse(self, changes: Changes) -> tuple[Architecture, CostNetwork]:
         """Analyse an architecture with some changes, or recall how it was."""
@@ -107,3 +96,43 @@ class ChangeTrials:
             self.tries_left -= 1 + analysis.searched_terms // _TERMS_PER_TRY
             self._networks[changes] = changed_architecture, CostNetwork.of_analysis(analysis)
         return self._networks[changes]
+
+
+def find_floors(analysis: Analysis, architecture: Architecture) -> dict[str, Fraction]:
+    """Return the floor of each chain that has a deadline, in ns, where all figures that it rests on are known.
+
+    It is the bound of the chain where each activity has a core and a thread of its own, so that it takes its execution
+    time alone: the sum of the gaps, execution times and links. Whatever else runs only adds to each of these.
+    """
+    asked_chains = [chain for chain in architecture.chains.values() if chain.deadline is not None]
+    if not asked_chains:
+        return {}
+    network = CostNetwork.of_analysis(analyse_system(_clear_the_way(analysis.system), judging=True))
+    floors: dict[str, Fraction] = {}
+    for chain in asked_chains:
+        slack = find_chain_slack(network, architecture, chain)
+        if chain.deadline is not None and slack is not None:
+            floors[chain.id] = chain.deadline.value - slack
+    return floors
+
+
+def _clear_the_way(system: TimingSystem) -> TimingSystem:
+    """Return a system in which nothing waits for anything else to be done; links stay as they are."""
+    activities = {name: _give_own_core(activity) for name, activity in system.activities.items()}
+    return replace(system, activities=activities, executors={}, resources={})
+
+
+def _give_own_core(activity: Activity) -> Activity:
+    uses = sum(use.worst for use in activity.uses.values())
+    return replace(
+        activity,
+        host=None,
+        container=None,
+        executor="",
+        cores=(),
+        priority=None,
+        storing={},
+        uses={},
+        wcet=None if activity.wcet is None else activity.wcet + uses,
+        bcet=None if activity.bcet is None else activity.bcet + sum(use.best for use in activity.uses.values()),
+    )

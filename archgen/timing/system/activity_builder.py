@@ -12,6 +12,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.declared_timing import ActivityBehaviour, InputTiming, MeasuredTimes, Timing
 from archgen.model.node import Endpoint, Node
 from archgen.model.port_media import is_physical
+from archgen.model.runtime_facts import is_isolated, keeps_each_source
 from archgen.timing.figures.tick_unit import TickUnit, written_period
 from archgen.timing.system.built_parts import ActivitySource, BuiltParts
 from archgen.timing.system.timing_system import Activity, ResourceUse, StoringCallback
@@ -94,8 +95,9 @@ def _list_sources(
     architecture: Architecture, node: Node, component_id: str | None, endpoints: Sequence[Endpoint]
 ) -> ActivitySource:
     topics = architecture.topics
-    shared_flags = tuple([topic.shared if (topic := topics.get(each.label)) else False for each in endpoints])
-    return ActivitySource(node, architecture.components.get(component_id or ""), endpoints, shared_flags)
+    flags = [topic.shared if (topic := topics.get(each.label)) else False for each in endpoints]
+    component = architecture.components.get(component_id or "")
+    return ActivitySource(node, component, endpoints, (*flags, is_isolated(architecture, node)))
 
 
 def _outside_inputs(architecture: Architecture) -> Mapping[str, list[str]]:
@@ -159,6 +161,12 @@ def _build_activity(part: _NodePart, tick_unit: TickUnit) -> Activity:
         executor=executor_key(node),
         callback_group=_find_callback_group(part),
         storing=dict(_storing_callbacks(part, triggers, tick_unit)),
+        separate_memories=frozenset(
+            key
+            for each in part.endpoints
+            if each.use == "subscribes"
+            and keeps_each_source(each, timing.inputs.get(key := endpoint_key(each), _NO_INPUT_TIMING))
+        ),
         uses={
             resource: ResourceUse(tick_unit.ns_to_ticks(use.max.value), tick_unit.quantity_to_ticks(use.min) or 0)
             for resource, use in timing.uses.items()
@@ -180,6 +188,8 @@ def executor_key(node: Node) -> str:
 
 def _find_callback_group(part: _NodePart) -> str | None:
     """Return the mutually exclusive group of an activity, None where its callbacks run at once."""
+    if is_isolated(part.architecture, part.node):
+        return part.node.id
     if part.node.reentrant:
         return None
     groups = part.node.callback_groups
@@ -190,13 +200,12 @@ def _find_callback_group(part: _NodePart) -> str | None:
 def _storing_callbacks(
     part: _NodePart, triggers: Collection[str], tick_unit: TickUnit
 ) -> Iterator[tuple[str, StoringCallback]]:
-    """Yield the inputs that carry messages and fire nobody, each with the callback that stores them, if one does."""
+    """Yield the inputs that fire nobody, each with the callback that stores its messages, if one does, or takes its answers."""
     for endpoint in part.endpoints:
         key = endpoint_key(endpoint)
-        if endpoint.use == "subscribes" and key not in triggers:
-            times = part.timing.inputs.get(key, _NO_INPUT_TIMING)
-            if times.stored_at_once:
-                continue
+        times = part.timing.inputs.get(key, _NO_INPUT_TIMING)
+        is_stored = endpoint.use == "subscribes" and key not in triggers and not times.stored_at_once
+        if is_stored or (endpoint.use == "calls" and times.wcet is not None):
             wcet, bcet = map(tick_unit.quantity_to_ticks, (times.wcet, times.bcet))
             yield key, StoringCallback(wcet or 0, bcet or 0)
 

@@ -20,7 +20,7 @@ class ActivitySource(NamedTuple):
     component: Component | None
     endpoints: Sequence[Endpoint]
     shared_flags: tuple[bool, ...]
-    """For each endpoint, whether its topic is shared by all nodes."""
+    """For each endpoint, whether its topic is shared by all nodes; then whether the node has one thread in any case."""
 
 
 class BuiltParts:

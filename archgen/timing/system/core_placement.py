@@ -23,9 +23,10 @@ from archgen.timing.system.core_sets import (
 )
 from archgen.timing.system.thread_pools import (
     ThreadPool,
+    fills_cores,
     find_crowded_pools,
     find_pool,
-    is_reentrant,
+    find_serial_process,
     name_lane,
 )
 from archgen.timing.system.timing_system import Activity, TimingSystem
@@ -96,9 +97,10 @@ def _resources_of_pools(system: TimingSystem) -> Iterable[ProcessingResource]:
     unplaced_pools = find_unplaced_pools(system)
     for pool, members in group_unplaced(system).items():
         units = group_lanes(system, members)
-        if pool not in unplaced_pools and len(units) == len(members):
+        is_serial = find_serial_process(system, members[0].id) is not None
+        if pool not in unplaced_pools and len(units) == len(members) and not (is_serial and len(units) > 1):
             continue
-        cores = (pool.threads if pool in unplaced_pools else None) or len(units)
+        cores = 1 if is_serial else (pool.threads if pool in unplaced_pools else None) or len(units)
         assumption = f"assuming {'a dedicated core' if cores == 1 else f'{cores} dedicated cores'} for {pool.key}"
         name = pool.key.partition(" ")[2]
         yield ProcessingResource(name, None, cores, units, assumptions=(assumption,))
@@ -123,7 +125,7 @@ def _count_working(system: TimingSystem, units: Iterable[ThreadUnit]) -> int:
     """Return how many threads need a core for some time."""
     # What is reentrant works on several cores at once.
     return sum(
-        1 + is_reentrant(system, system.activities[unit[0]])
+        1 + fills_cores(system, system.activities[unit[0]])
         for unit in units
         if any(system.activities[name].wcet != 0 for name in unit)
     )

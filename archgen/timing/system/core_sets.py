@@ -6,6 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable
 
 from archgen.timing.system.thread_pools import (
+    find_serial_process,
     find_thread_count,
     name_lane,
 )
@@ -40,15 +41,25 @@ def find_core_sets(system: TimingSystem, members: Iterable[Activity]) -> dict[Th
     pin to a core that does not exist counts as none.
     """
     core_sets: dict[ThreadUnit, CoreSet] = {}
+    serial_sets: dict[str, CoreSet] = {}
     for unit in group_lanes(system, members):
         names_by_set: dict[CoreSet, list[str]] = defaultdict(list)
         for name in unit:
             names_by_set[find_cores(system, system.activities[name])].append(name)
+        serial_process = find_serial_process(system, unit[0])
+        if serial_process is not None:  # only one of its threads computes: where the first pinned member is
+            first_set = next((core_set for core_set in names_by_set if core_set), ())
+            serial_sets[serial_process] = serial_sets.get(serial_process, ()) or first_set
         if len(names_by_set) == 1 or find_thread_count(system, unit[0]) == 1:
             core_sets[unit] = next((core_set for core_set in names_by_set if core_set), ())
         else:
             core_sets |= {tuple(names): core_set for core_set, names in names_by_set.items()}
-    return core_sets
+    if not serial_sets:
+        return core_sets
+    return {
+        unit: serial_sets.get(find_serial_process(system, unit[0]) or "", core_set)
+        for unit, core_set in core_sets.items()
+    }
 
 
 def find_cores(system: TimingSystem, activity: Activity) -> CoreSet:

@@ -7,8 +7,8 @@ ROS 2 puts a header of 4 bytes in front, and a dummy byte into a message without
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
-from functools import cache
+from collections.abc import Callable, Iterable
+from functools import cache, reduce
 from math import ceil
 from typing import Literal
 
@@ -17,8 +17,73 @@ from archgen.model.architecture import Architecture
 from archgen.model.known_interfaces import InterfaceField, Interfaces
 from archgen.model.node import Endpoint, FlowKind
 from archgen.model.ros_distro import is_ros_1
-from archgen.timing.system import wire_encoding
-from archgen.timing.system.wire_encoding import WireShape
+
+_ALIGNMENT = 8
+_LENGTH_PREFIX_BYTES = 4
+"""Bytes of the number that precedes a sequence or a text."""
+WireRoom = tuple[int, ...]
+"""The bytes that a value takes, padding before it included, for each offset modulo 8 at which it may begin."""
+EMPTY_ROOM: WireRoom = (0,) * _ALIGNMENT
+NUMBER_WIDTHS = {
+    **dict.fromkeys(("bool", "byte", "char", "octet", "int8", "uint8"), 1),
+    **dict.fromkeys(("int16", "uint16"), 2),
+    **dict.fromkeys(("int32", "uint32", "float32"), 4),
+    **dict.fromkeys(("int64", "uint64", "float64"), 8),
+}
+"""The bytes of each builtin number."""
+
+
+@dataclass(frozen=True, slots=True)
+class WireShape:
+    """The bytes of a value, None where unknown; with `exact` False an upper bound. `why` names the field."""
+
+    room: WireRoom | None
+    exact: bool = True
+    why: str = ""
+
+
+def room_of_number(width: int, *, aligned: bool) -> WireRoom:
+    """Return the room of a number of some bytes."""
+    # -start % width is the padding up to the next multiple of the width.
+    return tuple((-start % width if aligned else 0) + width for start in range(_ALIGNMENT))
+
+
+def room_of_text(length: int, *, wide: bool) -> WireRoom:
+    """Return the largest room of a text of bounded length, in ROS 2.
+
+    A wide character takes 4 bytes in the older of the two encodings in use, 2 in the newer.
+    """
+    # Texts of bytes end with a zero byte, wide ones do not.
+    characters = 4 * length if wide else length + 1
+    return append_room(room_of_number(_LENGTH_PREFIX_BYTES, aligned=True), (characters,) * _ALIGNMENT)
+
+
+def room_of_sequence(element: WireRoom, length: int) -> WireRoom:
+    """Return the largest room of a sequence of bounded length, in ROS 2."""
+    return append_room(room_of_number(_LENGTH_PREFIX_BYTES, aligned=True), room_of_array(element, length))
+
+
+def room_of_array(element: WireRoom, count: int) -> WireRoom:
+    """Return the room of `count` elements in a row, by doubling, since counts may be large."""
+    total = EMPTY_ROOM
+    # Binary exponentiation: `append_room` is associative, so that the total so far can be doubled for each bit.
+    for bit in f"{count:b}":
+        total = append_room(total, total)
+        if bit == "1":
+            total = append_room(total, element)
+    return total
+
+
+def room_of_row(rooms: Iterable[WireRoom]) -> WireRoom:
+    """Return the room of values in a row."""
+    return reduce(append_room, rooms, EMPTY_ROOM)
+
+
+def append_room(first: WireRoom, second: WireRoom) -> WireRoom:
+    """Return the room of one value behind another."""
+    # The second value begins where the first one ends: at its offset plus its bytes.
+    return tuple(byte_count + second[(start + byte_count) % _ALIGNMENT] for start, byte_count in enumerate(first))
+
 
 HEADER_BYTES = 4
 """The encapsulation header of ROS 2, which says in which representation the message follows."""
@@ -206,7 +271,7 @@ class _SizeComputer:
         rooms = [shape.room for shape in shapes if shape.room is not None]
         if len(rooms) < len(shapes):
             return next(shape for shape in shapes if shape.room is None)
-        room = wire_encoding.room_of_row(rooms)
+        room = room_of_row(rooms)
         if room[0] > MAX_MESSAGE_BYTES:
             return WireShape(None, why=f"`{name}` would be larger than any message can be")
         bounding_field = next((shape.why for shape in shapes if not shape.exact), "")
@@ -223,25 +288,21 @@ class _SizeComputer:
         # `[<=n]` is a bounded sequence, its length written in front; `[n]` an array of fixed length.
         if array_match[1]:
             return WireShape(
-                wire_encoding.room_of_sequence(element_shape.room, int(array_match[2])),
+                room_of_sequence(element_shape.room, int(array_match[2])),
                 exact=False,
                 why=f"the field `{field.name}`",
             )
-        return WireShape(
-            wire_encoding.room_of_array(element_shape.room, int(array_match[2])), element_shape.exact, element_shape.why
-        )
+        return WireShape(room_of_array(element_shape.room, int(array_match[2])), element_shape.exact, element_shape.why)
 
     def _element_shape(self, field: InterfaceField) -> WireShape:
         """Return the shape of a field without its brackets."""
         if self._ros1 and field.type in _ROS1_TIMES:
-            return WireShape(wire_encoding.room_of_number(8, aligned=False))
-        if field.type in wire_encoding.NUMBER_WIDTHS:
-            return WireShape(
-                wire_encoding.room_of_number(wire_encoding.NUMBER_WIDTHS[field.type], aligned=not self._ros1)
-            )
+            return WireShape(room_of_number(8, aligned=False))
+        if field.type in NUMBER_WIDTHS:
+            return WireShape(room_of_number(NUMBER_WIDTHS[field.type], aligned=not self._ros1))
         string_match = _STRING_TYPE.match(field.type)
         if string_match and string_match[2]:
-            room = wire_encoding.room_of_text(int(string_match[2]), wide=bool(string_match[1]))
+            room = room_of_text(int(string_match[2]), wide=bool(string_match[1]))
             return WireShape(room, exact=False, why=f"the field `{field.name}`")
         if string_match:
             return WireShape(None, why=f"the field `{field.name}` may have any length (`{field.type}`)")

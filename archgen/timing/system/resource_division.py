@@ -10,8 +10,9 @@ from archgen.timing.system.core_placement import ProcessingResource
 from archgen.timing.system.core_sets import ThreadUnit
 from archgen.timing.system.thread_pools import (
     ThreadPool,
+    fills_cores,
     find_crowded_pools,
-    is_reentrant,
+    find_serial_process,
 )
 from archgen.timing.system.timing_system import TimingSystem
 
@@ -32,25 +33,31 @@ def divide_resource(system: TimingSystem, resource: ProcessingResource) -> Itera
         return (resource,)
     members = [system.activities[name] for name in resource.members]
     crowded_pools = find_crowded_pools(system, members)
-    if any(is_reentrant(system, activity) and activity.id not in crowded_pools for activity in members):
+    if any(fills_cores(system, activity) and activity.id not in crowded_pools for activity in members):
         return (resource,)  # as many threads as are asked for
-    units_by_pool: dict[ThreadPool, list[ThreadUnit]] = defaultdict(list)
+    units_by_process: dict[tuple[str, int], list[ThreadUnit]] = defaultdict(list)
+    lone_units: list[ThreadUnit] = []
     for unit in resource.units:
-        if unit[0] in crowded_pools:
-            units_by_pool[crowded_pools[unit[0]]].append(unit)
-    lone_units = [unit for unit in resource.units if unit[0] not in crowded_pools]
-    if len(lone_units) + sum(pool.threads or 0 for pool in units_by_pool) > resource.cores:
+        serial_process = find_serial_process(system, unit[0])
+        if serial_process is not None:
+            units_by_process[serial_process, 1].append(unit)
+        elif unit[0] in crowded_pools:
+            pool = crowded_pools[unit[0]]
+            units_by_process[pool.key, pool.threads or 1].append(unit)
+        else:
+            lone_units.append(unit)
+    if len(lone_units) + sum(cores for _, cores in units_by_process) > resource.cores:
         return (resource,)
     return (
         *(replace(resource, cores=1, units=(unit,), undisturbed=True) for unit in lone_units),
-        *(replace(resource, cores=pool.threads or 1, units=tuple(units)) for pool, units in units_by_pool.items()),
+        *(replace(resource, cores=cores, units=tuple(units)) for (_, cores), units in units_by_process.items()),
     )
 
 
 def part_waiting_units(system: TimingSystem, resource: ProcessingResource) -> Iterable[ProcessingResource]:
     """Yield a part for each thread that waits for resources, and one for all others; the resource where none waits."""
     is_waiting = any(
-        system.activities[name].uses for unit in (*resource.units, *resource.foreign_units) for name in unit
+        system.activities[name].suspends for unit in (*resource.units, *resource.foreign_units) for name in unit
     )
     waiting_threads = tuple(_find_waiting_threads(system, resource)) if is_waiting else ()
     if not waiting_threads or resource.missing:
@@ -86,13 +93,14 @@ def _find_waiting_threads(system: TimingSystem, resource: ProcessingResource) ->
     all_members = [system.activities[name] for unit in (*resource.units, *resource.foreign_units) for name in unit]
     crowded_pools = find_crowded_pools(system, all_members)
     waiting_pools = {
-        crowded_pools[activity.id] for activity in all_members if activity.uses and activity.id in crowded_pools
+        crowded_pools[activity.id] for activity in all_members if activity.suspends and activity.id in crowded_pools
     }
     crowds: dict[ThreadPool, list[ThreadUnit]] = {}
     for unit in resource.units:
         pool = crowded_pools.get(unit[0])
         if pool is not None and pool in waiting_pools:
             crowds.setdefault(pool, []).append(unit)
-        elif any(system.activities[name].uses for name in unit):
+        # Who computes in turn with others that wait is held up by them as if it waited itself.
+        elif find_serial_process(system, unit[0]) or any(system.activities[name].suspends for name in unit):
             yield (unit,)
     yield from (tuple(units) for units in crowds.values())

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from archgen.model.architecture import Architecture
-from archgen.model.deployment import Container
+from archgen.model.node import Node
 from archgen.model.port_media import is_physical
-from archgen.model.process_threads import find_container_threads
+from archgen.model.runtime_facts import count_node_threads, find_container_threads, find_library, find_usual_order
 from archgen.timing.analysis import Reason
+from archgen.timing.figures.figure_wording import join_first_names
 from archgen.timing.figures.tick_unit import choose_tick_unit
 from archgen.timing.system import message_sizes
 from archgen.timing.system.activity_builder import (
@@ -51,8 +52,7 @@ def build_system(
         external_inputs=dict(_external_inputs(architecture, activities_by_id)),
         optional_inputs=frozenset(port.id for port in architecture.inputs.values() if port.optional),
         cores={host.id: host.cores for host in architecture.hosts.values()},
-        threads={each.id: find_container_threads(architecture, each) for each in architecture.containers.values()},
-        executors={executor.id: executor for executor in _build_executors(architecture)},
+        executors={executor.id: executor for executor in _build_executors(architecture, activities_by_id)},
         resources={
             # What drivers do, where nobody wrote anything else.
             resource.id: SharedResource(
@@ -89,25 +89,42 @@ def build_system(
         },
         topic_sizes=message_sizes.find_topic_sizes(architecture),
     )
-    return timing_system, notes
+    return timing_system, (*notes, *_note_languages(architecture))
 
 
-def _build_executors(architecture: Architecture) -> Iterator[Executor]:
+def _build_executors(architecture: Architecture, activities_by_id: Mapping[str, Activity]) -> Iterator[Executor]:
     """Yield the processes: each container, and each node outside of one."""
+    usual_order = find_usual_order(architecture)
+    suspending = {activity.executor for activity in activities_by_id.values() if activity.suspends}
+    nodes_in: dict[str, list[Node]] = {container: [] for container in architecture.containers}
+    for node in architecture.nodes.values():
+        if node.container:
+            nodes_in[node.container].append(node)
     for container in architecture.containers.values():
-        executor_id = f"container {container.id}"
+        key, nodes = f"container {container.id}", nodes_in[container.id]
+        # Where nobody says its host, it is the one that its nodes name, if they agree.
+        node_hosts = dict.fromkeys(node.host for node in nodes)
+        host = container.host or (next(iter(node_hosts)) if len(node_hosts) == 1 else None)
         threads = find_container_threads(architecture, container)
-        yield Executor(executor_id, threads, _find_container_host(architecture, container), container.scheduling)
+        yield Executor(key, threads, host, container.scheduling, find_library(nodes), key in suspending, usual_order)
     for node in architecture.nodes.values():
         if not node.container:
-            # What `rclcpp::spin(node)` is: one thread.
-            yield Executor(executor_key(node), node.threads or 1, node.host, node.scheduling)
+            key = executor_key(node)
+            threads = count_node_threads(node)
+            yield Executor(
+                key, threads, node.host, node.scheduling, find_library([node]), key in suspending, usual_order
+            )
 
 
-def _find_container_host(architecture: Architecture, container: Container) -> str | None:
-    """Return the host of a container: its own, or the one that its nodes name, where they agree."""
-    node_hosts = dict.fromkeys(node.host for node in architecture.nodes.values() if node.container == container.id)
-    return container.host or (next(iter(node_hosts)) if len(node_hosts) == 1 else None)
+def _note_languages(architecture: Architecture) -> Iterator[Reason]:
+    """Yield what is taken for granted of nodes with several threads that say no language."""
+    nodes = [each for each in architecture.nodes.values() if not each.container and count_node_threads(each) > 1]
+    unsaid = tuple(each.id for each in nodes if each.language is None and (each.reentrant or len(each.implements) > 1))
+    if unsaid:
+        names, at = join_first_names(unsaid), architecture.nodes[unsaid[0]].at
+        yield Reason(
+            "no `language` is written for {0}: all threads compute at once, as in C++ and not in Python", at, (names,)
+        )
 
 
 def _external_inputs(

@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-from archgen.timing.system.timing_system import Activity, Arc, TimingSystem
+from archgen.timing.system.timing_system import Activity, Arc, TimingSystem, name_queue
 
 
 class ThreadPool(NamedTuple):
@@ -19,12 +19,7 @@ class ThreadPool(NamedTuple):
 def find_pool(system: TimingSystem, activity: Activity) -> ThreadPool | None:
     """Return the threads that may run an activity, None where it has one of its own."""
     executor = system.executors.get(activity.executor)
-    if executor is not None:
-        return ThreadPool(executor.id, executor.threads)
-    # A system made without executors: what is in no container has a thread of its own.
-    if activity.container is None:
-        return None
-    return ThreadPool(f"container {activity.container}", system.threads.get(activity.container))
+    return None if executor is None else ThreadPool(executor.id, executor.parallel_threads)
 
 
 def name_lane(system: TimingSystem, activity: Activity) -> str:
@@ -32,9 +27,8 @@ def name_lane(system: TimingSystem, activity: Activity) -> str:
     # Keys are prefixed, since an activity, a group and a container may have the same id.
     executor = system.executors.get(activity.executor)
     if executor is None:
-        pool = find_pool(system, activity)
-        return pool.key if pool is not None and pool.threads == 1 else f"activity {activity.id}"
-    if executor.threads == 1:
+        return f"activity {activity.id}"
+    if executor.parallel_threads == 1:
         return executor.id
     if activity.callback_group is None:
         return f"activity {activity.id}"
@@ -47,6 +41,17 @@ def is_reentrant(system: TimingSystem, activity: Activity) -> bool:
     return executor is not None and executor.threads != 1 and activity.callback_group is None
 
 
+def fills_cores(system: TimingSystem, activity: Activity) -> bool:
+    """Whether several activations of an activity may compute at once."""
+    return is_reentrant(system, activity) and not system.executors[activity.executor].is_serial
+
+
+def find_serial_process(system: TimingSystem, name: str) -> str | None:
+    """Return the process of an activity where its threads compute one at a time, and wait beside one another."""
+    executor = system.executors.get(system.activities[name].executor)
+    return executor.id if executor is not None and executor.is_serial and executor.suspends else None
+
+
 def works_in_order(system: TimingSystem, activity: Activity) -> bool:
     """Whether the activations of an activity begin in the order in which they come, each at the end of the one before.
 
@@ -57,19 +62,28 @@ def works_in_order(system: TimingSystem, activity: Activity) -> bool:
     if activity.executor not in system.executors or activity.behaviour == "periodic":
         return True
     # Whether there are several is all that is asked, and this is asked often.
-    entities = ((arc.role, arc.input, arc.topic) for arc in _list_waiting_arcs(system, activity))
+    entities = ((arc.role, arc.input, name_queue(activity, arc)) for arc in list_waiting_arcs(system, activity))
     first_entity = next(entities, None)
     return all(entity == first_entity for entity in entities)
+
+
+def may_skip_ticks(system: TimingSystem, activity: Activity, response: int | None) -> bool:
+    """Whether a tick of an activity may come while another one waits, in an executor of ROS 2: rcl counts it as done."""
+    executor = system.executors.get(activity.executor)
+    if activity.behaviour != "periodic" or executor is None or executor.order != "ros2_executor":
+        return False
+    return response is None or response - (activity.wcet or 0) > (activity.period or 0) - activity.jitter
 
 
 def count_entities(system: TimingSystem, activity: Activity) -> int:
     """Return how many callbacks of an activity wait for their turn: its clock, or each subscription and service."""
     if activity.behaviour == "periodic":
         return 1
-    return len({(arc.role, arc.input, arc.topic) for arc in _list_waiting_arcs(system, activity)})
+    return len({(arc.role, arc.input, name_queue(activity, arc)) for arc in list_waiting_arcs(system, activity)})
 
 
-def _list_waiting_arcs(system: TimingSystem, activity: Activity) -> Iterator[Arc]:
+def list_waiting_arcs(system: TimingSystem, activity: Activity) -> Iterator[Arc]:
+    """Yield the arcs by which what fires an activity comes."""
     for arc in system.arcs_into.get(activity.id, ()):
         if arc.role == "request" or arc.input in activity.triggers:
             yield arc
@@ -89,7 +103,7 @@ def find_crowded_pools(system: TimingSystem, activities: Iterable[Activity]) -> 
     members_by_pool: dict[ThreadPool, list[Activity]] = defaultdict(list)
     for activity in activities:
         executor = system.executors.get(activity.executor)
-        if executor is not None and executor.threads == 1:
+        if executor is not None and executor.parallel_threads == 1:
             continue  # as nearly everywhere
         pool = find_pool(system, activity)
         if pool is not None and pool.threads is not None and pool.threads > 1:
@@ -116,7 +130,7 @@ def find_joint_nodes(system: TimingSystem) -> Mapping[str, tuple[Activity, ...]]
     """Return the nodes outside of containers that implement several components and have one thread, with these."""
     members_by_node: dict[str, list[Activity]] = defaultdict(list)
     for activity in system.activities.values():
-        pool = find_pool(system, activity)
-        if activity.container is None and pool is not None and pool.threads == 1:
+        executor = system.executors.get(activity.executor)
+        if activity.container is None and executor is not None and executor.threads == 1:
             members_by_node[activity.node].append(activity)
     return {node: tuple(members) for node, members in members_by_node.items() if len(members) > 1}

@@ -15,6 +15,7 @@ from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
 from archgen.model.declared_timing import ActivityBehaviour, SchedulingOrder
 from archgen.model.node import FlowKind
+from archgen.model.runtime_facts import RCLCPP, ClientLibrary
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +39,8 @@ class Executor:
     """What runs the callbacks of a process: those of a container, or of a node outside of one.
 
     `threads` is None where nobody wrote how many a container has; a node outside of a container has one if nothing is
-    written. `order` is the order in which a thread takes what is ready, None where it may be any.
+    written. `order` is the order in which a thread takes what is ready, None where nobody wrote it: bounds hold for any
+    then, and what is simulated keeps to `usual_order`, that of its middleware, where it is known.
     """
 
     id: str
@@ -46,6 +48,20 @@ class Executor:
     threads: int | None
     host: str | None
     order: SchedulingOrder | None = None
+    library: ClientLibrary = RCLCPP
+    suspends: bool = False
+    """Whether something in it keeps its thread for some time without needing a core."""
+    usual_order: SchedulingOrder | None = None
+
+    @property
+    def is_serial(self) -> bool:
+        """Whether several threads compute one at a time."""
+        return self.threads != 1 and not self.library.computes_at_once
+
+    @property
+    def parallel_threads(self) -> int | None:
+        """Return how many threads may be under way at once: of those that compute one at a time and never wait, one."""
+        return 1 if self.is_serial and not self.suspends else self.threads
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,6 +139,8 @@ class Activity:
     """Activities of one group exclude one another; None is reentrant: any number of its own callbacks run at once."""
     storing: Mapping[str, StoringCallback] = field(default_factory=dict)
     """By input key: the callbacks of inputs that are only stored. They wait for their turn in the executor."""
+    separate_memories: frozenset[str] = frozenset()
+    """Keys of the inputs that keep the newest message of each source, and not only the last one of each topic."""
     uses: Mapping[str, ResourceUse] = field(default_factory=dict)
     """By resource: the time of each activation beside `wcet`, which is processor time alone."""
     freshness: Mapping[str, int] = field(default_factory=dict)
@@ -136,6 +154,20 @@ class Activity:
     # Not compared either: moving text in a file changes no figure.
     at: Span = field(default=NO_SPAN, compare=False, repr=False)
     places: Mapping[str, Span] = field(default_factory=dict, compare=False, repr=False)
+
+    @property
+    def wait(self) -> int:
+        """Return how long an activation waits in its callback (for an answer, a device), in ticks: it keeps its thread, and
+        leaves its core. That is what a declared response has beside the times for processor and resources.
+        """
+        if self.response is None or self.wcet is None or self.behaviour == "once":
+            return 0
+        return max(self.response - self.wcet - sum(use.worst for use in self.uses.values()), 0)
+
+    @property
+    def suspends(self) -> bool:
+        """Whether an activation keeps its thread for some time without needing a core."""
+        return bool(self.uses) or (self.response is not None and self.wait > 0)
 
     @property
     def core(self) -> int | None:
@@ -188,8 +220,6 @@ class TimingSystem:
     """Input keys that need not be connected: nobody waits for one that is not."""
     cores: Mapping[str, int | None] = field(default_factory=dict)
     """Cores of each host, None where not written."""
-    threads: Mapping[str, int | None] = field(default_factory=dict)
-    """Threads of each container, None where not written."""
     executors: Mapping[str, Executor] = field(default_factory=dict)
     resources: Mapping[str, SharedResource] = field(default_factory=dict)
     host_orders: Mapping[str, SchedulingOrder] = field(default_factory=dict)
@@ -216,6 +246,42 @@ def group_arcs(pairs: Iterable[tuple[str, Arc]]) -> dict[str, tuple[Arc, ...]]:
     for name, arc in pairs:
         arcs_by_name[name].append(arc)
     return {name: tuple(arc_list) for name, arc_list in arcs_by_name.items()}
+
+
+def name_queue(reader: Activity, arc: Arc) -> str:
+    """Return a name that the arcs to an input share where one subscription gets what comes by them."""
+    return f"{arc.topic} from {arc.source}" if arc.input in reader.separate_memories else arc.topic
+
+
+def list_memory_rivals(system: TimingSystem, arc: Arc) -> tuple[Arc, ...]:
+    """Return the arcs of other sources whose messages take the place of an arc's: they come to one memory of its reader."""
+    reader = system.activities[arc.target]
+    if arc.role != "data" or arc.input in reader.separate_memories:
+        return ()
+    return tuple(
+        other
+        for other in system.arcs_into.get(arc.target, ())
+        if other is not arc
+        and (other.role, other.input, other.topic) == ("data", arc.input, arc.topic)
+        # What was sent once, at the start, takes the place of nothing later.
+        and system.activities[other.source].behaviour != "once"
+    )
+
+
+def is_taken_answer(arc: Arc) -> bool:
+    """Whether an arc brings answers to a callback that takes them, which the load of processors counts by itself."""
+    return arc.role == "data" and arc.flow != "topic"
+
+
+def find_request(system: TimingSystem, answer: Arc) -> Arc:
+    """Return the arc of the calls that an arc answers."""
+    # What takes an answer is called after its client, with a blank behind it.
+    client = answer.target.partition(" ")[0]
+    return next(
+        each
+        for each in system.arcs_into[answer.source]
+        if (each.role, each.source, each.topic) == ("request", client, answer.topic)
+    )
 
 
 def is_selective_arc(system: TimingSystem, arc: Arc) -> bool:

@@ -1,4 +1,4 @@
-"""What an agreement is made of, as its chapters read it."""
+"""What an agreement is made of, as its chapters read it, and what was signed of it before."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from archgen.timing.search.chain_budgets import SharedBudget
 from archgen.views.agreement.interface_record import InterfaceRecord
 from archgen.views.agreement.signature_record import SignatureRecord
 from archgen.views.agreement.term_changes import AgreementChanges
-from archgen.views.graph_shapes import Graph
 from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.lookup import Lookup
+from archgen.views.picture_shapes import Graph
 from archgen.views.shapes import Paragraph
 
 

@@ -13,14 +13,19 @@ from archgen.views.agreement.agreement_summary import (
     write_open_points_section,
     write_summary_section,
 )
-from archgen.views.agreement.budget_section import write_budget_section
-from archgen.views.agreement.frame_section import list_changed_frames, write_frame_section
+from archgen.views.agreement.general_sections import (
+    describe_standing,
+    list_changed_frames,
+    list_start_steps,
+    write_budget_section,
+    write_frame_section,
+    write_start_section,
+    write_terms_section,
+    write_use_case_section,
+)
 from archgen.views.agreement.interface_sections import SectionWriter
 from archgen.views.agreement.setting_section import list_changed_settings, write_setting_section
 from archgen.views.agreement.signature_record import write_signature_table
-from archgen.views.agreement.start_section import list_start_steps, write_start_section
-from archgen.views.agreement.terms_section import describe_standing, write_terms_section
-from archgen.views.agreement.use_case_section import write_use_case_section
 from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.shapes import (
     Block,

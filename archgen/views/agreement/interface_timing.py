@@ -30,7 +30,7 @@ from archgen.views.agreement.promise_rows import (
 )
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Inlines, Text
-from archgen.views.timing import rate_phrases, timing_tables, value_format
+from archgen.views.timing import timing_tables, value_format
 from archgen.views.timing.timing_lookup import TimingLookup
 
 _NO_TIMING = Timing()
@@ -186,7 +186,7 @@ class _GivenPace:
 
 
 def _spell_rate(pace: EventPace) -> str:
-    words = _spell_signs(rate_phrases.format_short_rate(pace))
+    words = _spell_signs(value_format.format_short_rate(pace))
     return f"{words}-driven" if words.endswith(", event") else words
 
 

@@ -14,6 +14,7 @@ from archgen.compare.matched_ids import MatchedIds
 from archgen.frozen import dataclass
 from archgen.model.agreed_terms import INTERFACE_TERMS
 from archgen.timing.analysis import ChainResult
+from archgen.timing.figures.figure_wording import format_duration
 from archgen.views.agreement.interface_terms import InterfaceEnd, InterfaceTerms
 from archgen.views.agreement.promise_rows import MAX_GAP, RATE, PromiseRow, PromiseStrength
 from archgen.views.graphs.element_boxes import join_owner_titles
@@ -159,6 +160,12 @@ def _chain_terms(chain: ChainResult, title: str, common_id: str) -> Iterator[tup
             "in time": int(chain.verdict not in {"missed", "not proven"}),
         }
         yield f"deadline {common_id}", PlainTerm("chains", f"Deadline of {title}", text, limit, strength=strength)
+    for each in chain.shares:
+        limit, name = format_duration(each.limit), f"Deadline of {title} for {each.name} of its reactions"
+        yield (
+            f"deadline {common_id} {each.name}",
+            PlainTerm("chains", name, limit, limit, strength={"deadline": -each.limit}),
+        )
     text = f"{value_format.display_duration(chain.bound)}; {chain.verdict}"
     yield f"chain {common_id}", PlainTerm("chains", f"Chain {title} (expected)", text, text, is_expected=True)
 

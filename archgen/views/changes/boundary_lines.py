@@ -11,11 +11,10 @@ from dataclasses import replace
 from fractions import Fraction
 
 from archgen.compare import Comparison
-from archgen.compare.comparison import ChangeKind
-from archgen.compare.figure_changes import BoundaryChange, FigureChange, TravelPath
+from archgen.compare.comparison import BoundaryChange, ChangeKind, FigureChange, TravelPath
 from archgen.compare.figure_noise import FigureNoise
 from archgen.compare.interface_figures import DELAY_NAMES
-from archgen.compare.sentence_words import tick_names
+from archgen.compare.key_phrases import tick_names
 from archgen.diagnostics.common_wording import join_words
 from archgen.frozen import dataclass
 from archgen.timing.figures.figure_wording import format_compared, format_duration

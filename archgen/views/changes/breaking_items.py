@@ -1,4 +1,7 @@
-"""The edits that break partners, as a document shows them: who loses what, who agreed, and as which findings they are found."""
+"""The edits that break partners, as a document shows them: who loses what, who agreed, and as which findings they are reported.
+
+Beside them: edits of what belongs to another partner, and new findings that say the same as one of both.
+"""
 
 from __future__ import annotations
 
@@ -8,16 +11,77 @@ from collections.abc import Iterator, Mapping, Sequence
 from archgen.compare import Change, Comparison
 from archgen.compare.change_sentences import READERS_LEAD
 from archgen.compare.edits import Edit
-from archgen.compare.sentence_words import tick_names
+from archgen.compare.key_phrases import shorten_text, tick_names
+from archgen.compare.left_out_files import find_affected_names, find_left_out
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.frozen import dataclass, replace
 from archgen.model.review_settings import BREAK_CATEGORIES, BreakCategory
 from archgen.views.changes import breaking_verdict
-from archgen.views.changes.owned_edits import name_owner
-from archgen.views.changes.partner_names import name_each
+from archgen.views.changes.named_elements import name_each
 
 _BACKTICKED = re.compile(r"`([^`]*)`")
+_PAIR_RULES = frozenset({"incompatible-qos", "two-domains", "two-clocks"})
+"""Those whose findings name two ends in front of a colon."""
+_RULES = _PAIR_RULES | {"remapped-away", "unfed-input", "late-chain", "overloaded-host", "saturated-link"}
+"""The rules whose findings have a break that says the same. Others say more than that somebody loses something."""
+
+_UNREAD_RULES = frozenset({"missing-detail", "unchecked-message", "unmapped-component"})
+"""The rules that find what is missing of an element: they say nothing new of one that is not read any more."""
+
+
+def find_repeated_findings(comparison: Comparison) -> Mapping[Diagnostic, Change]:
+    """Return the new findings that a change tells, each with the change."""
+    breaking_changes = [change for change in comparison.changes if change.breaks]
+    # Later ones come first, and what breaks somebody counts more than what is only not read any more.
+    return dict(_find_unread_subjects(comparison)) | {
+        finding: change
+        for finding in comparison.new_findings
+        if finding.rule in _RULES
+        for change in breaking_changes[::-1]
+        if _tells_finding(change, finding)
+    }
+
+
+def _find_unread_subjects(comparison: Comparison) -> Iterator[tuple[Diagnostic, Change]]:
+    """Yield the findings about what a file held that is not read any more, with a change of the edit that says so."""
+    for left_out in find_left_out(comparison, comparison.changes):
+        # Only a breaking change is shown with findings.
+        if not any(change.breaks for change in left_out.removals):
+            continue
+        names = find_affected_names(comparison, left_out.removals)
+        for finding in comparison.new_findings:
+            subjects = _BACKTICKED.findall(finding.message)[:1]
+            if finding.rule in _UNREAD_RULES and names.issuperset(subjects):
+                yield finding, left_out.removals[0]
+
+
+def _tells_finding(change: Change, finding: Diagnostic) -> bool:
+    """Whether one of the losses of a change names all that the finding names."""
+    needed_names = set(_name_subjects(finding))
+    for each in change.breaks:
+        names = {*_BACKTICKED.findall(each.reason), *change.element_id.split("."), change.element_id}
+        if needed_names and needed_names <= names:
+            return True
+    return False
+
+
+def _name_subjects(finding: Diagnostic) -> Iterator[str]:
+    """Yield what a finding is about: the names in front of its explanation, ports with their complete ids."""
+    names = _BACKTICKED.findall(finding.message.partition(": ")[0])
+    if finding.rule in _PAIR_RULES:
+        yield from names
+    elif finding.rule == "remapped-away":
+        yield from names[:2]
+    elif finding.rule == "unfed-input" and len(names) > 1:
+        yield f"{names[1]}.{names[0]}"
+    elif finding.rule == "late-chain" and finding.element:
+        yield finding.element
+    elif finding.rule in {"overloaded-host", "saturated-link"}:
+        # Of what follows behind the name, as the largest part of the traffic, breaks say nothing.
+        yield from names[:1]
+
+
 _MAX_NAMES = 3
 _MAX_PLACES = 4
 _MAX_LOSSES = 4
@@ -148,3 +212,52 @@ def _name_findings(edit: Edit, repeated_findings: Mapping[Diagnostic, Change]) -
     for rule, spans in places.items():
         surplus = [f"{len(spans) - _MAX_PLACES} more places"] if len(spans) > _MAX_PLACES + 1 else []
         yield f"found as `{rule}` at {join_words([*spans[: _MAX_PLACES if surplus else None], *surplus])}"
+
+
+_TITLE = re.compile(r" \([^()`]*\)")
+"""What stands behind an id whose element has another title."""
+_LIST_OF_NAMES = re.compile(r",? (?:and )?`")
+
+
+def name_owner(edit: Edit, comparison: Comparison, partner_names: Mapping[str, str], known_owner: str = "") -> Edit:
+    """Return an edit that says whose element it changes, unless that is known from its heading, or there is only one
+    partner.
+    """
+    if edit.element_kind == "component_type" and all(each.element_kind != "component_type" for each in edit.changes):
+        return edit  # of a selection only what follows the type: whose that is, the sentence says itself
+    owners = [_find_owner(change, comparison) for change in edit.changes]
+    owner = owners[0] if len(set(owners)) == 1 else None
+    if not owner or len(partner_names) < 2 or owner == known_owner:  # noqa: PLR2004 - with one partner nothing is foreign
+        return edit
+    names = dict.fromkeys([edit.element_id, *(change.old_id for change in edit.changes if change.old_id)])
+    places = [(edit.text.find(ticked), len(ticked)) for ticked in (f"`{shorten_text(name)}`" for name in names)]
+    start, length = min(((place, size) for place, size in places if place >= 0), default=(0, 0))
+    title = _TITLE.match(edit.text, start + length)
+    end = title.end() if title else start + length
+    head, tail = edit.text[:end], edit.text[end:]
+    if not length or _LIST_OF_NAMES.match(tail):
+        return edit
+    return replace(edit, text=f"{head} of {name_each([owner], partner_names)[0]}{tail}")
+
+
+def find_group_owner(group_id: str, comparison: Comparison) -> str:
+    """Return who owned a group before the change, or owns it if it is new; empty for nobody."""
+    versions = comparison.versions
+    common_id = group_id
+    if ("group", group_id) not in versions.elements_after:
+        common_id = comparison.matched_ids.common_id("group", group_id)
+    element = versions.elements_before.get(("group", common_id)) or versions.elements_after.get(("group", common_id))
+    return (element.owner if element else None) or ""
+
+
+def _find_owner(change: Change, comparison: Comparison) -> str | None:
+    """Return who owned an element before the change, or owns it if it is new; None where the sentence says it anyway."""
+    if change.element_kind == "partner" or change.key == "owner":
+        return None
+    kind = "input" if change.element_kind == "connection" else change.element_kind
+    common_id = change.element_id
+    if change.kind == "removed":
+        common_id = comparison.matched_ids.common_id(kind, change.element_id)
+    versions = comparison.versions
+    element = versions.elements_before.get((kind, common_id)) or versions.elements_after.get((kind, common_id))
+    return element.owner if element else None

@@ -8,9 +8,14 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from archgen.compare import Change, Comparison, PartnerBreak
-from archgen.compare.agreements import AgreementJudge, AgreementTarget, find_partner_id, list_agreement_targets
-from archgen.compare.change_hashes import agreement_key
-from archgen.compare.sentence_words import tick_names
+from archgen.compare.agreements import (
+    AgreementJudge,
+    AgreementTarget,
+    agreement_key,
+    find_partner_id,
+    list_agreement_targets,
+)
+from archgen.compare.key_phrases import tick_names
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.suggestions import did_you_mean
@@ -21,7 +26,7 @@ from archgen.model.review_settings import (
     BreakPolicy,
     agreement_file,
 )
-from archgen.views.changes.partner_names import name_each, name_partners
+from archgen.views.changes.named_elements import name_each, name_partners
 from archgen.views.inline_text import count_noun
 
 _MAX_FILES = 4

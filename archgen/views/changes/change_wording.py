@@ -11,8 +11,8 @@ from archgen.compare import Change, Comparison
 from archgen.compare.edits import Edit, EditKind
 from archgen.compare.kinds import ELEMENT_KINDS, Effect, find_effect
 from archgen.frozen import dataclass
-from archgen.views.changes.owned_edits import find_group_owner, name_owner
-from archgen.views.changes.partner_names import name_each
+from archgen.views.changes.breaking_items import find_group_owner, name_owner
+from archgen.views.changes.named_elements import name_each
 from archgen.views.shapes import Inlines, Text
 
 CHANGE_SIGNS = {

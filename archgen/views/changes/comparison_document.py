@@ -12,8 +12,8 @@ from dataclasses import field
 
 from archgen.compare import Change, Comparison
 from archgen.compare.edits import Edit, list_edits
+from archgen.compare.element_sentences import is_read_by_others
 from archgen.compare.figure_noise import FigureNoise
-from archgen.compare.meaning_sentences import is_read_by_others
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.frozen import dataclass
 from archgen.views.changes import breaking_verdict
@@ -21,20 +21,24 @@ from archgen.views.changes.boundary_lines import write_boundary_lines
 from archgen.views.changes.breaking_items import (
     BreakingChange,
     describe_breaking_edit,
+    find_repeated_findings,
     is_shown_as_break,
+    name_owner,
     note_source,
 )
-from archgen.views.changes.chain_rows import ChainRow, make_chain_row
 from archgen.views.changes.change_wording import ChangeGroup, count_by_kind, group_changes, is_textual
-from archgen.views.changes.figure_lines import FigureLine, write_load_lines
-from archgen.views.changes.limit_lines import write_limit_lines, write_noise_line
-from archgen.views.changes.named_elements import name_elements
-from archgen.views.changes.owned_edits import name_owner
-from archgen.views.changes.partner_names import name_each, name_partners
+from archgen.views.changes.figure_lines import (
+    ChainRow,
+    FigureLine,
+    make_chain_row,
+    write_limit_lines,
+    write_load_lines,
+    write_noise_line,
+)
+from archgen.views.changes.named_elements import name_each, name_elements, name_partners
 from archgen.views.changes.reading_errors import ReadingErrors
-from archgen.views.changes.repeated_findings import find_repeated_findings
-from archgen.views.graph_shapes import Graph
 from archgen.views.inline_text import count_noun
+from archgen.views.picture_shapes import Graph
 
 BREAKING_HEADING = "Breaking changes"
 BOUNDARY_HEADING = "Between partners"

@@ -9,10 +9,9 @@ from archgen.compare.edits import Edit, EditKind
 from archgen.views import inline_text
 from archgen.views.changes import comparison_document
 from archgen.views.changes.breaking_items import BreakingChange
-from archgen.views.changes.chain_rows import ChainRow
 from archgen.views.changes.change_wording import CHANGE_SIGNS, choose_mark, text_runs
 from archgen.views.changes.comparison_document import ComparisonDocument, FindingGroup, NamedVersion
-from archgen.views.changes.figure_lines import FigureLine
+from archgen.views.changes.figure_lines import ChainRow, FigureLine
 from archgen.views.shapes import (
     Block,
     Bullets,

@@ -1,22 +1,132 @@
-"""Changed figures as sentences: of interfaces between partners, and the loads of hosts and links."""
+"""Changed figures as sentences (of interfaces between partners, of hosts and links) and as rows of the table of chains."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from fractions import Fraction
 
-from archgen.compare import Comparison
-from archgen.compare.comparison import ChangeKind
-from archgen.compare.figure_changes import ComparedFigure, FigureChange, FigureKey, LoadChange, TravelPath, WireNames
+from archgen.compare import ChainChange, Comparison
+from archgen.compare.asked_limits import describe_growth, describe_limit
+from archgen.compare.comparison import (
+    ChangeKind,
+    ComparedFigure,
+    FigureChange,
+    FigureKey,
+    LimitChange,
+    LoadChange,
+    TravelPath,
+    WireNames,
+)
 from archgen.compare.figure_noise import FigureNoise
-from archgen.compare.sentence_words import tick_names
+from archgen.compare.key_phrases import name_key, tick_names
 from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.rule_options import format_percentage
 from archgen.frozen import dataclass, replace
 from archgen.model.node import Qos
-from archgen.timing.figures.figure_wording import round_compared
+from archgen.timing.analysis import ChainResult
+from archgen.timing.figures.figure_wording import format_compared, format_duration, name_unknown_reason, round_compared
 from archgen.timing.figures.timing_values import TimingValue
-from archgen.views.changes.partner_names import name_each
-from archgen.views.inline_text import list_qos_settings
+from archgen.views.changes.named_elements import name_each
+from archgen.views.inline_text import count_noun, list_qos_settings
 from archgen.views.timing import value_format
+
+_MAX_CAUSES = 3
+MINUS_SIGN = "\u2212"
+
+
+@dataclass(frozen=True, slots=True)
+class ChainRow:
+    """A chain whose bound or deadline changed. `growth`, `deadline` and `verdict` are empty where there is none."""
+
+    id: str
+    before: str
+    after: str
+    growth: str
+    """Signed: `+40 ms`, or with a true minus."""
+    deadline: str
+    verdict: str
+    reason: str
+    """What made the bound another: elements, with what changed of them; names in backticks."""
+
+
+def make_chain_row(chain_change: ChainChange, *, is_only_edit: bool = False) -> ChainRow:
+    """Return the row of a chain. Where there is only one edit, nobody asks for the reason."""
+    before, after = _format_bounds(chain_change)
+    return ChainRow(
+        chain_change.id,
+        before,
+        after,
+        _format_growth(chain_change),
+        _format_deadline(chain_change),
+        _format_verdict(chain_change),
+        "" if is_only_edit else _format_causes(chain_change),
+    )
+
+
+def _format_causes(chain_change: ChainChange) -> str:
+    """Name the elements behind another bound, each with what changed of it; the sentences stand with the changes."""
+    keys_by_element: dict[str, list[str]] = {}
+    for change in chain_change.causes:
+        if (change.element_kind, change.element_id) == ("chain", chain_change.id):
+            return "where it leads now"  # nothing else is looked for then
+        words = name_key(change.element_kind, change.key) if change.key else change.kind
+        keys_by_element.setdefault(change.element_id, []).append(words)
+    phrases = [f"`{name}` ({join_words(list(dict.fromkeys(words)))})" for name, words in keys_by_element.items()]
+    surplus = len(phrases) - _MAX_CAUSES
+    return join_words([*phrases[:_MAX_CAUSES], *([f"{surplus} more"] if surplus > 0 else [])])
+
+
+def _format_bounds(chain_change: ChainChange) -> Iterator[str]:
+    """Yield how long a chain takes at most, before and after."""
+    results = chain_change.before, chain_change.after
+    values = [each.bound.value for each in results if each and each.bound.value is not None]
+    deadline = chain_change.deadline.value if chain_change.deadline else None
+    texts = iter(format_compared(values, format_duration, limit=deadline))
+    for result in results:
+        if result is None:
+            yield "not there"
+        elif result.bound.value is None:
+            yield name_unknown_reason(result.bound)
+        else:
+            yield ("" if result.bound.complete else "at least ") + next(texts)
+
+
+def _format_growth(chain_change: ChainChange) -> str:
+    """Format by how much a bound grew or shrank; empty if that is unknown or nothing."""
+    # The difference to an "at least" is no difference.
+    old_bound, new_bound = (
+        chain_result.bound.value if chain_result and chain_result.bound.complete else None
+        for chain_result in (chain_change.before, chain_change.after)
+    )
+    if old_bound is None or new_bound is None or old_bound == new_bound:
+        return ""
+    return f"{'+' if new_bound > old_bound else MINUS_SIGN}{format_compared([abs(new_bound - old_bound)], format_duration)[0]}"
+
+
+def _format_deadline(chain_change: ChainChange) -> str:
+    """Format the deadline of the second version; if it changed, with the old one."""
+    old_deadline, new_deadline = (
+        _format_result_deadline(chain_result) for chain_result in (chain_change.before, chain_change.after)
+    )
+    if chain_change.before and chain_change.after and old_deadline != new_deadline:
+        return f"{old_deadline or 'none'} → {new_deadline or 'none'}"
+    return new_deadline or old_deadline
+
+
+def _format_result_deadline(result: ChainResult | None) -> str:
+    return format_duration(result.deadline.value) if result and result.deadline and result.deadline.value else ""
+
+
+def _format_verdict(chain_change: ChainChange) -> str:
+    """Format whether the deadline is met, and whether it was before if that differs."""
+    old_verdict, new_verdict = (
+        chain_result.verdict if chain_result and chain_result.deadline and chain_result.deadline.value else ""
+        for chain_result in (chain_change.before, chain_change.after)
+    )
+    if not new_verdict:
+        return ""
+    return f"{new_verdict} (was {old_verdict})" if old_verdict and old_verdict != new_verdict else new_verdict
+
 
 _FIGURE_WORDS: Mapping[str, Callable[[TimingValue], str]] = {
     "rate": value_format.display_rate,
@@ -102,3 +212,47 @@ def _describe_load(change: LoadChange, partner_names: Mapping[str, str]) -> str:
 def join_partners(partners: Iterable[str], partner_names: Mapping[str, str]) -> str:
     """Return partners by what people call them, joined for a sentence."""
     return join_words(name_each(partners, partner_names))
+
+
+_WORDS = {
+    ("kept", "unknown"): "{} is no longer shown to be kept",
+    ("broken", "kept"): "{} is kept again",
+    ("unknown", "kept"): "{} is shown to be kept now",
+    ("broken", "unknown"): "{} was broken, and nobody knows it any more",
+    ("broken", "broken"): "{} is broken by more than before",
+}
+"""What is told of the states before and after. What is broken newly is a finding, and mostly a break."""
+
+
+def write_limit_lines(comparison: Comparison) -> Iterator[FigureLine]:
+    """Yield a line for each promise and each freshness that is kept otherwise than before, where no break says so."""
+    told = {each.fallen for change in comparison.changes for each in change.breaks}
+    noise = comparison.after.architecture.review.noise
+    for limit in comparison.limits:
+        words = _WORDS.get((limit.old_state, limit.new_state))
+        is_silent = limit.new_state == "broken" and not _is_worse(limit, noise)
+        if words and not is_silent and (limit.port, limit.key) not in told:
+            lead = "warning: " if limit.has_fallen else ""
+            yield FigureLine("changed", f"{lead}{words.format(describe_limit(limit))} ({describe_growth(limit)})")
+
+
+def _is_worse(limit: LimitChange, noise: Fraction) -> bool:
+    old_value, new_value = limit.before.value, limit.after.value
+    if old_value is None or new_value is None:
+        return new_value is None and old_value is not None
+    return new_value < old_value * (1 - noise) if limit.key == "rate" else new_value > old_value * (1 + noise)
+
+
+def write_noise_line(noise: FigureNoise) -> Iterator[FigureLine]:
+    """Yield one line for all figures that moved too little to be told one by one: how many, and the largest."""
+    moves = list(noise.list_moves())
+    if moves:
+        largest = max(moves, key=lambda move: move.share)
+        which = f"{largest.figure} of {tick_names([largest.element])}"
+        share = format_percentage(max(Fraction(round(largest.share * 1000), 1000), Fraction(1, 1000)))
+        threshold = format_percentage(noise.threshold)
+        yield FigureLine(
+            "changed",
+            f"{count_noun(len(moves), 'figure')} moved by less than {threshold} and changed no verdict"
+            f"{'; the most' if len(moves) > 1 else ''}: {which}, by {share}",
+        )

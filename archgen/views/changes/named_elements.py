@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from archgen.compare import Comparison
+from archgen.compare.key_phrases import name_partner
 from archgen.diagnostics.source_span import Span
 from archgen.model.architecture import Architecture
 from archgen.model.component import Input, Output
@@ -37,3 +38,13 @@ def list_element_addresses(
 def _list_spans(architecture: Architecture) -> Iterator[tuple[str, Span]]:
     for elements in (architecture.groups, architecture.components, architecture.inputs, architecture.outputs):
         yield from ((element.id, element.at) for element in elements.values())
+
+
+def name_each(partners: Iterable[str], partner_names: Mapping[str, str]) -> tuple[str, ...]:
+    """Return what people call partners."""
+    return tuple(name_partner(partner, partner_names) for partner in partners)
+
+
+def name_partners(comparison: Comparison) -> Mapping[str, str]:
+    """Return the name of each partner of either version, by id."""
+    return comparison.versions.partner_names

@@ -10,13 +10,12 @@ from functools import cached_property
 from typing import Literal, get_args
 
 from archgen.compare import Change, Comparison
-from archgen.compare.text_differences import find_differences
+from archgen.compare.text_meaning import find_differences
 from archgen.views import inline_text
 from archgen.views.changes.change_wording import CHANGE_SIGNS, choose_mark, text_runs
 from archgen.views.changes.comparison_document import ComparisonDocument
 from archgen.views.changes.comparison_outline import write_comparison_outline
-from archgen.views.chart_shapes import Drawing
-from archgen.views.graph_shapes import Box, ElementChange, Graph
+from archgen.views.picture_shapes import Box, Drawing, ElementChange, Graph
 from archgen.views.shapes import Block, Bullets, Column, Facts, Inlines, Page, Section, Table, Text, split_anchor
 
 CHANGES_ANCHOR = "page:changes"

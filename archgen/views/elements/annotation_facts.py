@@ -1,10 +1,12 @@
-"""What elements of any kind may say beside their own keys, in documents and on cards: properties, hints, files, pictures."""
+"""What elements of any kind may say beside their own keys, in documents and on cards, and what a card consists of."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from urllib.parse import quote
 
+from archgen.diagnostics.source_span import Span
 from archgen.model.annotated_elements import Annotated
 from archgen.model.component import Component, ComponentType
 from archgen.model.element_annotations import read_figure
@@ -13,6 +15,42 @@ from archgen.model.path_resolver import title_from_id
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Inlines, Markdown, Text
+
+
+@dataclass(frozen=True, slots=True)
+class ElementCard:
+    """Kind, id and title of an element, where it is defined, its facts, and lists below subheadings."""
+
+    kind: str
+    id: str
+    title: str
+    span: Span
+    facts: tuple[tuple[str, str], ...]
+    lists: tuple[tuple[str, tuple[str, ...]], ...] = ()
+
+
+def known_facts(facts: list[tuple[str, str]]) -> tuple[tuple[str, str], ...]:
+    """Drop facts without a value."""
+    return tuple((name, value) for name, value in facts if value)
+
+
+def format_fact(value: object) -> str:
+    """Format a field's value on one line."""
+    if value is None:
+        return ""
+    return ", ".join(map(str, value)) if isinstance(value, tuple) else " ".join(str(value).split())
+
+
+def drop_empty_lists(*lists: tuple[str, tuple[str, ...]]) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Yield the lists that hold something: of most elements these say nothing, and that is no news."""
+    return (each for each in lists if each[1])
+
+
+def list_finding_lines(lookup: Lookup, element_id: str) -> Iterator[str]:
+    """Format the findings about an element."""
+    for finding in lookup.findings_of.get(element_id, ()):
+        yield f"{finding.severity}[{finding.rule}]: {finding.message}"
+
 
 _MAX_HINT = 300
 """Letters of the hints for one program that are shown; the files have all of them."""

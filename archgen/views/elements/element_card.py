@@ -7,17 +7,18 @@ from dataclasses import replace
 from typing import Any
 
 from archgen.model.made_elements import find_made_element
-from archgen.views.elements.annotation_facts import list_annotation_lines
-from archgen.views.elements.card_parts import ElementCard, format_fact, known_facts
-from archgen.views.elements.component_cards import (
+from archgen.views.elements.annotation_facts import ElementCard, format_fact, known_facts, list_annotation_lines
+from archgen.views.elements.element_names import elements_by_kind
+from archgen.views.elements.level_cards import (
+    make_channel_card,
     make_component_card,
     make_component_type_card,
     make_composed_card,
     make_group_card,
+    make_node_card,
     make_port_card,
+    make_topic_card,
 )
-from archgen.views.elements.element_names import elements_by_kind
-from archgen.views.elements.node_cards import make_channel_card, make_node_card, make_topic_card
 from archgen.views.elements.plain_cards import make_generic_card, make_use_case_card
 from archgen.views.lookup import Lookup
 

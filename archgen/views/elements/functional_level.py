@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from archgen.model.component import Component, Group
 from archgen.model.component_nesting import list_surrounding
-from archgen.views import inline_marks, inline_text, timing_words
+from archgen.views import inline_text, timing_words
 from archgen.views.element_references import place_run
 from archgen.views.elements import port_tables
 from archgen.views.elements.annotation_facts import list_annotation_facts, list_contact_facts, make_image_blocks
@@ -133,7 +133,7 @@ def first_sentence(markdown: str | None) -> str | None:
 def describe_purpose(markdown: str | None) -> Inlines:
     """Return the first sentence of a Markdown text, its marked words in italics, in bold or as code."""
     sentence = first_sentence(markdown)
-    return inline_marks.read_marks(sentence) if sentence else inline_text.UNKNOWN_INLINES
+    return inline_text.read_marks(sentence) if sentence else inline_text.UNKNOWN_INLINES
 
 
 def make_component_blocks(lookup: Lookup, component: Component, without: Collection[str] = ()) -> tuple[Block, ...]:
@@ -261,3 +261,32 @@ def _accuracy_cell(accuracy: str | None) -> Inlines:
     if accuracy is None or percentage is None:
         return inline_text.value_or_unknown(accuracy)
     return (Text(accuracy, sort_number=str(Fraction(percentage[1]) / 100)),)
+
+
+def make_composed_blocks(lookup: Lookup, shell: Component, without: Collection[str] = ()) -> tuple[Block, ...]:
+    """Describe a composed component: facts without those of some keys, what it does, its picture, its ports, and the
+    components directly inside.
+    """
+    blocks: list[Block] = [
+        show_facts(list_component_facts(lookup, shell), without),
+        make_functionality_block(shell),
+        *make_image_blocks(lookup, shell),
+    ]
+    blocks += [Markdown(shell.description)] if shell.description else []
+    blocks.append(
+        Figure(
+            f"figure:composed/{shell.id}",
+            f"composed/{shell.id}",
+            f"{shell.title}: what is inside",
+            f"{shell.title} as a frame with its ports at the rim and its components inside.",
+        )
+    )
+    blocks += make_requirement_blocks(lookup, shell) if shell.requirements else []
+    blocks += make_performance_blocks(shell) if shell.performance else []
+    blocks += port_tables.make_port_blocks(lookup, shell)
+    blocks += make_parameter_blocks(shell)
+    children = lookup.shown_children(shell)
+    if children:
+        caption = f"Components of {shell.title}"
+        blocks.append(make_component_table(lookup, f"table:components/{shell.id}", caption, children))
+    return tuple(blocks)

@@ -154,7 +154,7 @@ def _endpoint_table(node: Node, endpoints: tuple[Endpoint, ...]) -> Table:
     rows = tuple(
         (
             inline_text.to_inlines(_USE_LABELS[endpoint.use]),
-            (*inline_text.name_carrier(endpoint), *_internal_mark(endpoint)),
+            (*inline_text.name_carrier(endpoint), *((Text(" internal", muted=True),) if endpoint.internal else ())),
             _name_content(endpoint),
             inline_text.to_inlines(Text(endpoint.port.rsplit(".", 1)[-1], code=True)) if endpoint.port else (),
             _qos_content(endpoint) if endpoint.flow == "topic" and endpoint.medium == ROS else (),
@@ -176,7 +176,3 @@ def _name_content(endpoint: Endpoint) -> Inlines:
     if endpoint.medium != ROS and endpoint.type:
         return inline_text.type_link(endpoint.type)
     return (element_references.message_link(endpoint.message),) if endpoint.message else inline_text.UNKNOWN_INLINES
-
-
-def _internal_mark(endpoint: Endpoint) -> Inlines:
-    return (Text(" internal", muted=True),) if endpoint.internal else ()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 from archgen.compare.kinds import PLAIN_KINDS
 from archgen.language.language_tables import KEYS
@@ -11,9 +11,10 @@ from archgen.model.component import Component, Group
 from archgen.model.deployment import Container
 from archgen.model.node import Node
 from archgen.model.parameter import format_parameter
-from archgen.views import timing_words
+from archgen.model.requirement import Requirement, Verification
+from archgen.views import requirement_servers, timing_words
 from archgen.views.elements import promise_words
-from archgen.views.elements.card_parts import (
+from archgen.views.elements.annotation_facts import (
     ElementCard,
     drop_empty_lists,
     format_fact,
@@ -22,11 +23,10 @@ from archgen.views.elements.card_parts import (
 )
 from archgen.views.elements.element_names import elements_by_kind
 from archgen.views.elements.frame_users import list_frame_users
-from archgen.views.elements.requirement_facts import list_requirement_facts, list_requirement_parts
 from archgen.views.elements.type_fields import list_field_lines
 from archgen.views.lookup import Lookup
 from archgen.views.requirement_servers import describe_chain_state
-from archgen.views.sequences.step_words import describe_total, list_step_lines
+from archgen.views.sequences.sequence_charts import describe_total, list_step_lines
 
 _CARD_KEYS = (
     "message",
@@ -93,8 +93,8 @@ def make_generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard
         lists.append(("produced by", tuple(output.id for output in lookup.outputs_of_type.get(element_id, ()))))
     elif kind == "requirement":
         requirement = architecture.requirements[element_id]
-        facts += list_requirement_facts(lookup, requirement)
-        lists += list_requirement_parts(lookup, requirement)
+        facts += _list_requirement_facts(lookup, requirement)
+        lists += _list_requirement_parts(lookup, requirement)
     elif kind == "partner":
         facts += [("contact", element.contact or ""), ("reviewers", ", ".join(element.reviewers))]
         ownable_elements = (
@@ -146,3 +146,37 @@ def _list_process_facts(container: Container) -> list[tuple[str, str]]:
 def _owned_elements(elements: Iterable[Group | Component | Node], partner_id: str) -> tuple[str, ...]:
     """Return the ids of the elements that a partner owns, alone or with others."""
     return tuple(item.id for item in elements if partner_id in item.owners)
+
+
+def _list_requirement_facts(lookup: Lookup, requirement: Requirement) -> Iterator[tuple[str, str]]:
+    """Yield the facts of a requirement by their keys; empty where nothing is known."""
+    yield "state", lookup.requirement_trace.judge(requirement.id)
+    yield "parent", ", ".join(requirement.parents)
+    for key in ("kind", "priority", "rationale", "source"):
+        yield key, " ".join((getattr(requirement, key) or "").split())
+    yield "tags", ", ".join(requirement.tags)
+
+
+def _list_requirement_parts(lookup: Lookup, requirement: Requirement) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Yield the lists below a requirement's card: its parts, what serves it, what verifies it."""
+    parts = lookup.requirement_trace.parts.get(requirement.id, ())
+    if parts:
+        yield "parts", tuple(_name_part(lookup, part) for part in parts)
+    yield "served by", tuple(requirement_servers.list_server_words(lookup, requirement))
+    verifiers = [_name_verification(lookup, each) for each in requirement.verified_by]
+    verifiers += filter(None, [requirement_servers.describe_part_verification(lookup, requirement)])
+    if verifiers or lookup.requirement_trace.is_verification_told:
+        yield "verified by", tuple(verifiers)
+
+
+def _name_part(lookup: Lookup, part_id: str) -> str:
+    part = lookup.architecture.requirements[part_id]
+    title = "" if part.title == part.id else f" {part.title}"
+    return f"{part.id}{title} ({lookup.requirement_trace.judge(part_id)})"
+
+
+def _name_verification(lookup: Lookup, verification: Verification) -> str:
+    chain = lookup.architecture.chains.get(verification.text) if verification.kind == "chain" else None
+    if chain:
+        return f"the chain {requirement_servers.name_chain(lookup, chain)}"
+    return f"the use case {verification.text}" if verification.kind == "use_case" else verification.text

@@ -11,7 +11,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Input, Output
 from archgen.model.component_nesting import find_component
 from archgen.model.port_media import label_of_medium
-from archgen.views import inline_marks, inline_text
+from archgen.views import inline_text
 from archgen.views.elements import promise_words
 from archgen.views.elements.annotation_facts import list_annotation_facts
 from archgen.views.lookup import Lookup
@@ -193,7 +193,7 @@ def _remarks_cell(lookup: Lookup, port: Input | Output) -> Inlines:
         inline_text.to_inlines(fresh),
         frame,
         *words,
-        inline_marks.read_marks(port.description or ""),
+        inline_text.read_marks(port.description or ""),
         inline_text.link_urls(port.urls.items(), lookup.repository),
         *(facts for _, facts in list_annotation_facts(lookup, port)),
     ]

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 from archgen.model.component import Component, Group
+from archgen.model.component_nesting import list_surrounding
 from archgen.model.deployment import Host
 from archgen.model.node import Node
 from archgen.timing.analysis import EventPace
 from archgen.views.explorer import element_keys, map_flows
-from archgen.views.explorer.composed_rows import make_composed_rows
-from archgen.views.explorer.map_places import NO_HOME, MapPlaces, find_places
-from archgen.views.explorer.map_shapes import ExplorerMap, Row
-from archgen.views.explorer.row_values import (
+from archgen.views.explorer.column_layout import NO_HOME, MapPlaces, Path, Place, find_places
+from archgen.views.explorer.element_keys import Key, list_composed_keys
+from archgen.views.explorer.map_shapes import (
+    ExplorerMap,
+    Row,
     describe_paces,
     find_shortest_step,
     list_passed_leaves,
@@ -22,12 +24,47 @@ from archgen.views.explorer.row_values import (
     list_places,
     shorten_description,
 )
-from archgen.views.graphs.element_boxes import join_owner_titles, worst_severity
+from archgen.views.graphs.element_boxes import join_owner_titles, type_lines, worst_severity
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.search.search_entry import join_entry_parts
 from archgen.views.tables.statistics_tables import PROGRESS_STEPS
-from archgen.views.timing import chain_status, rate_phrases
+from archgen.views.timing import chain_status, value_format
+
+
+def make_composed_rows(
+    lookup: Lookup,
+    shells: Sequence[Component],
+    component_numbers: Mapping[str, int],
+    key_numbers: Mapping[Key, int],
+    places: Mapping[Path, Place],
+) -> tuple[Row, ...]:
+    """Make the rows of composed components; the look-ups are the positions of components and keys in their tables."""
+    architecture = lookup.architecture
+    shell_numbers = {shell.id: number for number, shell in enumerate(shells)}
+    group_numbers = {group: number for number, group in enumerate(lookup.shown_groups())}
+    leaves: dict[str, list[int]] = {shell.id: [] for shell in shells}
+    for component_id, number in component_numbers.items() if shells else ():
+        around = list_path(architecture, architecture.components[component_id])[-2]
+        if around in leaves:
+            leaves[around].append(number)
+    return tuple(
+        (
+            f"component:{shell.id}",
+            shell.id,
+            shell.title,
+            group_numbers[shell.group],
+            shell_numbers.get(shell.parent or "", -1),
+            tuple(leaves[shell.id]),
+            "".join(type_lines(lookup, shell)),
+            shorten_description(shell.functionality, shell.description),
+            tuple(key_numbers[key] for key in list_composed_keys(architecture, shell)),
+            worst_severity(lookup, shell.id) or "",
+            places[shell.group, *list_surrounding(architecture, shell.id), shell.id],
+            list_places(lookup, shell.at),
+        )
+        for shell in shells
+    )
 
 
 def make_explorer_map(lookup: Lookup) -> ExplorerMap:
@@ -152,7 +189,7 @@ class _MapMaker:
             if name in architecture.requirements:
                 yield ("requirement", name, f"{name} {architecture.requirements[name].title}")
         yield from self._list_property_names()
-        yield from (("period", step, words) for step, words in rate_phrases.PERIOD_STEP_WORDS.items())
+        yield from (("period", step, words) for step, words in value_format.PERIOD_STEP_WORDS.items())
         yield from (("progress", str(number), step) for number, step in enumerate(PROGRESS_STEPS))
 
     def _list_property_names(self) -> Iterator[Row]:

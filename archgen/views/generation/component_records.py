@@ -15,7 +15,7 @@ from archgen.model.parameter_values import canonical_name, find_effective_parame
 from archgen.model.port_media import word_of_medium
 from archgen.model.ros_distro import is_ros_1
 from archgen.views.generation.generation_context import GeneratedView, GenerationContext, write_place
-from archgen.views.records.record_values import to_plain
+from archgen.views.records.record_sources import to_plain
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,3 +178,18 @@ def list_parameter_tags(parameter: SetParameter, backend: str) -> list[str]:
     *sets, name = parameter.path
     hints = parameter.declaration.hints if parameter.declaration else {}
     return [*map(make_camel_name, sets), name_tag(hints, backend, name)]
+
+
+def find_type_words(architecture: Architecture, component: Component) -> str | None:
+    """Return the component type that a component is made from, in words; of what stands inside of an instance the type with
+    the names behind it. None for a component without a type.
+    """
+    parts: list[str] = []
+    around: Component | None = component
+    while around is not None:
+        if around.component_type is not None:
+            type_name = around.type_name if not around.component_type.endswith(">") else around.component_type
+            return " ".join([type_name.replace("<", " of "), *reversed(parts)])
+        parts.append(around.name)
+        around = architecture.shells.get(around.parent or "")
+    return None

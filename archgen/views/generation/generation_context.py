@@ -9,6 +9,7 @@ from dataclasses import field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from archgen.bringup.plan_shapes import StartPlan
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import dataclass
@@ -16,11 +17,11 @@ from archgen.model.architecture import Architecture
 from archgen.model.node import Node
 from archgen.model.ros_distro import is_ros_1
 
-_PLAIN_SELECTOR = re.compile(r"[a-z0-9_]{1,80}(?:[.:][a-z0-9_]{1,80}){0,3}\Z")
-_DIGEST_LENGTH = 8
-
 if TYPE_CHECKING:
     from archgen.views.pages.report_outline import DetailLevel
+
+_PLAIN_SELECTOR = re.compile(r"[a-z0-9_]{1,80}(?:[.:][a-z0-9_]{1,80}){0,3}\Z")
+_DIGEST_LENGTH = 8
 
 NOT_GENERATED = Rule(
     "not-generated",
@@ -123,3 +124,18 @@ def write_place(span: Span) -> str:
 def tell_left_out(message: str, span: Span, *, element: str | None = None, help_line: str | None = None) -> Diagnostic:
     """Report what a generator leaves out, and what to do about it."""
     return Diagnostic(NOT_GENERATED.name, message, span, NOT_GENERATED.severity, help=help_line, element=element)
+
+
+def find_wanted_steps(plan: StartPlan, context: GenerationContext) -> frozenset[str]:
+    """Return the steps of the wanted nodes, and those of the containers that load them."""
+    nodes = context.wanted_nodes
+    loading_containers = {node.container for node in nodes.values()}
+    return frozenset(
+        step.id
+        for step in plan.steps
+        if (
+            step.container in loading_containers or (context.components is None and context.host in {None, step.host})
+            if step.kind == "container"
+            else step.id in nodes
+        )
+    )

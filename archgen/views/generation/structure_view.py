@@ -10,8 +10,7 @@ from archgen.model.component import Component, Input, Output
 from archgen.model.node import Endpoint, Node
 from archgen.model.port_media import word_of_medium
 from archgen.views.generation.generation_context import GeneratedView, GenerationContext, write_place
-from archgen.views.generation.program_parameters import record_parameters
-from archgen.views.generation.program_ports import record_ports
+from archgen.views.generation.program_parts import record_parameters, record_ports
 
 
 def make_view(context: GenerationContext) -> GeneratedView:

@@ -23,19 +23,17 @@ from collections.abc import Collection, Iterable, Iterator
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.model.architecture import Architecture
 from archgen.model.selector_evaluation import Selection, SelectorEvaluator
-from archgen.views.graph_shapes import Graph
 from archgen.views.graphs import selection_graphs, timing_graphs
 from archgen.views.graphs.component_graph import draw_component
 from archgen.views.graphs.composed_graph import draw_composed
 from archgen.views.graphs.frame_graph import draw_frames
 from archgen.views.graphs.graph_folding import fold_graph
-from archgen.views.graphs.group_graph import draw_group
+from archgen.views.graphs.group_graphs import draw_components, draw_group, draw_overview
 from archgen.views.graphs.host_graph import draw_hosts
-from archgen.views.graphs.implementation_graph import draw_implementation
-from archgen.views.graphs.overview_graphs import draw_components, draw_overview
-from archgen.views.graphs.ros_graph import draw_ros_graph
+from archgen.views.graphs.implementation_graph import draw_implementation, draw_ros_graph
 from archgen.views.graphs.start_graph import draw_start
 from archgen.views.lookup import Lookup, make_lookup
+from archgen.views.picture_shapes import Graph
 from archgen.views.timing.timing_lookup import TimingLookup
 
 __all__ = [

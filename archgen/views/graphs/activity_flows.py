@@ -7,11 +7,11 @@ from typing import Literal
 
 from archgen.frozen import dataclass
 from archgen.timing.system.timing_system import Activity, Arc
-from archgen.views.graph_shapes import Box
-from archgen.views.graphs.ros_graph import find_home_frame
+from archgen.views.graphs.implementation_graph import find_home_frame
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
-from archgen.views.timing import rate_phrases, value_format
+from archgen.views.picture_shapes import Box
+from archgen.views.timing import value_format
 from archgen.views.timing.timing_lookup import TimingLookup
 
 _BOUNDS_NOTE = "<= at most, >= at least: a bound, where no exact figure follows from what is written."
@@ -59,7 +59,7 @@ def make_activity_box(timed: TimingLookup, activity: Activity) -> Box:
     """Draw an activity as a box: its rate as text, its period as fill, reasons as tooltip."""
     pace = timed.analysis.paces.get(activity.id)
     response = timed.analysis.responses.get(activity.id)
-    tooltip = [activity.id, rate_phrases.format_rate_words(pace)]
+    tooltip = [activity.id, value_format.format_rate_words(pace)]
     tooltip += [f"longest gap {value_format.display_duration(pace.gap)}"] if pace and pace.gap.value is not None else []
     tooltip += (
         [f"responds within {value_format.display_duration(response.worst)}"]
@@ -70,10 +70,10 @@ def make_activity_box(timed: TimingLookup, activity: Activity) -> Box:
     return Box(
         activity.id,
         activity.id,
-        rate_phrases.format_box_lines(pace),
+        value_format.format_box_lines(pace),
         ref=f"node:{activity.node}",
         tooltip="\n".join(tooltip),
-        fill=rate_phrases.find_period_step(pace),
+        fill=value_format.find_period_step(pace),
     )
 
 
@@ -104,8 +104,8 @@ def note_bounds(timed: TimingLookup, activity_ids: Iterable[str]) -> tuple[str, 
 
 def describe_periods(timed: TimingLookup, activity_ids: Sequence[str], subject: str) -> str:
     """Describe how many activities have which period."""
-    steps = [rate_phrases.find_period_step(timed.analysis.paces.get(name)) for name in activity_ids]
-    counts = [(name, steps.count(step)) for step, name in rate_phrases.PERIOD_STEP_WORDS.items() if step in steps]
+    steps = [value_format.find_period_step(timed.analysis.paces.get(name)) for name in activity_ids]
+    counts = [(name, steps.count(step)) for step, name in value_format.PERIOD_STEP_WORDS.items() if step in steps]
     period_words = ", ".join(f"{count} {name}" for name, count in counts)
     return (
         f"{subject}: {count_noun(len(activity_ids), 'activity')} by period: {period_words}."

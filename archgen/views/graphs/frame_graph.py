@@ -6,13 +6,13 @@ from collections.abc import Iterable
 
 from archgen.model.coordinate_frames import Frame, index_child_frames
 from archgen.views.elements.frame_users import name_writer
-from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs import element_boxes
 from archgen.views.graphs.element_boxes import BadgeSeverity
 from archgen.views.graphs.graph_folding import MAX_BOXES
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
+from archgen.views.picture_shapes import Arrow, Box, Graph
 
 
 def draw_frames(lookup: Lookup) -> Graph:

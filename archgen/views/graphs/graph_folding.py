@@ -16,9 +16,9 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun
+from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph
 
 MAX_BOXES = 70
 MAX_ARROWS = 160
@@ -42,7 +42,7 @@ def fold_graph(graph: Graph, max_arrows: int = MAX_ARROWS) -> Graph:
             folded = _fold_clusters(graph, cluster_ids, max_arrows)
             if _fits_budget(folded, max_arrows):
                 return folded
-    if graph.kind in WHOLE_KINDS and _needs_thinning(folded, max_arrows):
+    if graph.kind in WHOLE_KINDS and (len(folded.boxes) > MAX_DRAWN_BOXES or len(folded.arrows) > max_arrows):
         return thin_graph(folded, max_arrows)
     note = f"This picture is larger than {MAX_BOXES} boxes and {max_arrows} arrows: select a part to see it well."
     return replace(folded, notes=(*folded.notes, note))
@@ -50,10 +50,6 @@ def fold_graph(graph: Graph, max_arrows: int = MAX_ARROWS) -> Graph:
 
 def _fits_budget(graph: Graph, max_arrows: int) -> bool:
     return len(graph.boxes) <= MAX_BOXES and len(graph.arrows) <= max_arrows
-
-
-def _needs_thinning(graph: Graph, max_arrows: int) -> bool:
-    return len(graph.boxes) > MAX_DRAWN_BOXES or len(graph.arrows) > max_arrows
 
 
 def _fold_clusters(graph: Graph, cluster_ids: set[str], max_arrows: int) -> Graph:

@@ -1,22 +1,19 @@
-"""Draw one component at the implementation level: its nodes in the middle, topics as boxes between them and others.
-
-Publishers and clients are at the left, subscribers and servers at the right. The topic's box replaces a label at the
-arrow: it never overlaps another, and it is a link. Where a component takes all topics of a neighbour, one box with an
-asterisk stands for them.
-"""
+"""Draw the implementation level: the nodes of one component with topics as boxes between them, and the whole ROS graph."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Sequence
 
 from archgen.frozen import dataclass, replace
-from archgen.model.node import Endpoint, Topic
+from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.port_media import ROS, key_of_carrier, label_of_medium
-from archgen.views.graph_shapes import Arrow, Box, Graph
-from archgen.views.graphs import node_boxes
+from archgen.views.graphs import element_boxes
+from archgen.views.graphs.element_boxes import NodeFlow
+from archgen.views.graphs.graph_folding import fold_graph
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
+from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph
 
 _MIN_STARRED = 3
 """From this many topics on, if all are taken, an asterisk stands for them."""
@@ -49,7 +46,7 @@ def draw_implementation(lookup: Lookup, component_id: str) -> Graph:
         end.node: _neighbour_box(lookup, end.node) for end in drawn_arrows if end.node not in subject_ids
     }
     subject_boxes = tuple(
-        node_boxes.node_box(lookup, lookup.architecture.nodes[each], is_subject=True) for each in sorted(subject_ids)
+        element_boxes.node_box(lookup, lookup.architecture.nodes[each], is_subject=True) for each in sorted(subject_ids)
     )
     graph = Graph(
         f"implementation/{component_id}",
@@ -133,7 +130,7 @@ def _draw_topics(
         topic = carriers[name]
         if name not in star_of_topic:
             own_endpoints = [each for each in (*topic.writers, *topic.readers) if each.node in subject_ids]
-            yield replace(node_boxes.topic_box(topic, own_endpoints), id=f"topic {name}")
+            yield replace(element_boxes.topic_box(topic, own_endpoints), id=f"topic {name}")
     for star in dict.fromkeys(star_of_topic.values()):
         names = [name for name, stands in star_of_topic.items() if stands == star]
         shown_lines = (
@@ -152,7 +149,7 @@ def _draw_topics(
 
 
 def _neighbour_box(lookup: Lookup, name: str) -> Box:
-    return node_boxes.neighbour_node_box(
+    return element_boxes.neighbour_node_box(
         lookup, lookup.architecture.nodes[name[1:]], "left" if name[0] == "<" else "right"
     )
 
@@ -176,4 +173,78 @@ def _describe_implementation(title: str, subjects: list[str], topics: list[str])
     return (
         f"{sentence} It uses {count_noun(len(topics), 'topic, service or action')[2:] if len(topics) == 1 else len(topics)}"
         + (f": {', '.join(topics)}." if topics else " topics.")
+    )
+
+
+def draw_ros_graph(lookup: Lookup) -> Graph:
+    """Draw all nodes."""
+    title = f"{lookup.architecture.project.title}: nodes"
+    return draw_nodes(lookup, "ros", title, set(lookup.architecture.nodes))
+
+
+def draw_nodes(lookup: Lookup, graph_id: str, title: str, node_ids: Collection[str]) -> Graph:
+    """Draw some nodes and all that runs among them."""
+    chosen_nodes = [node for node in lookup.architecture.nodes.values() if node.id in node_ids]
+    home_frames = {node.id: find_home_frame(lookup, node) for node in chosen_nodes}
+    node_flows = [
+        each
+        for each in element_boxes.list_node_flows(lookup.architecture)
+        if each.tail in home_frames and each.head in home_frames
+    ]
+    frames = tuple(draw_home_frame(lookup, each) for each in dict.fromkeys(home_frames.values()))
+    arrows = _merge_node_flows(lookup, node_flows, home_frames)
+    graph = Graph(
+        graph_id,
+        title,
+        "two-step",
+        tuple(replace(element_boxes.node_box(lookup, node), cluster=home_frames[node.id]) for node in chosen_nodes),
+        arrows,
+        frames,
+        direction=lookup.architecture.layout.direction,
+        alt=f"{count_noun(len(chosen_nodes), 'node')} in {count_noun(len(frames), 'frame')}; "
+        f"{count_noun(len(node_flows), 'flow')} over topics, services and actions among them.",
+        asked=len(node_flows),
+        kind="ros",
+    )
+    return fold_graph(add_legend_keys(graph))
+
+
+def find_home_frame(lookup: Lookup, node: Node) -> str:
+    """Return the id of a node's frame: the first group of what it implements, else its namespace."""
+    groups = [component.split(".", 1)[0] for component in node.implements]
+    return next((group for group in groups if group in lookup.architecture.groups), f"namespace {node.namespace}")
+
+
+def draw_home_frame(lookup: Lookup, home: str) -> Cluster:
+    """Return the frame of a group or a namespace."""
+    if home in lookup.architecture.groups:
+        return element_boxes.group_frame(lookup, home)
+    return Cluster(home, home.removeprefix("namespace "), tooltip=f"Nodes in {home} that implement no component")
+
+
+def _merge_node_flows(lookup: Lookup, node_flows: Sequence[NodeFlow], home_frames: dict[str, str]) -> tuple[Arrow, ...]:
+    bundles: dict[tuple[str, str, str, str], list[NodeFlow]] = {}
+    for each in node_flows:
+        tail, head = home_frames[each.tail], home_frames[each.head]
+        is_inside = tail == head
+        style = "data" if each.topic.flow == "topic" else each.topic.flow
+        medium = label_of_medium(each.topic)
+        ends = (each.tail, each.head, style, medium) if is_inside else (tail, head, "data", medium)
+        bundles.setdefault(ends, []).append(each)
+    return tuple(
+        Arrow(
+            f"{tail}>{head}:{style}" + (f":{medium}" if medium else ""),
+            tail,
+            head,
+            style=style,  # type: ignore[arg-type]
+            label=(f"({medium})" if len(bundle) == 1 else f"{len(bundle)} ({medium})") if medium else "",
+            medium=medium,
+            count=len(bundle),
+            # A frame may be a namespace, which has no hue, and a node may have the id of a group.
+            colour=element_boxes.group_hue(lookup, tail)
+            if tail in lookup.group_hues and tail not in home_frames
+            else None,
+            flows=tuple(each.sentence for each in bundle),
+        )
+        for (tail, head, style, medium), bundle in bundles.items()
     )

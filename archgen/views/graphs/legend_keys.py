@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import get_args
 
-from archgen.views.graph_shapes import Arrow, Box, ElementChange, Graph, PeriodStep
+from archgen.views.picture_shapes import Arrow, Box, ElementChange, Graph, PeriodStep
 
 _BADGE_KEYS = ("badge:error", "badge:warning", "badge:note", "badge:inside")
 _BOX_KEYS = ("composed", "port", "source", "sink", "reactive", "external", "node", "topic", "fold")

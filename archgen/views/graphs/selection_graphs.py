@@ -13,15 +13,14 @@ from archgen.model.component import Component
 from archgen.model.component_nesting import find_component
 from archgen.model.port_media import label_of_medium
 from archgen.model.selector_evaluation import Selection
-from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
-from archgen.views.graphs import element_boxes, node_boxes, ros_graph
-from archgen.views.graphs.component_flows import ComponentFlow, merge_flows
-from archgen.views.graphs.drawn_level import DrawnLevel, list_open_shells
+from archgen.views.graphs import element_boxes, implementation_graph
+from archgen.views.graphs.composed_graph import draw_to_depth, find_drawn, list_opened, place_in_frames
+from archgen.views.graphs.drawn_level import ComponentFlow, DrawnLevel, list_open_shells, merge_flows
 from archgen.views.graphs.graph_folding import fold_graph
 from archgen.views.graphs.legend_keys import add_legend_keys
-from archgen.views.graphs.open_frames import draw_to_depth, find_drawn, list_opened, place_in_frames
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
+from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph
 
 _SMALL_PICTURE = (26, 45)
 """The most boxes and arrows of a small picture."""
@@ -178,19 +177,19 @@ def draw_implementation_part(lookup: Lookup, graph_id: str, title: str, node_ids
     """Draw selected nodes with what runs to and from them. A small part has its topics as boxes."""
     node_flows = [
         each
-        for each in node_boxes.list_node_flows(lookup.architecture)
+        for each in element_boxes.list_node_flows(lookup.architecture)
         if each.tail in node_ids or each.head in node_ids
     ]
     neighbour_ids = dict.fromkeys(end for each in node_flows for end in (each.tail, each.head) if end not in node_ids)
     topics = {each.topic.name: each.topic for each in node_flows}
     if len(node_ids) + len(neighbour_ids) + len(topics) > _SMALL_PICTURE[1]:
-        return ros_graph.draw_nodes(lookup, graph_id, title, node_ids)
+        return implementation_graph.draw_nodes(lookup, graph_id, title, node_ids)
     all_nodes = lookup.architecture.nodes
     chosen_boxes = [
-        node_boxes.node_box(lookup, node, is_subject=False) for node in all_nodes.values() if node.id in node_ids
+        element_boxes.node_box(lookup, node, is_subject=False) for node in all_nodes.values() if node.id in node_ids
     ]
     neighbour_boxes = [
-        replace(node_boxes.node_box(lookup, all_nodes[each]), emphasis="neighbour", badge=None)
+        replace(element_boxes.node_box(lookup, all_nodes[each]), emphasis="neighbour", badge=None)
         for each in neighbour_ids
     ]
     arrows: dict[str, Arrow] = {}
@@ -215,7 +214,7 @@ def draw_implementation_part(lookup: Lookup, graph_id: str, title: str, node_ids
         "flow",
         (
             *chosen_boxes,
-            *(node_boxes.topic_box(topic) for topic in topics.values()),
+            *(element_boxes.topic_box(topic) for topic in topics.values()),
             *neighbour_boxes,
         ),
         tuple(arrows.values()),

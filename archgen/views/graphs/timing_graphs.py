@@ -10,7 +10,6 @@ from typing import Literal
 
 from archgen.frozen import replace
 from archgen.timing.system.timing_system import Arc
-from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs import element_boxes
 from archgen.views.graphs.activity_flows import (
     ActivityFlow,
@@ -23,9 +22,10 @@ from archgen.views.graphs.activity_flows import (
     note_bounds,
 )
 from archgen.views.graphs.graph_folding import fold_graph
+from archgen.views.graphs.implementation_graph import draw_home_frame
 from archgen.views.graphs.legend_keys import add_legend_keys
-from archgen.views.graphs.ros_graph import draw_home_frame
 from archgen.views.lookup import Lookup
+from archgen.views.picture_shapes import Arrow, Box, Graph
 from archgen.views.short_figures import shorten_text
 from archgen.views.timing import value_format
 from archgen.views.timing.timing_lookup import TimingLookup

@@ -1,21 +1,138 @@
-"""The site's pages of groups, of components, of what is inside of composed ones, and of component types."""
+"""The site's pages, and the report's sections, of groups, components and component types."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterable, Iterator
+from dataclasses import dataclass, replace
 
 from archgen.model.component import Component, ComponentType, Group
 from archgen.model.component_nesting import find_component, list_surrounding
 from archgen.views import inline_text
 from archgen.views.elements.component_type_blocks import make_component_type_table, make_type_blocks
-from archgen.views.elements.composed_blocks import make_composed_blocks
-from archgen.views.elements.functional_level import make_component_blocks, make_group_blocks
-from archgen.views.elements.implementation_level import make_implementation_blocks
+from archgen.views.elements.functional_level import (
+    make_component_blocks,
+    make_component_table,
+    make_composed_blocks,
+    make_group_blocks,
+)
+from archgen.views.elements.implementation_level import make_implementation_blocks, make_node_blocks
+from archgen.views.elements.parameter_blocks import list_equal_settings
 from archgen.views.lookup import Lookup
 from archgen.views.pages import context_pages
 from archgen.views.pages.context_pages import HOME_CRUMB, FigureFilter
-from archgen.views.shapes import Block, Page, Section
+from archgen.views.shapes import Block, Markdown, Page, Paragraph, Section
+from archgen.views.type_names import find_component_type
+
+_MAX_DEPTH = 2
+"""So many composed components may be around one that has a heading: the document has four levels of them."""
+
+
+@dataclass(frozen=True)
+class ReportSections:
+    """Makes the sections. `shows_nodes` is whether the document has the implementation level."""
+
+    lookup: Lookup
+    keep_drawn: Callable[[Iterable[Block]], tuple[Block, ...]]
+    shows_nodes: bool
+
+    def make_sections(self) -> list[Section]:
+        """Make one section for each group, with its components and their nodes; then one for all component types."""
+        groups = [
+            self._make_group_section(self.lookup.architecture.groups[name]) for name in self.lookup.shown_groups()
+        ]
+        return [*groups, *self._make_type_sections()]
+
+    def _make_group_section(self, group: Group) -> Section:
+        sections = tuple(self._make_section(component) for component in self.lookup.shown_members(group.id))
+        blocks = self.keep_drawn(make_group_blocks(self.lookup, group))
+        return Section(f"group:{group.id}", group.title, blocks, sections, page_break=True)
+
+    def _make_section(self, component: Component) -> Section:
+        if component.id in self.lookup.architecture.shells:
+            return self._make_composed_section(component)
+        blocks = self.keep_drawn(self._say_type_once(component, make_component_blocks(self.lookup, component)))
+        return Section(
+            f"component:{component.id}", component.title, blocks, tuple(self._make_implementation(component))
+        )
+
+    def _make_composed_section(self, shell: Component) -> Section:
+        """Describe a composed component: what is inside has sections below it, or a table where headings get too deep."""
+        architecture = self.lookup.architecture
+        blocks = self.keep_drawn(self._say_type_once(shell, make_composed_blocks(self.lookup, shell)))
+        children = self.lookup.shown_children(shell)
+        if len(list_surrounding(architecture, shell.id)) < _MAX_DEPTH:
+            sections = tuple(self._make_section(child) for child in children)
+        else:
+            sections = ()
+            blocks = self._list_all_inside(shell, blocks)
+        own_nodes = (
+            self._make_implementation(architecture.components[shell.id]) if shell.id in architecture.components else ()
+        )
+        return Section(f"component:{shell.id}", shell.title, blocks, (*own_nodes, *sections))
+
+    def _list_all_inside(self, shell: Component, blocks: tuple[Block, ...]) -> tuple[Block, ...]:
+        """Replace the last table, of what is directly inside, by one of all components inside to any depth."""
+        architecture = self.lookup.architecture
+        shown = [name for name in architecture.leaves_of(shell.id) if name != shell.id and self.lookup.shows_part(name)]
+        leaves = [architecture.components[name] for name in shown]
+        if not leaves:
+            return blocks
+        caption = f"Components of {shell.title}"
+        table = make_component_table(self.lookup, f"table:components/{shell.id}", caption, leaves, inside_of=shell.id)
+        # Links to what has no section of its own lead to its row.
+        return (*blocks[:-1], replace(table, row_anchors=tuple(f"component:{each.id}" for each in leaves)))
+
+    def _say_type_once(self, component: Component, blocks: Iterable[Block]) -> tuple[Block, ...]:
+        """Leave out what the section of the component's type has."""
+        component_type = find_component_type(self.lookup.architecture, component)
+        if component_type is None:
+            return tuple(blocks)
+        type_texts = {component_type.functionality, component_type.description}
+        known_tables = list_equal_settings(component, component_type)
+        own_blocks = [
+            block
+            for block in blocks
+            if not (isinstance(block, Markdown) and block.text in type_texts) and block not in known_tables
+        ]
+        return tuple(own_blocks)
+
+    def _make_implementation(self, component: Component) -> Iterable[Section]:
+        """Yield the section with a component's nodes; nothing where it has none, and at the functional level."""
+        if not self.shows_nodes:
+            return
+        figure_blocks = self.keep_drawn(make_implementation_blocks(self.lookup, component.id))
+        nodes = self.lookup.nodes_of.get(component.id, ())
+        node_sections = tuple(self._make_node_section(node.id, component) for node in nodes)
+        if node_sections:
+            title = f"Implementation of {component.title}"
+            yield Section(f"implementation:{component.id}", title, figure_blocks, node_sections)
+
+    def _make_node_section(self, node_id: str, component: Component) -> Section:
+        """Describe a node at the first shown component that it implements; elsewhere refer to that place."""
+        node = self.lookup.architecture.nodes[node_id]
+        # Never exhausted: the component being written is itself shown and implemented by the node.
+        first_component = next(c for c in node.implements if self.lookup.scope.shows_component(c))
+        if first_component == component.id:
+            return Section(f"node:{node.id}", f"Node {node.id}", make_node_blocks(self.lookup, node))
+        link = inline_text.component_link(self.lookup.architecture.components[first_component])
+        reference = inline_text.to_inlines(
+            "The node ", inline_text.node_link(node), " implements this too; it is described at ", link, "."
+        )
+        # The plain anchor `node:ID` belongs to the full description and must stay unique.
+        anchor = f"node:{node.id}:{component.id}"
+        return Section(anchor, f"Node {node.id}", (Paragraph(reference),))
+
+    def _make_type_sections(self) -> list[Section]:
+        """Make the section of the component types, which says once what their instances share."""
+        table = make_component_type_table(self.lookup)
+        if table is None:
+            return []
+        sections = tuple(
+            Section(f"component_type:{each.id}", each.title, make_type_blocks(self.lookup, each))
+            for each in self.lookup.architecture.component_types.values()
+        )
+        return [Section("page:component_types", "Types of components", (table,), sections, page_break=True)]
+
 
 Crumbs = tuple[tuple[str, str], ...]
 FindingSections = Callable[[str], list[Section]]

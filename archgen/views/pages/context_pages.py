@@ -151,7 +151,11 @@ def _endpoint_blocks(lookup: Lookup, topic: Topic, endpoints: tuple[Endpoint, ..
     rows: tuple[tuple[Inlines, ...], ...] = tuple(
         (
             inline_text.to_inlines(inline_text.node_link(lookup.architecture.nodes[endpoint.node])),
-            _component_cell(lookup, endpoint.component),
+            (
+                inline_text.to_inlines(inline_text.component_link(lookup.architecture.components[endpoint.component]))
+                if endpoint.component
+                else ()
+            ),
             # Ports by their own names: the component is in the column before.
             inline_text.to_inlines(Text(endpoint.port.rsplit(".", 1)[-1], code=True)) if endpoint.port else (),
             inline_text.format_qos_cell(endpoint.qos) if topic.flow == "topic" and topic.medium == ROS else (),
@@ -162,14 +166,6 @@ def _endpoint_blocks(lookup: Lookup, topic: Topic, endpoints: tuple[Endpoint, ..
     if topic.medium != ROS:
         columns, rows = columns[:-1], tuple(row[:-1] for row in rows)
     return [Table(f"table:{role.lower()}s/{topic.name}", f"{role}s", columns, rows)]
-
-
-def _component_cell(lookup: Lookup, component_id: str | None) -> Inlines:
-    return (
-        inline_text.to_inlines(inline_text.component_link(lookup.architecture.components[component_id]))
-        if component_id
-        else ()
-    )
 
 
 def make_node_table(

@@ -26,7 +26,7 @@ from archgen.views.shapes import (
     Table,
     Text,
 )
-from archgen.views.tables import finding_tables, project_growth, requirement_tables
+from archgen.views.tables import finding_tables, requirement_tables, statistics_tables
 from archgen.views.tables.statistics_tables import PROGRESS_STEPS
 from archgen.views.timing import chain_status, timing_tables, value_format
 
@@ -112,14 +112,12 @@ def _chain_figure(lookup: Lookup) -> KeyFigure:
 
 def _host_figure(lookup: Lookup) -> KeyFigure:
     hosts = timing_tables.rank_hosts(lookup.timing) if lookup.timing else []
-    words = {"overload": "overloaded", "undecided": "undecided", "unknown": "unknown"}
+    words = {"overload": "overloaded", "undecided": "not proven", "unknown": "unknown"}
     counts = {verdict: sum(load.verdict == verdict for _, load in hosts) for verdict in words}
     worst = next((timing_tables.LOAD_STATES[name] for name, count in counts.items() if count), "met")
     note = join_words([f"{count} {words[name]}" for name, count in counts.items() if count]) or "all of them"
     proven_count = len(hosts) - sum(counts.values())
-    return KeyFigure(
-        "Hosts proven schedulable", str(proven_count), str(len(hosts)), _make_note(worst, note), "page:hosts"
-    )
+    return KeyFigure("Hosts proven in time", str(proven_count), str(len(hosts)), _make_note(worst, note), "page:hosts")
 
 
 def _chains_without_finding(lookup: Lookup) -> list[str]:
@@ -135,7 +133,7 @@ def _chain_card(lookup: Lookup) -> DashboardCard | None:
             inline_text.to_inlines(Text(lookup.architecture.chains[result.id].title, ref=f"chain:{result.id}")),
             chain_status.chain_meter(result),
             timing_tables.duration_cell(result.bound),
-            timing_tables.duration_cell(result.deadline) if result.deadline else (),
+            timing_tables.deadline_cell(result),
             chain_status.margin_cell(result),
             chain_status.verdict_chip(result),
         )
@@ -254,7 +252,7 @@ def _change_card(history: History) -> DashboardCard | None:
     pairs = list(pairwise(points))[::-1][:_MAX_CHANGES]
     items = tuple(
         (
-            Text(project_growth.name_point(after, history), ref="page:progress"),
+            Text(statistics_tables.name_point(after, history), ref="page:progress"),
             Text(_describe_step(before, after), muted=True, line_break=True),
         )
         for before, after in pairs
@@ -272,6 +270,6 @@ def _describe_step(before: HistoryPoint, after: HistoryPoint) -> str:
         ("mapped", old.mapped, new.mapped),
         ("timed", old.timed, new.timed),
         ("traced", old.traced, new.traced),
-        ("open points", project_growth.count_findings(before), project_growth.count_findings(after)),
+        ("open points", statistics_tables.count_findings(before), statistics_tables.count_findings(after)),
     )
     return ", ".join(f"{name} {first} → {last}" for name, first, last in figures if first != last) or "same counts"

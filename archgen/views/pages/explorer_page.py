@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from archgen.views import inline_text
-from archgen.views.graphs.component_flows import list_flows
+from archgen.views.graphs.drawn_level import list_flows
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Figure, Paragraph, Table, Text
 

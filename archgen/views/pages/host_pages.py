@@ -8,7 +8,7 @@ from dataclasses import replace
 from archgen.model.deployment import Container, Host
 from archgen.model.parameter import format_parameter
 from archgen.model.port_media import name_medium
-from archgen.model.process_threads import find_container_threads
+from archgen.model.runtime_facts import find_container_threads
 from archgen.views import inline_text, timing_words
 from archgen.views.elements.annotation_facts import list_annotation_facts
 from archgen.views.lookup import Lookup

@@ -14,7 +14,7 @@ from archgen.views import inline_text
 from archgen.views.agreement.message_fields import field_type_run
 from archgen.views.element_references import message_link
 from archgen.views.elements.type_fields import make_constant_table
-from archgen.views.lookup import Lookup, group_values
+from archgen.views.lookup import Lookup, collect_messages, group_values, list_fields
 from archgen.views.shapes import (
     Block,
     Column,
@@ -29,7 +29,6 @@ from archgen.views.shapes import (
     drop_empty_columns,
 )
 from archgen.views.tables import deployment_tables
-from archgen.views.used_messages import collect_messages, list_fields
 
 T = TypeVar("T")
 

@@ -1,14 +1,19 @@
-"""Pages in parts: rows of very long tables, and pictures of which there are many, get further pages of their own.
-
-A browser takes seconds for a table of 10,000 rows, and for 100 pictures on one page.
-"""
+"""What pages of all kinds have: parts where tables are long, the place where a thing is written, a word on what is not drawn."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
+from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import replace
+from archgen.language.language_tables import SECTION_KINDS
+from archgen.model.architecture import Architecture
+from archgen.model.made_elements import find_made_element
 from archgen.views import inline_text
+from archgen.views.element_references import place_run
+from archgen.views.lookup import Lookup
+from archgen.views.pages.report_outline import DocumentEdition
+from archgen.views.picture_shapes import GraphKind
 from archgen.views.shapes import Block, Bullets, Figure, Page, Paragraph, Section, Table, Text
 
 MAX_ROWS = 1_500
@@ -76,3 +81,70 @@ def _split_table(table: Table) -> Iterator[tuple[Paragraph, Table]]:
             row_anchors=table.row_anchors[start : start + MAX_ROWS],
         )
         yield note, part
+
+
+_KINDS_BY_FOLDER: dict[str, GraphKind] = {"components": "component", "groups": "group"}
+"""The kinds of pictures that a note stands for, by the folder of their ids. One note is enough for a component's two."""
+
+
+def keep_drawn(blocks: Iterable[Block], edition: DocumentEdition) -> tuple[Block, ...]:
+    """Drop figures that are not among the drawings, with a note where they are left out for their number."""
+    return tuple(_iterate_drawn(blocks, edition))
+
+
+def _iterate_drawn(blocks: Iterable[Block], edition: DocumentEdition) -> Iterator[Block]:
+    for block in blocks:
+        if not isinstance(block, Figure) or block.graph in edition.drawings:
+            yield block
+        elif _KINDS_BY_FOLDER.get(block.graph.partition("/")[0]) in edition.undrawn_kinds:
+            yield _make_note()
+
+
+def make_timing_note(edition: DocumentEdition) -> tuple[Section, ...]:
+    """Return a section in the place of the pictures of each group's timing, where these are left out."""
+    if "group-timing" not in edition.undrawn_kinds:
+        return ()
+    return (Section("timing:groups", "Group by group", (_make_note(),)),)
+
+
+def _make_note() -> Paragraph:
+    """Return the note: where the same is to be seen, and how to have the picture."""
+    link = Text("explorer", ref="page:explorer")
+    return Paragraph(
+        (
+            Text("No picture is drawn here, since there would be very many. The ", muted=True),
+            link,
+            Text(" shows the same; ", muted=True),
+            Text("archgen site --component-pictures", code=True),
+            Text(" draws them all.", muted=True),
+        )
+    )
+
+
+_PLACELESS = frozenset({"types", "variants", "libraries"})
+"""What ships with archgen is in none of the project's files, but in those of its packed form; variants are in several."""
+
+
+def place_pages(lookup: Lookup, pages: Iterable[Page]) -> tuple[Page, ...]:
+    """Return the pages, those on something that is written in a file with its place."""
+    spans = _list_spans(lookup.architecture)
+    return tuple(_place_page(lookup, page, spans[page.anchor]) if page.anchor in spans else page for page in pages)
+
+
+def _place_page(lookup: Lookup, page: Page, place: Span) -> Page:
+    placed_page = replace(page, place=place_run(lookup, place))
+    made = find_made_element(lookup.architecture.made_elements, place)
+    if made is None or not made.passes:
+        return placed_page
+    words = str(made).replace("`", "")
+    is_phrase = bool(page.lead) and page.lead[-1].isalnum()
+    lead = f"{page.lead}, {words}" if is_phrase else f"{page.lead} {words[0].upper()}{words[1:]}.".lstrip()
+    return replace(placed_page, lead=lead)
+
+
+def _list_spans(architecture: Architecture) -> Mapping[str, Span]:
+    """Return where each element with a page is written, by the page's anchor."""
+    kinds = [("component", architecture.components), ("component", architecture.shells)]
+    kinds += [(kind, getattr(architecture, name)) for name, kind in SECTION_KINDS.items() if name not in _PLACELESS]
+    spans = {f"{kind}:{name}": element.at for kind, elements in kinds for name, element in elements.items()}
+    return {anchor: span for anchor, span in spans.items() if span is not NO_SPAN}

@@ -13,24 +13,22 @@ from archgen.model.project_history import History
 from archgen.model.report_settings import ReportSettings
 from archgen.views import inline_text
 from archgen.views.agreement.signature_record import SignedTag
-from archgen.views.chart_shapes import Drawing
-from archgen.views.graph_shapes import GraphKind
 from archgen.views.lookup import Lookup
 from archgen.views.pages import timing_chapter, variant_chapter
-from archgen.views.pages.component_sections import ReportSections
+from archgen.views.pages.component_pages import ReportSections
 from archgen.views.pages.timing_chapter import make_figures
 from archgen.views.pages.variant_chapter import VariantDifference
+from archgen.views.picture_shapes import Drawing, GraphKind
 from archgen.views.sequences.sequence_blocks import make_use_case_sections
 from archgen.views.shapes import Block, Figure, Inlines, Markdown, Outline, Paragraph, Section, Table, Text
 from archgen.views.tables import (
     deployment_tables,
     finding_tables,
-    frame_table,
     functional_tables,
-    project_growth,
     property_tables,
     requirement_tables,
     start_table,
+    statistics_tables,
     type_tables,
 )
 
@@ -170,7 +168,7 @@ class _ChapterMaker:
         """Make the chapter of coordinate frames."""
         blocks = [
             *make_figures(self.edition.drawings, "frames"),
-            *_drop_missing(frame_table.make_frame_table(self.lookup)),
+            *_drop_missing(functional_tables.make_frame_table(self.lookup)),
         ]
         return [Section("page:frames", "Frames", tuple(blocks), page_break=True)] if blocks else []
 
@@ -285,7 +283,7 @@ class _ChapterMaker:
 
     def make_statistics(self) -> list[Section]:
         """Make the appendix of size, progress and growth."""
-        growth_blocks = project_growth.make_growth_blocks(self.edition.history, self.edition.drawings)
+        growth_blocks = statistics_tables.make_growth_blocks(self.edition.history, self.edition.drawings)
         return self._make_appendix("progress", "Statistics", *self.edition.statistics, *growth_blocks)
 
     def _make_appendix(self, anchor: str, title: str, *blocks: Block | None) -> list[Section]:

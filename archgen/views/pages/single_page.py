@@ -12,7 +12,7 @@ from archgen.views.pages import (
     host_pages,
     matrix_pages,
     page_marks,
-    page_places,
+    page_parts,
     partner_pages,
     requirement_pages,
 )
@@ -31,7 +31,7 @@ def make_page_at(lookup: Lookup, edition: DocumentEdition, anchor: str) -> Page 
     marked_pages = page_marks.mark_pages(lookup, (page,))
     if edition.changes:
         marked_pages = tuple(mark_page(each, edition.changes) for each in marked_pages)
-    return page_places.place_pages(lookup, marked_pages)[0]
+    return page_parts.place_pages(lookup, marked_pages)[0]
 
 
 def _list_candidates(page_maker: PageMaker, anchor: str) -> Iterable[Page]:  # noqa: PLR0911 - one for each kind

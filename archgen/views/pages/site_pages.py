@@ -19,11 +19,10 @@ from archgen.views.pages import (
     host_pages,
     matrix_pages,
     page_marks,
-    page_places,
+    page_parts,
     partner_pages,
     requirement_pages,
     timing_chapter,
-    undrawn_pictures,
     variant_chapter,
 )
 from archgen.views.pages.component_pages import ComponentPages
@@ -36,16 +35,15 @@ from archgen.views.shapes import Block, Bullets, Facts, Figure, Markdown, Page, 
 from archgen.views.tables import (
     deployment_tables,
     finding_tables,
-    frame_table,
     functional_tables,
-    project_growth,
     property_tables,
     requirement_tables,
     start_table,
+    statistics_tables,
     type_tables,
 )
 from archgen.views.timing.chain_waterfall import WATERFALL_FACTS, make_waterfall
-from archgen.views.timing.slack_waterfall import make_slack_waterfall
+from archgen.views.timing.host_waterfall import make_slack_waterfall
 
 
 def make_pages(lookup: Lookup, edition: DocumentEdition) -> tuple[Page, ...]:
@@ -78,7 +76,7 @@ def make_pages(lookup: Lookup, edition: DocumentEdition) -> tuple[Page, ...]:
         from archgen.views.changes.site_changes import add_changes
 
         marked_pages = add_changes(marked_pages, edition.changes, edition.drawings)
-    return page_places.place_pages(lookup, marked_pages)
+    return page_parts.place_pages(lookup, marked_pages)
 
 
 def _make_paths_distinct(pages: Iterable[Page]) -> tuple[Page, ...]:
@@ -116,7 +114,7 @@ class PageMaker:
         """Drop figures that are not among this site's drawings: of another level, or outside of the selection. Of those
         that are left out for their number a note says so.
         """
-        return undrawn_pictures.keep_drawn(blocks, self.edition)
+        return page_parts.keep_drawn(blocks, self.edition)
 
     def message_pages(self) -> MessagePages:
         """Return the maker of the pages on messages: those of shown types and, with the ROS side, of shown topics."""
@@ -252,13 +250,13 @@ class PageMaker:
             finding_tables.make_finding_table(self.lookup, self.lookup.findings),
             *(chain_blocks if chain_points else ()),
         )
-        growth_blocks = project_growth.make_growth_blocks(self.edition.history, self.edition.drawings)
+        growth_blocks = statistics_tables.make_growth_blocks(self.edition.history, self.edition.drawings)
         yield self._spanning_page("progress", "Progress", *self.edition.statistics, *growth_blocks)
         yield from self.timing_pages()
         view_drawings = [f"views/{name}" for name in self.architecture.views]
         yield self._spanning_page("views", "Views", *make_figures(self.edition.drawings, *view_drawings))
         yield from self.variant_pages()
-        if frames := frame_table.make_frame_table(self.lookup):
+        if frames := functional_tables.make_frame_table(self.lookup):
             yield self._spanning_page("frames", "Frames", *make_figures(self.edition.drawings, "frames"), frames)
         if sections := property_tables.make_property_sections(self.lookup):
             yield self._listing_page("properties", "Properties", sections)
@@ -317,7 +315,7 @@ class PageMaker:
         if self.lookup.timing is not None and self.edition.level == "implementation":
             blocks = timing_chapter.make_timing_blocks(self.lookup, self.lookup.timing, graphs)
             sections = (
-                *undrawn_pictures.make_timing_note(self.edition),
+                *page_parts.make_timing_note(self.edition),
                 *timing_chapter.make_timing_sections(self.lookup, self.lookup.timing, graphs),
             )
             links = Bullets(tuple(inline_text.to_inlines(Text(s.title, ref=s.anchor)) for s in sections))
@@ -344,7 +342,9 @@ class PageMaker:
                 continue
             waterfall = make_waterfall(self.lookup, timing_lookup, result)
             # The waterfall says the same at a glance; the chart has a page of the report, which has no waterfall.
-            shown = ({}, WATERFALL_FACTS) if waterfall else (graphs, ())
+            late_name = f"chains/{result.id}.late"
+            late_pictures = {late_name: graphs[late_name]} if result.id in timing_lookup.late_runs else {}
+            shown = (late_pictures, WATERFALL_FACTS) if waterfall else (graphs, ())
             section = timing_chapter.make_chain_section(self.lookup, timing_lookup, result, *shown)
             path, lead = f"chains/{result.id}.html", "Chain of effect"
             yield Page(path, section.anchor, section.title, "chains", section, crumbs, lead, waterfall=waterfall)

@@ -6,11 +6,11 @@ from collections.abc import Collection, Iterator, Mapping
 
 from archgen.timing.analysis import ChainResult
 from archgen.views import inline_text
-from archgen.views.chart_shapes import Drawing
 from archgen.views.lookup import Lookup
+from archgen.views.picture_shapes import Drawing
 from archgen.views.shapes import Block, Figure, Paragraph, Section
 from archgen.views.tables import functional_tables
-from archgen.views.timing import element_timing, interaction_timing, timing_tables, timing_verdicts, use_tables
+from archgen.views.timing import element_timing, timing_tables, timing_verdicts, use_tables
 from archgen.views.timing.timing_lookup import TimingLookup
 
 
@@ -43,9 +43,9 @@ def make_timing_sections(
         Section(
             "timing:edges",
             "Where a reader keeps another pace",
-            tuple(interaction_timing.make_edge_blocks(lookup, timing_lookup)),
+            tuple(use_tables.make_edge_blocks(lookup, timing_lookup)),
         ),
-        Section("timing:services", "Services", tuple(interaction_timing.make_service_blocks(lookup, timing_lookup))),
+        Section("timing:services", "Services", tuple(use_tables.make_service_blocks(lookup, timing_lookup))),
         Section(
             "timing:hosts",
             "Load of the hosts",

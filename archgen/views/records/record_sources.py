@@ -7,20 +7,107 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping
+from fractions import Fraction
 from typing import Any
 
+from archgen.frozen import dataclass
 from archgen.model.component import Component, Group, Input, Output
 from archgen.model.declared_timing import Timing, list_fair_figures
 from archgen.model.deployment import Host
-from archgen.model.message_types import PART_KEYS
+from archgen.model.element_annotations import read_figure
+from archgen.model.known_interfaces import InterfaceField
+from archgen.model.message_types import PART_KEYS, ConceptualType, DataField
 from archgen.model.node import Endpoint, Evidence, Node
 from archgen.model.parameter_values import EffectiveParameter, find_effective_parameters
 from archgen.model.port_media import ROS, is_physical, name_on_medium, word_of_medium
 from archgen.model.promise import Promise, describe_deprecation, format_range
+from archgen.model.quantity import Quantity
 from archgen.model.step_connections import ConnectedStep
 from archgen.views.lookup import Lookup
-from archgen.views.records.record_values import to_number
-from archgen.views.records.recorded_fields import list_part_fields, list_type_fields
+
+
+def drop_unknown(data: dict[str, object]) -> dict[str, object]:
+    """Drop what is not known: None, empty lists and empty mappings."""
+    # 0, False and "" stay: they are values that somebody wrote. Flags that are rarely true are given as `flag or None`.
+    return {key: value for key, value in data.items() if value is not None and value not in ([], {})}
+
+
+def record_quantity(quantity: Quantity | None, unit: str) -> dict[str, object] | None:
+    """Return a quantity as text, number and unit; `value` is in that unit."""
+    return None if quantity is None else {"text": quantity.text, "value": _to_number(quantity.value), "unit": unit}
+
+
+def _to_number(value: Fraction) -> int | float:
+    """Return an int where that is exact, else the nearest float (JSON and YAML have no fractions)."""
+    return int(value) if value.denominator == 1 else float(value)
+
+
+def record_property(text: str) -> dict[str, object]:
+    """Return a property as text, number and unit, as far as it is such."""
+    figure = read_figure(text)
+    number = {"value": _to_number(Fraction(figure.value))} if figure else {}
+    return {"text": text, **number, **({"unit": figure.unit} if figure and figure.unit else {})}
+
+
+def to_plain(value: object) -> object:
+    """Copy nested parameters into dicts and lists."""
+    if isinstance(value, Mapping):
+        return {str(key): to_plain(item) for key, item in value.items()}
+    return [to_plain(item) for item in value] if isinstance(value, (list, tuple)) else value
+
+
+_PART_NAMES = {"request": ("request", "goal"), "response": ("response", "result"), "feedback": ("feedback",)}
+"""What definitions of services and actions call the parts."""
+
+
+@dataclass(frozen=True, slots=True)
+class RecordedField:
+    """A field with what it holds in the project's words (`type`) and in those of ROS (`ros_type`)."""
+
+    name: str
+    type: str | None
+    default: str | tuple[str, ...] | None
+    unit: str | None
+    comment: str | None
+    ros_type: str | None
+
+
+def _list_type_fields(conceptual_type: ConceptualType, lookup: Lookup) -> list[RecordedField]:
+    """Return the fields that make the message of a type."""
+    return _list_recorded(conceptual_type.fields or (), "", _find_ros_fields(conceptual_type, lookup))
+
+
+def _list_part_fields(conceptual_type: ConceptualType, lookup: Lookup) -> dict[str, list[RecordedField]]:
+    """Return the fields of the parts of a service or an action, by part."""
+    ros_fields = _find_ros_fields(conceptual_type, lookup)
+    return {part: _list_recorded(fields, part, ros_fields) for part, fields in conceptual_type.part_fields.items()}
+
+
+def _find_ros_fields(conceptual_type: ConceptualType, lookup: Lookup) -> Mapping[tuple[str, str], InterfaceField]:
+    """Return the fields of the type's message by part and name."""
+    definitions = lookup.architecture.interfaces.definitions
+    definition = definitions.get(conceptual_type.message or "") if conceptual_type.has_content else None
+    if definition is None:
+        return {}
+    return {
+        (part, field.name): field
+        for part, fields in zip(definition.part_names, definition.parts, strict=True)
+        for field in fields
+    }
+
+
+def _list_recorded(
+    fields: Iterable[DataField], part: str, ros_fields: Mapping[tuple[str, str], InterfaceField]
+) -> list[RecordedField]:
+    return [_record_field(field, part, ros_fields) for field in fields]
+
+
+def _record_field(field: DataField, part: str, ros_fields: Mapping[tuple[str, str], InterfaceField]) -> RecordedField:
+    names = _PART_NAMES.get(part, ("",))
+    ros_field = next((ros_fields[name, field.name] for name in names if (name, field.name) in ros_fields), None)
+    ros_type = f"{ros_field.type}{ros_field.array}" if ros_field else None
+    return RecordedField(field.name, field.type, field.default, field.unit, field.comment, ros_type)
+
 
 Source = Callable[[Any, Lookup], object]
 """Gives what stands at a key of an element, before it is written in the form of its type."""
@@ -223,10 +310,10 @@ _PARTS: Mapping[str, Mapping[str, Source]] = {
     "timing": {
         "percentiles": _list_percentiles,
         "wcet_measured": lambda timing, _: timing.measured_times and timing.measured_times.is_measured,
-        "calls": lambda timing, _: {name: to_number(count) for name, count in timing.calls.items()},
+        "calls": lambda timing, _: {name: _to_number(count) for name, count in timing.calls.items()},
     },
     "timing_input": {"stored": lambda each, _: "at_once" if each.stored_at_once else None},
-    "type": {"fields": list_type_fields, "part_fields": list_part_fields},
+    "type": {"fields": _list_type_fields, "part_fields": _list_part_fields},
     "part_fields": {part: _read_part(part) for part in PART_KEYS},
     "host": {"scheduling": _read_host_order},
     "container": {"namespace": lambda container, _: None if container.namespace == "/" else container.namespace},

@@ -7,13 +7,14 @@ the number (`value`) and its unit (`unit`): ns, Hz, B or bit/s.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from typing import Any
 
-from archgen.language.record_tables import LASTING_SECTIONS, RECORD_SECTIONS
+from archgen.language.record_tables import LASTING_SECTIONS, RECORD_KEYS, RECORD_SECTIONS
 from archgen.model.architecture import PortEdge
 from archgen.model.component import Component, Connection
 from archgen.model.node import Topic
 from archgen.views.lookup import Lookup
-from archgen.views.records.element_record import write_value
+from archgen.views.records.record_sources import SOURCES, drop_unknown, record_property, record_quantity, to_plain
 from archgen.views.shapes import Record
 
 RECORD_VERSION = 1
@@ -33,7 +34,7 @@ def write_section(section: str, lookup: Lookup) -> object:
     """Return a section of the record; empty where the architecture has nothing of it."""
     source = _SECTIONS.get(section)
     elements = source(lookup) if source else getattr(lookup.architecture, section)
-    return write_value(RECORD_SECTIONS[section], elements, lookup)
+    return _write_value(RECORD_SECTIONS[section], elements, lookup)
 
 
 def _list_components(lookup: Lookup) -> dict[str, Component]:
@@ -82,3 +83,61 @@ _SECTIONS: Mapping[str, Callable[[Lookup], object]] = {
     "channels": lambda lookup: _keep_shown(lookup, lookup.architecture.channels.values()),
 }
 """Sections that are not given as the architecture has them."""
+
+
+_KEPT_WHERE_EMPTY = frozenset(
+    {
+        ("parameter", "value"),
+        ("effective_parameter", "value"),
+        *(("composed", key) for key in ("components", "behind")),
+        *(("part_fields", part) for part in RECORD_KEYS["part_fields"]),
+    }
+)
+"""Keys at which an empty list or mapping is a value: elsewhere nothing is written."""
+_KNOWN_ENTRIES = frozenset({("node", "timing")})
+"""Mappings in which only entries of which something is known are written."""
+
+
+def write_record(part: str, element: Any, lookup: Lookup) -> dict[str, object]:  # noqa: ANN401  # any class of the model
+    """Return what is known of an element of a kind, or of another part of the record."""
+    record: dict[str, object] = {}
+    for key, form in RECORD_KEYS[part].items():
+        if (source := SOURCES.get((part, key))) is not None:
+            value = _write_value(form, source(element, lookup), lookup)
+        elif form == "annotations":
+            value = _write_annotations(key, element.annotations)
+        else:
+            value = _write_value(form, getattr(element, key), lookup)
+        if (part, key) in _KNOWN_ENTRIES and isinstance(value, dict):
+            value = drop_unknown(value)
+        if value is not None and (value not in ([], {}) or (part, key) in _KEPT_WHERE_EMPTY):
+            record[key] = value
+    return record
+
+
+def _write_value(form: str, value: Any, lookup: Lookup) -> object:  # noqa: ANN401  # any value of the model
+    """Return a value in a form of the tables."""
+    if value is None:
+        return None
+    if form.endswith("{}"):
+        named = value if isinstance(value, Mapping) else {_name_element(each): each for each in value}
+        return {name: _write_value(form[:-2], each, lookup) for name, each in named.items()}
+    if form.endswith("[]"):
+        return [_write_value(form[:-2], each, lookup) for each in value]
+    if form in RECORD_KEYS:
+        return write_record(form, value, lookup)
+    if form == "flag":
+        return value or None
+    return record_quantity(value, form) if form else to_plain(value)
+
+
+def _name_element(element: Any) -> str:  # noqa: ANN401  # any class of the model
+    return str(element.id if hasattr(element, "id") else element.name)
+
+
+def _write_annotations(key: str, annotations: Any) -> object:  # noqa: ANN401  # read by the key
+    """Return the properties of an element (text, number and unit, as far as they are such), or its hints as they are."""
+    values: Mapping[str, object] = getattr(annotations, key)
+    if key == "properties":
+        return {name: record_property(str(text)) for name, text in values.items()}
+    return to_plain(values)

@@ -8,8 +8,8 @@ from archgen.bringup.plan_shapes import DroppedWait, RosLaunch, StartPlan, Start
 from archgen.model.architecture import Architecture
 from archgen.model.start_up import PHASES
 from archgen.views.lookup import Lookup, make_lookup
-from archgen.views.records.element_record import write_record
-from archgen.views.records.record_values import drop_unknown, record_quantity, to_plain
+from archgen.views.records.record_sources import drop_unknown, record_quantity, to_plain
+from archgen.views.records.resolved_record import write_record
 from archgen.views.start_phrases import NamedWait, name_waits
 
 VERSION = 1

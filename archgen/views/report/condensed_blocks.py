@@ -6,8 +6,12 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from archgen.frozen import replace
 from archgen.model.component import Component
+from archgen.model.node import Endpoint, Node, Qos
+from archgen.model.port_media import ROS
 from archgen.views import inline_text
 from archgen.views.elements.functional_level import list_component_facts
+from archgen.views.elements.implementation_level import list_node_facts, make_implementation_blocks, make_node_blocks
+from archgen.views.elements.parameter_blocks import make_effective_table
 from archgen.views.elements.port_tables import PortKind, list_port_cells
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import (
@@ -19,10 +23,12 @@ from archgen.views.shapes import (
     Facts,
     Figure,
     Inlines,
+    Markdown,
     Paragraph,
     Table,
     Text,
     drop_column,
+    drop_empty_columns,
     keep_columns,
 )
 
@@ -61,7 +67,7 @@ def condense_component(lookup: Lookup, component: Component, blocks: Iterable[Bl
                 rows.append(("Performance", inline_text.join_lines(_phrase_row(block, row) for row in block.rows)))
             case Bullets():
                 rows.append((pending_title, inline_text.join_lines(block.items)))
-            case Paragraph() if _is_title(block):
+            case Paragraph() if len(block.inlines) == 1 and block.inlines[0].strong:
                 pending_title = block.inlines[0].text
             case Paragraph() if (row := _read_fact(block)) is not None:
                 rows.append(row)
@@ -69,11 +75,6 @@ def condense_component(lookup: Lookup, component: Component, blocks: Iterable[Bl
                 texts.append(block)
     facts = [Facts(tuple(rows))] if rows else []
     return (*texts, *facts, *figures, *_make_port_tables(lookup, component), *last_tables)
-
-
-def _is_title(paragraph: Paragraph) -> bool:
-    """Whether a paragraph is nothing but the title of the list that follows."""
-    return len(paragraph.inlines) == 1 and paragraph.inlines[0].strong
 
 
 def _read_fact(paragraph: Paragraph) -> FactRow | None:
@@ -149,3 +150,163 @@ def drop_repeated_columns(table: Table, kept_columns: int = 1) -> Table:
 
 def _join_texts(cell: Inlines) -> str:
     return "".join(part.text for part in cell)
+
+
+_USE_WORDS = {"subscribes": "sub", "publishes": "pub", "serves": "serves", "calls": "calls"}
+_USE_ORDER = tuple(_USE_WORDS)
+_OWN_FACTS = {"implements", "ros_name", "kind"}
+"""Keys of the facts that the first line of a node says."""
+
+
+def make_ros_blocks(lookup: Lookup, component: Component) -> tuple[Block, ...]:
+    """Describe the nodes of a component; one that implements several is described at the first that is shown."""
+    all_nodes = lookup.nodes_of.get(component.id, ())
+    own_nodes = [node for node in all_nodes if _find_described_component(lookup, node) == component.id]
+    texts: list[Block] = []
+    rows: list[FactRow] = []
+    anchors: list[str | None] = []
+    for node in all_nodes:
+        if node not in own_nodes:
+            rows.append(("Node", _refer_to_node(lookup, node)))
+            anchors.append(None)
+            continue
+        node_blocks = make_node_blocks(lookup, node)
+        texts += [
+            block for block in node_blocks if isinstance(block, Markdown) or getattr(block, "kind", "text") == "note"
+        ]
+        node_rows = list(_condense_facts(node, component, list_node_facts(lookup, node)))
+        rows += node_rows
+        anchors += [f"node:{node.id}", *(None for _ in node_rows[1:])]
+    table = _make_endpoint_table(lookup, component, own_nodes)
+    silent_nodes = [node for node in own_nodes if not lookup.endpoints_of.get(node.id)]
+    silence = [Text(f"{', '.join(node.id for node in silent_nodes)}: no topic, service or action.", muted=True)]
+    return (
+        *texts,
+        *([Facts(tuple(rows), tuple(anchors))] if rows else []),
+        *make_implementation_blocks(lookup, component.id),
+        *([Paragraph(tuple(silence))] if silent_nodes else []),
+        *([table] if table else []),
+    )
+
+
+def _find_described_component(lookup: Lookup, node: Node) -> str | None:
+    """Return the id of the component that a node is described at: the first shown one that it implements."""
+    return next((name for name in node.implements if lookup.scope.shows_component(name)), None)
+
+
+def _refer_to_node(lookup: Lookup, node: Node) -> Inlines:
+    first = _find_described_component(lookup, node)
+    place = (inline_text.component_link(lookup.architecture.components[first]),) if first else ()
+    return inline_text.to_inlines(
+        "The node ", inline_text.node_link(node), " implements this too; it is described at ", *place, "."
+    )
+
+
+def _condense_facts(node: Node, component: Component, facts: Sequence[Fact]) -> Iterator[FactRow]:
+    """Yield the facts of a node: what it is in one row, where it runs with its package in a second, times in a third."""
+    values = {fact.key: fact.value for fact in facts if fact.key in _OWN_FACTS}
+    kind = values.get("kind", ())
+    ros_name = (Text(", ROS name "), *values["ros_name"]) if "ros_name" in values else ()
+    name = inline_text.to_inlines(Text(node.id, code=True, strong=True), *ros_name, ", ", *kind)
+    others = [item for item in node.implements if item != component.id]
+    if others:
+        name = (*name, Text("; implements "), *values["implements"])
+    yield "Node", name
+    place_keys = {"package", "host", *(() if node.owners == component.owners else ("owner",))}
+    if places := [fact for fact in facts if fact.key in place_keys]:
+        yield "Package and host", _join_named(places)
+    if times := [fact for fact in facts if fact.key in {"timing", "activity"}]:
+        yield "Timing", _join_named(times)
+    said_keys = {*_OWN_FACTS, "package", "host", "owner", "timing", "activity"}
+    yield from (print_fact(fact) for fact in facts if fact.key not in said_keys)
+
+
+def _join_named(facts: Iterable[Fact]) -> Inlines:
+    """Join facts with their names: `runs on Base Computer; owner SSSA`. A package and a timing need no name."""
+    parts = [
+        fact.value
+        if fact.key in {"package", "timing"}
+        else inline_text.to_inlines(f"{fact.title[:1].lower()}{fact.title[1:]} ", *fact.value)
+        for fact in facts
+    ]
+    return inline_text.join_inlines(parts, "; ")
+
+
+def _make_endpoint_table(lookup: Lookup, component: Component, nodes: Sequence[Node]) -> Table | None:
+    rows = tuple(
+        (
+            inline_text.to_inlines(Text(node.id, code=True)),
+            inline_text.to_inlines(_USE_WORDS[endpoint.use]),
+            (*inline_text.name_carrier(endpoint), *([Text(" internal", muted=True)] if endpoint.internal else [])),
+            _message_cell(endpoint),
+            inline_text.to_inlines(Text(endpoint.port.rsplit(".", 1)[-1], code=True)) if endpoint.port else (),
+            _qos_cell(endpoint),
+        )
+        for node in nodes
+        for endpoint in sorted(lookup.endpoints_of.get(node.id, ()), key=lambda each: _USE_ORDER.index(each.use))
+    )
+    columns = (
+        Column("Node", 1.0),
+        Column("Use", 0.5),
+        Column("Name", 1.9),
+        Column("Message", 1.9),
+        Column("Port", 0.9),
+        Column("QoS", 0.6),
+    )
+    caption = f"Topics, services and actions of {component.title}"
+    table = Table(f"table:endpoints/{component.id}", caption, columns, rows)
+    if len(nodes) == 1:
+        table = Table(table.anchor, caption, columns[1:], tuple(row[1:] for row in rows))
+    return drop_repeated_columns(table, kept_columns=3) if rows else None
+
+
+def _message_cell(endpoint: Endpoint) -> Inlines:
+    if endpoint.medium != ROS and endpoint.type:
+        return inline_text.type_link(endpoint.type)
+    return (
+        inline_text.to_inlines(Text(shorten_message(endpoint.message), code=True))
+        if endpoint.message
+        else inline_text.UNKNOWN_INLINES
+    )
+
+
+def shorten_message(name: str) -> str:
+    """Return a message's name without the folder that its use tells: `nav_msgs/Odometry` for `nav_msgs/msg/Odometry`."""
+    package, _, rest = name.partition("/")
+    folder, _, short_name = rest.partition("/")
+    return f"{package}/{short_name}" if folder in {"msg", "srv", "action"} and short_name else name
+
+
+def _qos_cell(endpoint: Endpoint) -> Inlines:
+    if endpoint.flow != "topic" or endpoint.medium != ROS:
+        return ()
+    text = _shorten_qos(endpoint.qos)
+    return (Text(text, muted=not endpoint.qos.written),)
+
+
+def _shorten_qos(qos: Qos) -> str:
+    """Write a quality of service in short: `R 10` is reliable with depth 10, `BE` best effort, `TL` transient local."""
+    reliability = (
+        "BE" if qos.reliability == "best_effort" else "R" if qos.reliability == "reliable" else qos.reliability
+    )
+    depth = "all" if qos.history == "keep_all" else "" if qos.depth is None else str(qos.depth)
+    parts = [" ".join(part for part in (reliability, depth) if part)]
+    parts += ["TL"] if qos.durability == "transient_local" else []
+    parts += [f"D {qos.deadline}"] if qos.deadline else []
+    parts += [f"L {qos.lifespan}"] if qos.lifespan else []
+    parts += ["M"] if qos.liveliness != "automatic" else []
+    parts += [f"lease {qos.lease_duration}"] if qos.lease_duration else []
+    return " · ".join(parts)
+
+
+def make_parameter_table(lookup: Lookup) -> Table | None:
+    """List the parameters of all shown nodes."""
+    rows: list[tuple[Inlines, ...]] = []
+    for node in lookup.shown_nodes():
+        if table := make_effective_table(lookup, node):
+            name: Inlines = (Text(node.id, ref=f"node:{node.id}", code=True),)
+            rows += [(name, *row, *(((),) if len(row) == 2 else ())) for row in table.rows]  # noqa: PLR2004
+    columns = (Column("Node"), Column("Parameter"), Column("Value"), Column("From"))
+    if not rows:
+        return None
+    return drop_empty_columns(Table("table:parameters", "Parameters of the nodes", columns, tuple(rows)))

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from decimal import Decimal
 
-from archgen.views import inline_marks
+from archgen.views import inline_text
 from archgen.views.shapes import Block, Bullets, Column, Facts, Inlines, Paragraph, Section, Table, Text
 from archgen.views.short_figures import QUANTITY, round_number, shorten_quantity, write_comparisons
 
@@ -44,7 +44,7 @@ def _print_block(block: Block) -> Block:
 def print_inlines(inlines: Inlines) -> Inlines:
     """Return runs of text with real signs and three significant digits; code stays as it is written."""
     return tuple(
-        part if part.code else replace(part, text=print_text(part.text)) for part in inline_marks.render_marks(inlines)
+        part if part.code else replace(part, text=print_text(part.text)) for part in inline_text.render_marks(inlines)
     )
 
 

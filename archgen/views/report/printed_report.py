@@ -13,18 +13,18 @@ from collections.abc import Iterable, Iterator, Mapping
 from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField
 from archgen.views import inline_text
 from archgen.views.agreement.message_fields import field_type_run
-from archgen.views.chart_shapes import Drawing
 from archgen.views.elements.functional_level import list_group_facts
 from archgen.views.graphs.element_boxes import name_in_place
-from archgen.views.lookup import Lookup
+from archgen.views.lookup import Lookup, collect_messages
 from archgen.views.pages import report_outline
 from archgen.views.pages.context_pages import shown_topics
 from archgen.views.pages.report_outline import DocumentEdition
-from archgen.views.report import condensed_blocks, front_pages, ros_blocks, summary_section
+from archgen.views.picture_shapes import Drawing
+from archgen.views.report import condensed_blocks, front_pages
+from archgen.views.report.condensed_blocks import shorten_message
 from archgen.views.report.figure_mentions import mention_section
 from archgen.views.report.printed_figures import print_section_figures
 from archgen.views.report.report_drawings import LEGEND_NAME, is_piece_of, make_report_drawings
-from archgen.views.report.ros_blocks import shorten_message
 from archgen.views.sequences.sequence_charts import CHART_PREFIX
 from archgen.views.shapes import (
     Block,
@@ -41,7 +41,6 @@ from archgen.views.shapes import (
     drop_column,
 )
 from archgen.views.tables import type_tables
-from archgen.views.used_messages import collect_messages
 
 _TIMING_ANNEX = "Rates, loads and traffic"
 _LARGE_DRAWINGS = ("components", "ros", "timing")
@@ -55,7 +54,7 @@ def make_printed_report(lookup: Lookup, edition: DocumentEdition) -> Outline:
     printer = _ReportPrinter(lookup, edition, make_report_drawings(lookup, edition.drawings, shows_ros=shows_ros))
     sections = [part for section in outline.sections for part in printer.print_section(section)]
     overview = next((section for section in sections if section.anchor == "page:index"), None)
-    summary = summary_section.make_summary(lookup, edition, overview)
+    summary = front_pages.make_summary(lookup, edition, overview)
     if summary:
         # It has all of the overview, which would stand behind the project's own introduction.
         sections = [summary, *(section for section in sections if section is not overview)]
@@ -165,7 +164,7 @@ class _ReportPrinter:
 
     def _make_ros_blocks(self, component_id: str) -> tuple[Block, ...]:
         component = self.lookup.architecture.components[component_id]
-        return tuple(_unturn_tables(self._keep_legible(ros_blocks.make_ros_blocks(self.lookup, component))))
+        return tuple(_unturn_tables(self._keep_legible(condensed_blocks.make_ros_blocks(self.lookup, component))))
 
     def make_ros_annexes(self) -> Iterator[Section]:
         """Yield the annexes of the ROS side: the components one by one, and the parameters of all nodes."""
@@ -176,7 +175,7 @@ class _ReportPrinter:
             if sections:
                 lead = Paragraph((Text("Nodes, topics, services and actions, in the order of the components."),))
                 yield Section("page:nodes", "ROS side of the components", (lead,), sections, True, True)  # noqa: FBT003
-        if table := ros_blocks.make_parameter_table(self.lookup):
+        if table := condensed_blocks.make_parameter_table(self.lookup):
             yield Section("page:parameters", "Parameters", (table,), appendix=True, page_break=False)
         if section := make_message_annex(self.lookup):
             yield section

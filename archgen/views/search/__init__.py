@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from archgen.views.lookup import Lookup
-from archgen.views.search import functional_entries, implementation_entries, text_entries
+from archgen.views.search import functional_entries, implementation_entries, search_entry
 from archgen.views.search.search_entry import SearchEntry
 from archgen.views.shapes import Page
 
@@ -28,9 +28,9 @@ def make_search_entries(lookup: Lookup, pages: Sequence[Page]) -> tuple[SearchEn
         *implementation_entries.make_host_entries(lookup),
         *implementation_entries.make_frame_entries(lookup),
         *implementation_entries.make_message_entries(lookup),
-        *text_entries.make_finding_entries(lookup),
+        *search_entry.make_finding_entries(lookup),
         *functional_entries.make_port_entries(lookup),
         *functional_entries.make_connection_entries(lookup),
     ]
     listed_anchors = frozenset(ref for entry in entries for ref in entry.refs[:1])
-    return (*entries, *text_entries.make_page_entries(pages, listed_anchors))
+    return (*entries, *search_entry.make_page_entries(pages, listed_anchors))

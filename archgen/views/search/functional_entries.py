@@ -210,7 +210,7 @@ def make_chain_entries(lookup: Lookup) -> Iterator[SearchEntry]:
     """Yield chains of effect, variants and views."""
     architecture = lookup.architecture
     for chain in architecture.chains.values():
-        deadline = f"deadline {chain.deadline}" if chain.deadline else ""
+        deadline = f"deadline {chain.deadline_text}" if chain.deadline_text else ""
         line = join_entry_parts("chain of effect", deadline, ", ".join(chain.requirements))
         yield SearchEntry("chain", chain.title, line, (f"chain:{chain.id}", "page:chains"), (chain.id,))
     for variant in architecture.variants.values():

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Iterator
 
+from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.frozen import dataclass
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Markdown, Page
 
 _MARKS = re.compile(r"[*`#>|]+|\]\([^)]*\)|[\[\]]")
 
@@ -34,3 +38,52 @@ def join_entry_parts(*parts: str | None) -> str:
 def to_plain_text(*texts: str | None) -> str:
     """Return Markdown texts on one line, without the marks that nobody types into a search."""
     return " ".join(_MARKS.sub(" ", " ".join(text for text in texts if text)).split())
+
+
+_HEADING = re.compile(
+    r"^ {0,3}#{1,6}[ \t]++(.*?)(?:(?<![ \t])[ \t]++)?+(?:(?<!#)#++)?+(?:(?<![ \t])[ \t]++)?+$", re.MULTILINE
+)
+
+
+def make_finding_entries(lookup: Lookup) -> Iterator[SearchEntry]:
+    """Yield the findings, the most serious first."""
+    for finding in sorted(lookup.findings, key=lambda finding: -finding.effective_severity.rank):
+        yield _make_finding_entry(lookup, finding)
+
+
+def _make_finding_entry(lookup: Lookup, finding: Diagnostic) -> SearchEntry:
+    element = finding.element or ""
+    port = lookup.architecture.inputs.get(element) or lookup.architecture.outputs.get(element)
+    place = f"{finding.span.file}:{finding.span.line}" if finding.span.file else None
+    return SearchEntry(
+        "finding",
+        to_plain_text(finding.message),
+        join_entry_parts(finding.severity, place, finding.rule),
+        (f"findings:{port.component if port else element}", "page:findings"),
+        (f"finding:{finding.rule}",),
+        to_plain_text(finding.help),
+    )
+
+
+def make_page_entries(pages: Iterable[Page], listed_anchors: frozenset[str]) -> Iterator[SearchEntry]:
+    """Yield chapters, each with its headings, and the pages that no other entry leads to."""
+    for page in pages:
+        if page.kind == "chapters":
+            yield from _make_chapter_entries(page)
+        elif page.anchor not in listed_anchors:
+            yield SearchEntry("page", page.title, page.lead, (page.anchor,), text=_page_text(page))
+
+
+def _make_chapter_entries(page: Page) -> Iterator[SearchEntry]:
+    """Yield the text below each heading of a chapter."""
+    # `split` gives what stands before the first heading, then heading and text in turns.
+    opening, *rest = _HEADING.split(_page_text(page, raw=True))
+    yield SearchEntry("chapter", page.title, "chapter", (page.anchor,), text=to_plain_text(opening))
+    for heading, text in zip(rest[::2], rest[1::2], strict=True):
+        line = join_entry_parts("chapter", page.title)
+        yield SearchEntry("chapter", to_plain_text(heading), line, (page.anchor,), text=to_plain_text(text))
+
+
+def _page_text(page: Page, *, raw: bool = False) -> str:
+    texts = [block.text for block in page.section.blocks if isinstance(block, Markdown)]
+    return "\n\n".join(texts) if raw else to_plain_text(*texts)

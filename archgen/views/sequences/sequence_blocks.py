@@ -10,7 +10,7 @@ from archgen.model.step_connections import ConnectedStep
 from archgen.model.use_case_steps import StepEnd
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup
-from archgen.views.sequences import step_words
+from archgen.views.sequences import sequence_charts
 from archgen.views.sequences.sequence_charts import CHART_PREFIX
 from archgen.views.shapes import (
     Block,
@@ -60,7 +60,7 @@ def make_sequence_blocks(lookup: Lookup, use_case: UseCase) -> Iterator[Block]:
 def _list_facts(lookup: Lookup, use_case: UseCase) -> Iterator[tuple[str, Inlines]]:
     if use_case.actors:
         yield "From outside", inline_text.to_inlines(", ".join(actor.title for actor in use_case.actors.values()))
-    total = step_words.describe_total(lookup, use_case.id)
+    total = sequence_charts.describe_total(lookup, use_case.id)
     if total:
         yield "All steps", inline_text.to_inlines(total)
 
@@ -96,7 +96,7 @@ def _link_participant(lookup: Lookup, use_case: UseCase, end: StepEnd) -> Inline
     component = lookup.architecture.find_component(end.participant) if end.kind != "actor" else None
     if component is not None:
         return (inline_text.component_link(component),)
-    return inline_text.to_inlines(Text(step_words.name_participant(lookup, use_case, end), emphasis=True))
+    return inline_text.to_inlines(Text(sequence_charts.name_participant(lookup, use_case, end), emphasis=True))
 
 
 def _link_carriers(lookup: Lookup, connected: ConnectedStep) -> Inlines:
@@ -114,12 +114,12 @@ def _link_carriers(lookup: Lookup, connected: ConnectedStep) -> Inlines:
 
 
 def _make_time_cell(lookup: Lookup, use_case: UseCase, number: int) -> Inlines:
-    times = step_words.find_times(lookup, use_case.id)
+    times = sequence_charts.find_times(lookup, use_case.id)
     value = times.steps[number - 1] if times else None
     if value is None:
         return ()
     if value.value is None:
-        return (Text(step_words.NOT_PROVEN, muted=True),)
+        return (Text(sequence_charts.NOT_PROVEN, muted=True),)
     return timing_tables.duration_cell(value)
 
 

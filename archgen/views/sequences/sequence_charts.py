@@ -7,14 +7,16 @@ from itertools import pairwise
 
 from archgen.frozen import replace
 from archgen.model.architecture import UseCase
+from archgen.model.path_resolver import title_from_id
 from archgen.model.port_media import is_physical
 from archgen.model.step_connections import ConnectedStep
 from archgen.model.use_case_steps import StepEnd
+from archgen.timing.chains.use_case_times import UseCaseTimes
 from archgen.views import short_figures
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
-from archgen.views.sequence_shapes import Lifeline, MessageStyle, SequenceChart, SequenceMessage
-from archgen.views.sequences import step_words
+from archgen.views.picture_shapes import Lifeline, MessageStyle, SequenceChart, SequenceMessage
+from archgen.views.timing import value_format
 
 CHART_PREFIX = "sequences/"
 """How the id of each sequence begins; the id of its use case follows."""
@@ -107,7 +109,7 @@ def _draw_steps(
     title = use_case.title if is_whole else f"{use_case.title}: {numbers}"
     legend = tuple(key for style, key in _LEGEND_KEYS.items() if style in styles)
     has_outside = any(lifeline.kind == "actor" for lifeline in lifelines)
-    total = short_figures.shorten_bounds(step_words.describe_total(lookup, use_case.id)) if is_whole else ""
+    total = short_figures.shorten_bounds(describe_total(lookup, use_case.id)) if is_whole else ""
     return SequenceChart(
         chart_id,
         title,
@@ -120,7 +122,7 @@ def _draw_steps(
 
 
 def _make_lifeline(lookup: Lookup, use_case: UseCase, end: StepEnd) -> Lifeline:
-    title = step_words.name_participant(lookup, use_case, end)
+    title = name_participant(lookup, use_case, end)
     if end.kind in {"actor", "unknown"}:
         return Lifeline(title, "actor" if end.kind == "actor" else "unknown", tooltip=title)
     component = lookup.architecture.find_component(end.participant)
@@ -136,9 +138,9 @@ def _make_message(
     step = connected.step
     text = " ".join((step.say or "").split())
     text = text if len(text) <= _MAX_TEXT else f"{text[: _MAX_TEXT - 1]}…"
-    carriers = list(step_words.list_carriers(lookup, connected))
+    carriers = list(_list_carriers(lookup, connected))
     shown = ", ".join(carriers[:2]) + (f" and {len(carriers) - 2} more" if len(carriers) > 2 else "")  # noqa: PLR2004
-    time = step_words.describe_step_time(lookup, use_case.id, connected.number)
+    time = describe_step_time(lookup, use_case.id, connected.number)
     lines = ("" if is_printed and text else shown, short_figures.shorten_bounds(time))
     detail = "no connection" if connected.is_broken else "\n".join(filter(None, lines))
     tooltip = "\n".join(filter(None, (text, ", ".join(carriers), time)))
@@ -185,3 +187,71 @@ def _describe_chart(use_case: UseCase, lifelines: Sequence[Lifeline], messages: 
         way = tail if message.tail == message.head else f"{tail} to {head}"
         sentences.append(f"{message.number}: {way}{f': {message.text}' if message.text else ''}.")
     return " ".join(sentences)
+
+
+NOT_PROVEN = "not proven"
+"""Words for a time that has no bound, or none that is known."""
+
+
+def name_participant(lookup: Lookup, use_case: UseCase, end: StepEnd) -> str:
+    """Return the title of who takes part in a step; a name that means nothing stands for itself."""
+    if end.kind == "actor":
+        return use_case.actors[end.id].title
+    component = lookup.architecture.find_component(end.participant)
+    return component.title if component else end.id
+
+
+def _list_carriers(lookup: Lookup, connected: ConnectedStep) -> tuple[str, ...]:
+    """Return what a step runs along, each once: types, or the names of ports without one."""
+    architecture = lookup.architecture
+    ports = (
+        architecture.outputs.get(each.output or "") or architecture.inputs.get(each.input or "")
+        for each in connected.connections
+    )
+    return tuple(dict.fromkeys(port.type or title_from_id(port.name) for port in ports if port))
+
+
+def find_times(lookup: Lookup, use_case_id: str) -> UseCaseTimes | None:
+    """Return how long the steps of a use case take; None where timing is not asked, or nothing says anything of it."""
+    times = lookup.timing.use_cases.get(use_case_id) if lookup.timing else None
+    return times if times is not None and any(value is not None for value in times.steps) else None
+
+
+def describe_step_time(lookup: Lookup, use_case_id: str, number: int) -> str:
+    """Return how long a step takes at most; empty where it takes no time of the architecture's."""
+    times = find_times(lookup, use_case_id)
+    value = times.steps[number - 1] if times and number <= len(times.steps) else None
+    if value is None:
+        return ""
+    text = value_format.display_duration(value)
+    return NOT_PROVEN if value.value is None or text == value_format.UNKNOWN_FIGURE else text
+
+
+def describe_total(lookup: Lookup, use_case_id: str) -> str:
+    """Return how long all steps take together; empty where timing says nothing."""
+    times = find_times(lookup, use_case_id)
+    if times is None:
+        return ""
+    text = value_format.display_duration(times.total)
+    if times.total.value is None:
+        return NOT_PROVEN
+    is_bound = times.total.complete
+    return f"at most {text}" if is_bound else f"{NOT_PROVEN} ({text})"
+
+
+def list_step_lines(lookup: Lookup, use_case: UseCase) -> Iterator[str]:
+    """Yield the steps as lines of text."""
+    for connected in lookup.steps.by_use_case.get(use_case.id, ()):
+        step = connected.step
+        source, target = (name_participant(lookup, use_case, end) for end in (step.source, step.target))
+        line = f"{connected.number}. {source}" + (f" -> {target}" if not step.is_inner else "")
+        line += f": {' '.join(step.say.split())}" if step.say else ""
+        notes = [
+            ", ".join(_list_carriers(lookup, connected)),
+            describe_step_time(lookup, use_case.id, connected.number),
+        ]
+        if connected.is_broken:
+            notes = ["no connection"]
+        if any(notes):
+            line += f" [{'; '.join(filter(None, notes))}]"
+        yield line

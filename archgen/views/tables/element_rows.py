@@ -12,11 +12,11 @@ from archgen.model.node import Topic
 from archgen.model.parameter_values import find_effective_parameters
 from archgen.model.port_media import name_on_medium, nature_of, uses_ros, word_of_medium
 from archgen.views.elements import parameter_blocks, promise_words
-from archgen.views.elements.card_parts import format_fact
+from archgen.views.elements.annotation_facts import format_fact
 from archgen.views.elements.frame_users import index_frame_ports, list_shown_frames
 from archgen.views.lookup import Lookup
 from archgen.views.tables import functional_tables, requirement_tables, type_tables
-from archgen.views.tables.start_rows import START_COLUMNS, list_start_rows
+from archgen.views.tables.start_table import START_COLUMNS, list_start_rows
 
 TextRow = tuple[str, ...]
 _ANNOTATED_TABLES = frozenset(section for section, kind in SECTION_KINDS.items() if "properties" in KEYS[kind])
@@ -238,7 +238,7 @@ def _chain_rows(lookup: Lookup) -> Iterator[TextRow]:
             chain.id,
             chain.title,
             " > ".join(point.id for point in chain.through),
-            str(chain.deadline or ""),
+            chain.deadline_text,
             str(chain.at),
         )
 

@@ -139,3 +139,26 @@ def _list_signs(step: StartStep) -> Iterator[Inlines]:
 
 def _mute_words(words: str) -> Inlines:
     return (Text(words, muted=True),)
+
+
+START_COLUMNS = ("number", "id", "kind", "phase", "host", "command", "waits_for", "up_when", "state", "place")
+
+
+def list_start_rows(lookup: Lookup) -> Iterator[tuple[str, ...]]:
+    """Yield the shown steps of the start-up, with their numbers in the whole plan."""
+    architecture = lookup.architecture
+    for number, step in list_shown_steps(lookup, make_start_plan(architecture)):
+        node = None if step.kind == "container" else architecture.nodes[step.id]
+        place = architecture.containers[step.container or ""].at if node is None else node.at
+        yield (
+            str(number),
+            step.id,
+            step.kind,
+            step.phase,
+            step.host or "",
+            shlex.join(step.command),
+            ", ".join(dict.fromkeys(wait.awaited for wait in step.waits)),
+            start_phrases.describe_ready(step),
+            start_phrases.describe_lifecycle(step),
+            str(place) if place.file else "",
+        )

@@ -1,7 +1,8 @@
-"""Size and progress of an architecture as tables."""
+"""Size and progress of an architecture as tables, and how it grew: charts of progress and findings over time."""
 
 from __future__ import annotations
 
+from collections.abc import Container
 from fractions import Fraction
 
 from archgen.analyses.size_counts import (
@@ -11,10 +12,13 @@ from archgen.analyses.size_counts import (
     measure_progress,
     measure_size,
 )
-from archgen.diagnostics.common_wording import floor_percent
+from archgen.diagnostics.common_wording import floor_percent, shorten_hash
 from archgen.model.architecture import Architecture
+from archgen.model.project_history import FindingCounts, History, HistoryPoint, ProgressRow
 from archgen.views import inline_text
-from archgen.views.shapes import Column, Inlines, Table, Text
+from archgen.views.inline_text import count_noun
+from archgen.views.picture_shapes import BarSegment, Chart, ChartBar
+from archgen.views.shapes import Block, Column, Figure, Inlines, Paragraph, Table, Text
 
 _FIGURE_LABELS = {
     "groups": "Groups of components",
@@ -144,3 +148,192 @@ def _subject_cell(architecture: Architecture, row: ProgressCounts) -> Inlines:
     if row.scope == "partner" and row.id:
         return inline_text.partner_link(architecture, row.id)
     return inline_text.to_inlines(Text(row.title, strong=row.scope == "project"))
+
+
+_MAX_BARS = 24
+"""Bars that can be read at a glance; the table has the older points, too."""
+_FINDINGS_TITLE = "Errors / warnings / notes"
+
+
+def make_growth_charts(history: History) -> tuple[Chart, ...]:
+    """Make the charts of mapped components and of findings; none for fewer than two points."""
+    shown_points = history.points[-_MAX_BARS:]
+    if len(shown_points) < 2:  # noqa: PLR2004 - one point is no history
+        return ()
+    notes = tuple(_note_older_points(history, len(shown_points)))
+    first, last = shown_points[0], shown_points[-1]
+    progress_text = f"{_format_mapped(first)} in {name_point(first, history)}, {_format_mapped(last)} in {name_point(last, history)}."
+    findings_text = f"{count_findings(first)} findings in {name_point(first, history)}, {count_findings(last)} in {name_point(last, history)}."
+    return (
+        Chart(
+            "history/progress",
+            "Components over time",
+            "components",
+            tuple(_progress_bar(point, history) for point in shown_points),
+            conclusion=f"Components mapped to nodes: {progress_text}",
+            legend=("load: mapped to nodes", "other_load: not yet mapped"),
+            notes=notes,
+            alt=f"Bars, one for each {history.by}. Components mapped to nodes: {progress_text}",
+        ),
+        Chart(
+            "history/findings",
+            "Findings over time",
+            "findings",
+            tuple(_findings_bar(point, history) for point in shown_points),
+            conclusion=f"What archgen finds: {findings_text}",
+            legend=("missed: errors", "open: warnings", "best: notes"),
+            notes=notes,
+            alt=f"Bars, one for each {history.by}. What archgen finds: {findings_text}",
+        ),
+    )
+
+
+def make_growth_blocks(history: History, drawing_ids: Container[str]) -> tuple[Block, ...]:
+    """Return the blocks of the chapter on statistics: charts that were drawn, and tables.
+
+    `drawing_ids` are the ids of all drawings of the document.
+    """
+    growth_charts = make_growth_charts(history)
+    if not growth_charts:
+        return ()
+    figures = tuple(
+        Figure(f"figure:{chart.id}", chart.id, chart.title, chart.alt)
+        for chart in growth_charts
+        if chart.id in drawing_ids
+    )
+    lead = f"How the architecture grew, {'month by month' if history.by == 'month' else 'revision by revision'}."
+    if not history.whole:
+        lead += " The clone that this was made from is shallow: what is older is not in it."
+    return (Paragraph(inline_text.to_inlines(lead)), *figures, _make_growth_table(history), *_compare_groups(history))
+
+
+def _make_growth_table(history: History) -> Table:
+    """List every point, the latest first: size, progress and findings of the whole."""
+    columns = (
+        Column("Month" if history.by == "month" else "Revision", 1.1),
+        *(
+            Column(title, 0.9, "right")
+            for title in ("Components", "Connections", *map(str.capitalize, PROGRESS_STEPS), _FINDINGS_TITLE)
+        ),
+    )
+    rows = tuple(
+        (
+            inline_text.to_inlines(name_point(point, history)),
+            inline_text.to_inlines(str(point.project_row.components)),
+            inline_text.to_inlines(str(point.connections)),
+            *(_step_cell(point.project_row, step) for step in PROGRESS_STEPS),
+            inline_text.to_inlines(_format_slashed(point.project_row.findings)),
+        )
+        for point in reversed(history.points)
+    )
+    return Table("table:history", "Size, progress and findings over time", columns, rows)
+
+
+def _compare_groups(history: History) -> tuple[Table, ...]:
+    """Compare groups and partners at the first point and at the last."""
+    first_rows = {(row.scope, row.id): row for row in history.points[0].rows}
+    columns = (
+        Column("Of", 2),
+        *(Column(title, 1.2, "right") for title in ("Components", "Mapped", "Timed", _FINDINGS_TITLE)),
+    )
+    # Rows of the last point only: groups that are gone since the first one are not listed.
+    rows = tuple(
+        _comparison_row(row, first_rows.get((row.scope, row.id)))
+        for row in history.points[-1].rows
+        if row.scope != "project"
+    )
+    title = (
+        f"Groups and partners, {name_point(history.points[0], history)} and {name_point(history.points[-1], history)}"
+    )
+    return (Table("table:history_parts", title, columns, rows),) if rows else ()
+
+
+def _comparison_row(row: ProgressRow, first_row: ProgressRow | None) -> tuple[Inlines, ...]:
+    """Make the row of one group or partner; `first_row` is None where it did not exist yet."""
+    pairs = (
+        (str(first_row.components) if first_row else "", str(row.components)),
+        (format_step_share(first_row, "mapped") if first_row else "", format_step_share(row, "mapped")),
+        (format_step_share(first_row, "timed") if first_row else "", format_step_share(row, "timed")),
+        (_format_slashed(first_row.findings) if first_row else "", _format_slashed(row.findings)),
+    )
+    return (
+        inline_text.to_inlines(row.title),
+        *(inline_text.to_inlines(format_change(old_value, new_value)) for old_value, new_value in pairs),
+    )
+
+
+def format_change(old_value: str, new_value: str) -> str:
+    """Format two values with an arrow between them, one where they are equal or the old one is empty."""
+    return new_value if old_value in {new_value, ""} else f"{old_value} \u2192 {new_value}"
+
+
+def name_point(point: HistoryPoint, history: History) -> str:
+    """Name a point: its month, or its day and the first digits of its commit."""
+    return point.day[:7] if history.by == "month" else f"{point.day} {shorten_hash(point.commit)}"
+
+
+def format_step_share(row: ProgressRow, step: str) -> str:
+    """Format the share of a step in percent, rounded down so that 100 % means all; `-` without components."""
+    return f"{floor_percent(getattr(row, step), row.components)} %" if row.components else "-"
+
+
+def _step_cell(row: ProgressRow, step: str) -> Inlines:
+    """Return the cell of a step's share, sorted by the exact share."""
+    share = str(Fraction(getattr(row, step), row.components)) if row.components else None
+    return (Text(format_step_share(row, step), sort_number=share),)
+
+
+def format_finding_counts(findings: FindingCounts) -> str:
+    """Format findings by severity: `1 error, 2 notes`; `-` for none."""
+    counts = ((findings.error, "error"), (findings.warning, "warning"), (findings.note, "note"))
+    return ", ".join(count_noun(count, name) for count, name in counts if count) or "-"
+
+
+def _format_slashed(findings: FindingCounts) -> str:
+    """Format findings as `errors / warnings / notes`."""
+    return f"{findings.error} / {findings.warning} / {findings.note}"
+
+
+def _progress_bar(point: HistoryPoint, history: History) -> ChartBar:
+    project_row = point.project_row
+    unmapped_count = project_row.components - project_row.mapped
+    segments = (
+        BarSegment(project_row.mapped, "load", "", f"{project_row.mapped} mapped to nodes"),
+        BarSegment(unmapped_count, "other_load", "", f"{unmapped_count} not yet mapped"),
+    )
+    return ChartBar(
+        name_point(point, history), tuple(segment for segment in segments if segment.length), _format_mapped(point)
+    )
+
+
+def _findings_bar(point: HistoryPoint, history: History) -> ChartBar:
+    findings = point.project_row.findings
+    segments = (
+        BarSegment(findings.error, "missed", "", count_noun(findings.error, "error")),
+        BarSegment(findings.warning, "open", "", count_noun(findings.warning, "warning")),
+        BarSegment(findings.note, "best", "", count_noun(findings.note, "note")),
+    )
+    return ChartBar(
+        name_point(point, history),
+        tuple(segment for segment in segments if segment.length),
+        str(count_findings(point)),
+    )
+
+
+def _format_mapped(point: HistoryPoint) -> str:
+    """Format mapped and all components: `3 of 7`."""
+    return f"{point.project_row.mapped} of {point.project_row.components}"
+
+
+def count_findings(point: HistoryPoint) -> int:
+    """Count the findings of all severities."""
+    findings = point.project_row.findings
+    return findings.error + findings.warning + findings.note
+
+
+def _note_older_points(history: History, shown_count: int) -> list[str]:
+    """Return a note on points that only the table has."""
+    older_count = len(history.points) - shown_count
+    return (
+        [f"The table has {older_count} older {history.by}{'s' if older_count > 1 else ''} too."] if older_count else []
+    )

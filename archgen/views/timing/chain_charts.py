@@ -9,9 +9,10 @@ from archgen.diagnostics.common_wording import join_words
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, ChainVerdict
 from archgen.timing.chains.unfound_bounds import describe_unfound_places, find_overloaded_hosts, find_unfound_places
 from archgen.timing.figures.timing_values import TimingValue
-from archgen.views.chart_shapes import BarSegment, Chart, ChartBar, SegmentKind
 from archgen.views.lookup import Lookup
+from archgen.views.picture_shapes import BarSegment, Chart, ChartBar, SegmentKind
 from archgen.views.timing import load_charts, value_format
+from archgen.views.timing.late_run_charts import make_late_run_charts
 from archgen.views.timing.load_charts import is_outside_scope, to_float
 from archgen.views.timing.timing_lookup import TimingLookup
 
@@ -38,6 +39,7 @@ def _make_chain_charts(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator[
         )
         if result.terms and is_shown and result.id in lookup.architecture.chains:
             yield make_chain_chart(lookup, timing_lookup, result)
+    yield from make_late_run_charts(lookup, timing_lookup)
 
 
 def make_chain_chart(lookup: Lookup, timing_lookup: TimingLookup, result: ChainResult) -> Chart:

@@ -69,7 +69,7 @@ def describe_margin(result: ChainResult) -> str:
         return ""
     if margin < 0:
         # A bound above the deadline says how late a chain may be; a best case above it how late it is at least.
-        sign = {"not proven": "<= ", "missed": ">= "}.get(result.verdict, "")
+        sign = ">= " if _is_missed_at_best(result) else {"not proven": "<= ", "missed": "<= "}.get(result.verdict, "")
         return f"{sign}+{round_duration(-margin, sign)}"
     sign = "<= " if result.verdict == "open" else ""
     return f"{sign}{round_duration(margin, sign)} left"
@@ -79,12 +79,18 @@ def _find_margin(result: ChainResult) -> Fraction | None:
     """Return what is left of the deadline in ns; None where nothing can be said."""
     deadline = result.deadline.value if result.deadline else None
     # What is missed for sure is missed by its best case; an overload has neither figure.
-    reached = result.best.value if result.verdict == "missed" else result.bound.value
+    reached = result.best.value if _is_missed_at_best(result) else result.bound.value
     if deadline is None or reached is None or (result.verdict != "met" and reached == deadline):
         return None
     margin = deadline - reached
     # A verdict that rests on something else (no bound was found, an overload) has no figure for how much.
     return None if (result.verdict in {"missed", "not proven"}) != (margin < 0) else margin
+
+
+def _is_missed_at_best(result: ChainResult) -> bool:
+    """Whether even the best case is too late: otherwise a run was seen in which it is, or there is an overload."""
+    deadline, best = result.deadline.value if result.deadline else None, result.best.value
+    return result.verdict == "missed" and deadline is not None and best is not None and best > deadline
 
 
 def round_duration(nanoseconds: Fraction, sign: str = "") -> str:

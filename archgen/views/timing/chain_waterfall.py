@@ -9,6 +9,7 @@ from typing import Literal
 from archgen.frozen import dataclass, replace
 from archgen.timing.analysis import ChainResult, ChainTerm
 from archgen.timing.chains.chain_advice import advise_on_chain
+from archgen.timing.figures.figure_wording import format_duration
 from archgen.timing.figures.timing_values import TimingValue, sum_fractions
 from archgen.views import element_references, inline_text
 from archgen.views.lookup import Lookup
@@ -256,6 +257,10 @@ def _make_figures(lookup: Lookup, result: ChainResult) -> Iterator[KeyFigure]:
     yield KeyFigure("At the latest", value_format.display_duration(result.bound), "", (), "")
     if result.deadline is not None:
         yield KeyFigure("Deadline", value_format.display_duration(result.deadline), "", (), "")
+    for each in result.shares:
+        note = "only simulation and recordings judge it" if each.verdict == "open" else each.verdict
+        limit_text = format_duration(each.limit)
+        yield KeyFigure(f"{each.name} of its reactions", limit_text, "", inline_text.to_inlines(note), "")
     margin = chain_status.describe_margin(result)
     if margin:
         yield KeyFigure("Margin", margin, "", (), "")

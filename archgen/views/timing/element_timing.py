@@ -14,7 +14,8 @@ from archgen.timing.system.timing_system import Activity
 from archgen.views import element_references, inline_text
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Fact, Figure, Inlines, Table, Text, show_facts
-from archgen.views.timing import chain_charts, load_charts, rate_phrases, timing_tables, use_tables, value_format
+from archgen.views.timing import chain_charts, load_charts, timing_tables, use_tables, value_format
+from archgen.views.timing.late_run_charts import make_late_run_figures
 from archgen.views.timing.timing_lookup import TimingLookup
 
 _ACTIVITY_NAME = re.compile(r"(?<![a-z0-9.])([a-z0-9.]++(?:_[a-z0-9.]++)++)")
@@ -96,6 +97,7 @@ def make_chain_blocks(
     return (
         show_facts((fact for fact in facts if fact.value and not timing_tables.is_blank(fact.value)), without),
         Figure(f"figure:{name}", name, title, chain_charts.describe_chain_verdict(result, timing_lookup)),
+        *make_late_run_figures(lookup, timing_lookup, result),
         *([Table(f"table:{name}", f"{chain.title}: parts of the bound", columns, rows)] if rows else []),
     )
 
@@ -105,11 +107,12 @@ def _spread_cell(result: ChainResult) -> Inlines:
 
 
 def _list_advice(timing_lookup: TimingLookup, result: ChainResult) -> Iterator[Fact]:
-    """Yield what takes most of a chain that does not surely meet its deadline, and what to do first."""
+    """Yield what takes most of a chain that does not surely meet its deadline, and what is missing."""
     advice = advise_on_chain(timing_lookup.analysis, result)
     if advice is not None:
         yield Fact("why", "Why", inline_text.message_to_inlines(advice.largest_parts))
-        yield Fact("advice", "What to do", inline_text.message_to_inlines(advice.first_step))
+        if advice.first_step:
+            yield Fact("advice", "What to do", inline_text.message_to_inlines(advice.first_step))
 
 
 def describe_assumptions(timing_lookup: TimingLookup, result: ChainResult) -> Iterator[str]:
@@ -175,7 +178,7 @@ def _activity_facts(
 ) -> Iterator[Fact]:
     """Yield rate and response of one activity, as far as they are known."""
     pace, response = timing_lookup.analysis.paces.get(activity.id), timing_lookup.analysis.responses.get(activity.id)
-    if pace and (rate_text := rate_phrases.format_rate_words(pace)) != "?":
+    if pace and (rate_text := value_format.format_rate_words(pace)) != "?":
         # A written rate needs no source here: the fact `Timing` beside it says what was written.
         source = (
             timing_tables.describe_rate_source(lookup, timing_lookup, activity, pace, origin_ids)
@@ -206,7 +209,7 @@ def make_rate_fact(lookup: Lookup, nodes: Iterable[Node], component_id: str) -> 
     lines = []
     for activity in matching_activities:
         pace = timing_lookup.analysis.paces.get(activity.id)
-        if pace and (rate_text := rate_phrases.format_rate_words(pace)) != "?":
+        if pace and (rate_text := value_format.format_rate_words(pace)) != "?":
             name = timing_tables.activity_link(timing_lookup, activity.id) if len(matching_activities) > 1 else ()
             origin_ids = timing_lookup.rate_origins.get(activity.id, ())
             source = (

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 from typing import Literal
 
-from archgen.timing.analysis import HostLoad
+from archgen.timing.analysis import ChainResult, HostLoad
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup
@@ -23,9 +23,67 @@ from archgen.views.shapes import (
     WaterfallPiece,
     WaterfallStep,
 )
-from archgen.views.timing import load_charts, value_format
-from archgen.views.timing.chain_waterfall import list_node_owners
+from archgen.views.timing import chain_status, load_charts, value_format
+from archgen.views.timing.chain_waterfall import list_known_kinds, list_node_owners
 from archgen.views.timing.timing_lookup import TimingLookup
+
+_MAX_SCALE = Fraction(2)
+"""The scale ends at twice the deadline: beyond that a bar is cut, or all the others would be too short to compare."""
+_SLACK_TICKS = (0, 25, 50, 75, 100, 150)
+
+
+def make_slack_waterfall(lookup: Lookup, timing_lookup: TimingLookup) -> Waterfall | None:
+    """Show how much of its deadline each chain uses; None where no chain has a deadline and a known time."""
+    results = [
+        (result, share)
+        for result in chain_status.rank_chains(timing_lookup.chains)
+        if result.id in lookup.architecture.chains and (share := chain_status.used_share(result)) is not None
+    ]
+    if not results:
+        return None
+    scale = min(_MAX_SCALE, max(Fraction(1), *(share for _, share in results)))
+    ticks = tuple((float(Fraction(tick, 100) / scale), f"{tick} %") for tick in _SLACK_TICKS if tick <= scale * 100)
+    steps = tuple(_make_step(lookup, result, share, scale) for result, share in results)
+    is_cut = any(share > scale for _, share in results)
+    return Waterfall(
+        (),
+        (),
+        (),
+        (None, float(1 / scale)),
+        "",
+        ticks,
+        steps,
+        f"What takes more than {int(scale * 100)} % of its deadline is drawn short." if is_cut else "",
+        (),
+        (),
+        title="How much of its deadline each chain uses",
+    )
+
+
+def _make_step(lookup: Lookup, result: ChainResult, share: Fraction, scale: Fraction) -> WaterfallStep:
+    title = Text(lookup.architecture.chains[result.id].title, ref=f"chain:{result.id}")
+    words = (
+        f"{value_format.display_duration(result.bound)} of {value_format.display_duration(result.deadline)}"
+        if result.deadline
+        else ""
+    )
+    percent = f"{value_format.display_number(share * 100, 1)} %"
+    words = f"{'' if result.bound.complete else '>= '}{percent} · {words}"
+    return WaterfallStep(title, chain_status.chain_chip(result), tuple(_make_slack_pieces(result, scale)), words)
+
+
+def _make_slack_pieces(result: ChainResult, scale: Fraction) -> Iterator[WaterfallPiece]:
+    """Yield how long a chain waits, works and is on links, as shares of the scale; what nobody knows up to the deadline."""
+    deadline = (result.deadline.value if result.deadline else None) or Fraction(1)
+    position = Fraction(0)
+    for kind, length, words in list_known_kinds(result):
+        end = position + length / deadline
+        if position < scale:
+            yield WaterfallPiece(kind, float(position / scale), float(min(end, scale) / scale), words, end > scale)
+        position = end
+    if not result.bound.complete and position < 1:
+        yield WaterfallPiece("unknown", float(position / scale), float(1 / scale), "unknown")
+
 
 _MAX_STEPS = 40
 """A host with more nodes gets one line for all that do not fit."""

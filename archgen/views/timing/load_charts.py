@@ -7,9 +7,9 @@ from fractions import Fraction
 
 from archgen.timing.analysis import HostLoad
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
-from archgen.views.chart_shapes import BarSegment, Chart, ChartBar, SegmentKind
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
+from archgen.views.picture_shapes import BarSegment, Chart, ChartBar, SegmentKind
 from archgen.views.timing import value_format
 from archgen.views.timing.timing_lookup import TimingLookup
 
@@ -253,11 +253,15 @@ def describe_load(load: HostLoad) -> str:
         location = f" ({', '.join(full_cores)})" if full_cores and len(load.core_loads) > 1 else ""
         return f"Overloaded{location}: {share_text} of {core_count}."
     if load.verdict == "schedulable":
-        return f"In time: {share_text} of {core_count}, and everything is done before it is due again."
+        how = "priorities by rate are sure to do" if load.unproven else "everything is done before it is due again"
+        return f"In time: {share_text} of {core_count}, and {how}."
     unknown_count = sum(value.value is None for _, value in load.activity_shares)
     # Nothing at all is known, so there is no figure to begin the sentence with.
     if unknown_count and share_text == value_format.UNKNOWN_FIGURE:
         return f"The load is not known: that of {count_noun(unknown_count, 'activity')} is missing."
     if unknown_count:
         return f"{share_text[0].upper()}{share_text[1:]} of {core_count}; the load of {count_noun(unknown_count, 'activity')} is not known."
-    return f"{share_text} of {core_count}: below full load, so response times decide."
+    parts = f"{len(load.unproven)} of {count_noun(len(load.activity_shares), 'activity')}"
+    return (
+        f"{share_text} of {core_count}: below full load, but nothing proves of {parts} that their work is done in time."
+    )

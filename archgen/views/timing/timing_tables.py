@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from archgen.timing.analysis import EventPace, HostLoad
+from archgen.timing.analysis import ChainResult, EventPace, HostLoad
+from archgen.timing.figures.figure_wording import format_duration
 from archgen.timing.figures.timing_values import TimingValue
+from archgen.timing.load.host_verdicts import name_host_verdict
 from archgen.timing.system.timing_system import Activity
 from archgen.views import element_references, inline_text, timing_words
-from archgen.views.graph_shapes import PeriodStep as Step
 from archgen.views.lookup import Lookup
+from archgen.views.picture_shapes import PeriodStep as Step
 from archgen.views.shapes import Column, Inlines, Status, Table, Text, drop_empty_columns
-from archgen.views.timing import load_charts, rate_phrases, value_format
+from archgen.views.timing import load_charts, value_format
 from archgen.views.timing.timing_lookup import TimingLookup
 
 TIER_WORDS = {
@@ -27,6 +29,7 @@ TIER_WORDS = {
     "ros2_executor": "by rounds of the executor",
     "cores": "several cores",
     "whole host": "several cores as one",
+    "whole way": "ways over hosts as wholes",
     "unknown": "",
 }
 """How a response time was found, in words; see `Tier` in the timing analysis."""
@@ -38,12 +41,6 @@ _SHORT_TIER_WORDS = {
     "priorities": "priorities",
 }
 """Shorter words for the table of all activities, where a longer line in each row makes the table a page longer."""
-_VERDICT_WORDS = {
-    "schedulable": "in time",
-    "overload": "overloaded",
-    "undecided": "open: load alone does not decide",
-    "unknown": "unknown",
-}
 LOAD_STATES: Mapping[str, Status] = {
     "overload": "missed",
     "undecided": "not proven",
@@ -65,6 +62,13 @@ def figure_cell(text: str, value: TimingValue) -> Inlines:
 def duration_cell(value: TimingValue) -> Inlines:
     """Return a table cell for the upper bound of a duration."""
     return figure_cell(value_format.display_duration(value), value)
+
+
+def deadline_cell(result: ChainResult) -> Inlines:
+    """Return a table cell for all deadlines of a chain: `400 ms, 95 % in 150 ms`."""
+    always = duration_cell(result.deadline) if result.deadline else ()
+    shares = ", ".join(f"{each.name} in {format_duration(each.limit)}" for each in result.shares)
+    return (*always, Text(f"{', ' if always else ''}{shares}")) if shares else always
 
 
 def share_cell(value: TimingValue) -> Inlines:
@@ -90,15 +94,15 @@ def make_period_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | No
         if lookup.scope.shows_node(activity.node)
     ]
     # Every step in the order of the scale, so that the rows need no sorting; empty steps are dropped below.
-    links_by_step: dict[Step, list[Inlines]] = {step: [] for step in rate_phrases.PERIOD_STEP_WORDS}
+    links_by_step: dict[Step, list[Inlines]] = {step: [] for step in value_format.PERIOD_STEP_WORDS}
     for activity in shown_activities:
-        links_by_step[rate_phrases.find_period_step(timing_lookup.analysis.paces.get(activity.id))].append(
+        links_by_step[value_format.find_period_step(timing_lookup.analysis.paces.get(activity.id))].append(
             activity_link(timing_lookup, activity.id)
         )
     rows = tuple(
         (
             inline_text.to_inlines(
-                Text(rate_phrases.PERIOD_STEP_WORDS[step], sort_number=rate_phrases.longest_period(step))
+                Text(value_format.PERIOD_STEP_WORDS[step], sort_number=value_format.longest_period(step))
             ),
             inline_text.to_inlines(str(len(activity_links))),
             inline_text.join_inlines(activity_links),
@@ -208,7 +212,7 @@ def make_load_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | None
             # Both bounds hold for a single core only.
             share_cell(load.rate_monotonic_bound) if load.cores == 1 else (),
             share_cell(load.earliest_deadline_bound) if load.cores == 1 else (),
-            inline_text.to_inlines(Text(_VERDICT_WORDS[load.verdict], status=LOAD_STATES[load.verdict])),
+            inline_text.to_inlines(Text(name_host_verdict(load), status=LOAD_STATES[load.verdict])),
             inline_text.to_inlines(value_format.describe_missing(load.utilisation, timing_lookup.analysis, 3)),
         )
         for name, load in rank_hosts(timing_lookup)

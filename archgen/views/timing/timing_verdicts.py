@@ -70,7 +70,7 @@ def list_late_elements(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator[
 
 
 def _describe_late_chain(result: ChainResult, timing_lookup: TimingLookup) -> Iterator[str]:
-    """Yield by how much a chain is late, what takes most and why, and one thing to do."""
+    """Yield by how much a chain is late, what takes most and why, and what is missing."""
     advice = advise_on_chain(timing_lookup.analysis, result)
     if advice is None:
         yield chain_charts.describe_chain_verdict(result, timing_lookup)
@@ -133,7 +133,7 @@ def make_bound_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | Non
             timing_tables.duration_cell(result.bound),
             timing_tables.figure_cell(value_format.display_lower_bound(result.best), result.best),
             _largest_step(timing_lookup, result),
-            timing_tables.duration_cell(result.deadline) if result.deadline else (),
+            timing_tables.deadline_cell(result),
             chain_status.margin_cell(result),
             chain_status.verdict_chip(result),
             inline_text.to_inlines(value_format.describe_missing(result.bound, timing_lookup.analysis, 3)),

@@ -9,12 +9,11 @@ import pytest
 
 from archgen.compare import Change
 from archgen.compare.comparison import ChangeKind
-from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
-from archgen.compare.losses.loss_wording import tick_name, tick_sorted_names
+from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_sorted_names
+from archgen.compare.losses.fallen_figures import _has_grown as has_grown
 from archgen.compare.losses.missed_deadlines import _lateness_reason as lateness_reason
-from archgen.compare.losses.overloaded_resources import _has_grown as has_grown
 from archgen.compare.losses.timing_causes import TimingCauses
-from archgen.compare.losses.unserved_requirements import _drops_requirement as drops_requirement
+from archgen.compare.losses.weakened_demands import _drops_requirement as drops_requirement
 from archgen.compare.matched_ids import MatchedIds
 from archgen.timing.figures.timing_values import TimingValue
 from tests.compare.conftest import Compared

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from archgen.compare import Comparison
-from archgen.compare.limit_wording import describe_growth, describe_limit
+from archgen.compare.asked_limits import describe_growth, describe_limit
 from archgen.views.changes.breaking_verdict import write_missing_entries
-from archgen.views.changes.limit_lines import write_limit_lines
+from archgen.views.changes.figure_lines import write_limit_lines
 from tests.compare.conftest import Compared, ComparedFolders
 
 BASE = """\

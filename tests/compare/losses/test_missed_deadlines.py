@@ -114,6 +114,29 @@ TABLE = {
         [("deadline: 250 ms", "deadline: 300 ms")],
         both("react/deadline", f"relaxes the deadline of the chain `react` from 250 ms to 300 ms; {ALL}", *EVERYBODY),
     ),
+    "a share of the reactions that gets more time": (
+        BASE.replace("deadline: 250 ms", "deadline: {always: 250 ms, 95 %: 150 ms}"),
+        [("95 %: 150 ms", "95 %: 200 ms")],
+        both(
+            "react/deadline.95 %",
+            f"relaxes the deadline of the chain `react` for 95 % of its reactions from 150 ms to 200 ms; {ALL}",
+            *EVERYBODY,
+        ),
+    ),
+    "a share of the reactions of which nothing is asked any more": (
+        BASE.replace("deadline: 250 ms", "deadline: {95 %: 150 ms}"),
+        [(", deadline: {95 %: 150 ms}", "")],
+        both(
+            "react/deadline.95 %",
+            f"takes the deadline of 150 ms for 95 % of its reactions from the chain `react`; {ALL}",
+            *EVERYBODY,
+        ),
+    ),
+    "a share of the reactions of which more of them ask as much": (
+        BASE.replace("deadline: 250 ms", "deadline: {always: 250 ms, 95 %: 150 ms}"),
+        [("95 %: 150 ms", "99 %: 140 ms")],
+        [],
+    ),
     "a longer deadline of a chain of one's own": (
         BASE.replace("owner: sssa", "owner: certh").replace("owner: tum", "owner: certh"),
         [("deadline: 250 ms", "deadline: 300 ms")],

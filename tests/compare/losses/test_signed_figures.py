@@ -14,7 +14,7 @@ import pytest
 from archgen import pipeline
 from archgen.compare.compare_versions import compare_versions
 from archgen.compare.losses.change_context import ChangeContext
-from archgen.compare.losses.versions_without import VersionsWithout
+from archgen.compare.losses.separated_causes import VersionsWithout
 from archgen.compare.match_elements import match_elements
 from archgen.products.comparison_input import make_comparison_input
 from archgen.timing.run_analysis import analyse_for_chains

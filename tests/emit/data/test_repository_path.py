@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.emit.data.repository_path import path_in_repository
+from archgen.emit.data.findings_data import path_in_repository
 
 
 @pytest.mark.parametrize(

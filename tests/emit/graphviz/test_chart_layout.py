@@ -9,8 +9,8 @@ import pytest
 from archgen.emit import graphviz
 from archgen.emit.graphviz import chart_layout, palette
 from archgen.emit.graphviz.placed_scene import Scene
-from archgen.views.chart_shapes import BarSegment, Chart, ChartBar
 from archgen.views.lookup import make_lookup
+from archgen.views.picture_shapes import BarSegment, Chart, ChartBar
 from archgen.views.timing import chain_charts
 from tests.emit.graphviz.overlaps import overlapping_parts
 from tests.judged_projects import judge_ramcip

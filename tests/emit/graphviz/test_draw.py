@@ -19,16 +19,16 @@ from archgen.emit.graphviz import (
     draw_pictures,
     font_config,
     picture_cache,
-    png_palette,
+    png_writer,
     start_early_workers,
     worker_pool,
 )
 from archgen.emit.graphviz.drawing_worker import DrawingFailure, DrawingTask
 from archgen.emit.graphviz.worker_pool import DrawingWorker
 from archgen.emit.picture import Picture
-from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs import draw_component, draw_group, draw_overview
 from archgen.views.lookup import make_lookup
+from archgen.views.picture_shapes import Arrow, Box, Graph
 from tests.architectures import robot
 
 VIEW = make_lookup(robot(1))
@@ -295,7 +295,7 @@ def _unpack_png(data: bytes) -> list[bytes]:
 def test_colours_of_the_drawing_stay_exact_and_others_are_taken_together() -> None:
     tints = [bytes.fromhex(colour) for colour in ("f3f2f0", "f7f0f5", "f2f3f4", "ffffff")]
     smooth = [bytes.fromhex(colour) for colour in ("808080", "818283", "9f9f9f", "707070")]
-    data = png_palette.index_pixels(_plain_pixels(4, tints + smooth), frozenset(tints))
+    data = png_writer.index_pixels(_plain_pixels(4, tints + smooth), frozenset(tints))
     assert data
     grey = smooth[0]
     assert _unpack_png(data) == [*tints, grey, grey, grey, smooth[3]]
@@ -306,7 +306,7 @@ def test_few_colours_take_half_a_byte_and_the_rarest_shades_become_their_neighbo
     shades = [bytes((0, 0, 32 * step)) for step in range(8)] + [bytes((0, 32 * step, 0)) for step in range(1, 7)]
     rare = bytes((0, 32, 32))
     row = [*own, *shades, rare]
-    data = png_palette.index_pixels(_plain_pixels(17, row), frozenset(own))
+    data = png_writer.index_pixels(_plain_pixels(17, row), frozenset(own))
     assert data
     assert data[24] == 4
     colours = _unpack_png(data)
@@ -316,15 +316,15 @@ def test_few_colours_take_half_a_byte_and_the_rarest_shades_become_their_neighbo
 
 def test_where_the_drawing_has_many_colours_none_is_given_up() -> None:
     own = [bytes((18 * step, 0, 0)) for step in range(13)]
-    data = png_palette.index_pixels(_plain_pixels(13, own), frozenset(own))
+    data = png_writer.index_pixels(_plain_pixels(13, own), frozenset(own))
     assert data
     assert (data[24], _unpack_png(data)) == (8, own)
 
 
 def test_more_than_256_colours_have_no_palette() -> None:
     colours = [bytes((red, green, 0)) for red in range(17) for green in range(16)]
-    assert png_palette.index_pixels(_plain_pixels(16, colours), frozenset(colours)) is None
-    assert png_palette.index_pixels(_plain_pixels(16, colours), frozenset()) is not None
+    assert png_writer.index_pixels(_plain_pixels(16, colours), frozenset(colours)) is None
+    assert png_writer.index_pixels(_plain_pixels(16, colours), frozenset()) is not None
 
 
 def test_a_png_has_each_fill_as_it_is_in_the_svg() -> None:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from archgen.emit.graphviz.drawn_legend import add_graph_legend
 from archgen.emit.graphviz.placed_scene import Scene
-from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.picture_shapes import Arrow, Box, Graph
 
 
 def test_widths_of_arrows_are_explained_with_their_numbers() -> None:

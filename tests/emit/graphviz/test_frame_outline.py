@@ -5,11 +5,10 @@ from __future__ import annotations
 import pytest
 
 from archgen.emit.graphviz import graph_drawing
-from archgen.emit.graphviz.flow_layout import unwrap_tall_columns
-from archgen.emit.graphviz.frame_outline import draw_frame
+from archgen.emit.graphviz.flow_layout import draw_frame, unwrap_tall_columns
 from archgen.emit.graphviz.placed_scene import Scene, SceneLine, ScenePart
 from archgen.emit.graphviz.styled_graph import style_graph
-from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
+from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph
 
 FRAME = Cluster("g", "G")
 

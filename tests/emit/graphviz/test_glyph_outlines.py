@@ -6,7 +6,7 @@ import pytest
 
 from archgen.emit import graphviz
 from archgen.emit.graphviz.glyph_outlines import shorten_glyphs, shorten_path
-from archgen.views.chart_shapes import BarSegment, Chart, ChartBar
+from archgen.views.picture_shapes import BarSegment, Chart, ChartBar
 
 
 @pytest.mark.parametrize(

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from archgen.emit.graphviz import graph_drawing, two_step_layout
-from archgen.emit.graphviz.layout_memory import LayoutMemory
-from archgen.views.graph_shapes import Graph
+from archgen.emit.graphviz.line_crossings import LayoutMemory
 from archgen.views.graphs import draw_components
 from archgen.views.lookup import make_lookup
+from archgen.views.picture_shapes import Graph
 from tests.architectures import robot
 
 GRAPH = draw_components(make_lookup(robot(1)))

@@ -18,9 +18,9 @@ from archgen.emit.graphviz.label_places import declutter_labels
 from archgen.emit.graphviz.placed_scene import Scene, SceneLine, ScenePart, rectangles_meet
 from archgen.emit.graphviz.styled_graph import style_graph
 from archgen.model.architecture import View
-from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 from archgen.views.graphs import draw_group, make_all_graphs
 from archgen.views.lookup import make_lookup
+from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph
 from tests.architectures import generated, robot
 from tests.emit.graphviz.overlaps import overlapping_parts
 from tests.property_sizes import list_seeds

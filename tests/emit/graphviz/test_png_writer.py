@@ -9,7 +9,7 @@ import pytest
 
 from archgen.emit.graphviz import graph_drawing, layout_engine, png_writer
 from archgen.emit.graphviz.placed_scene import Scene
-from archgen.views.graph_shapes import Arrow, Box, Graph
+from archgen.views.picture_shapes import Arrow, Box, Graph
 
 _ATTRIBUTES = {"pad": '"0.08"', "bgcolor": '"#ffffff"'}
 

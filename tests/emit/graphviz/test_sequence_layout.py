@@ -8,7 +8,7 @@ import pytest
 
 from archgen.emit.graphviz.graph_drawing import draw_picture
 from archgen.emit.graphviz.sequence_layout import lay_out_sequence
-from archgen.views.sequence_shapes import Lifeline, SequenceChart, SequenceMessage
+from archgen.views.picture_shapes import Lifeline, SequenceChart, SequenceMessage
 from tests.emit.graphviz.overlaps import overlapping_parts
 
 LIFELINES = (

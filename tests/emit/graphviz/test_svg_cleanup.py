@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from archgen.emit.graphviz.graph_drawing import clean_graphviz_svg, clean_outlines, find_drawn_edges
-from archgen.views.graph_shapes import Graph
+from archgen.views.picture_shapes import Graph
 
 _GRAPH = Graph("groups/a b", "A & B", "flow", (), (), alt="Two <boxes>", kind="component")
 _PROLOGUE = '<?xml version="1.0"?>\n<!DOCTYPE svg>\n<!-- Generated -->\n'

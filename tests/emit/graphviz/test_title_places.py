@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from archgen.emit.graphviz.label_places import clear_titles, count_cut_titles
 from archgen.emit.graphviz.placed_scene import Scene, SceneFrame, SceneLine, ScenePart
-from archgen.emit.graphviz.title_places import clear_titles, count_cut_titles
 
 FRAME = SceneFrame("c0", {}, (0, 0, 300, 100))
 TITLE = ScenePart("t0", {}, 38, 88, 60, 16, "title")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from archgen.emit.markdown.mermaid_chart import write_flowchart
-from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
+from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph
 
 
 def test_composed_components_ports_and_made_connections_have_forms_of_their_own() -> None:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from archgen.emit.markdown.mermaid_sequence import write_sequence_diagram
-from archgen.views.sequence_shapes import Lifeline, SequenceChart, SequenceMessage
+from archgen.emit.markdown.mermaid_chart import write_sequence_diagram
+from archgen.views.picture_shapes import Lifeline, SequenceChart, SequenceMessage
 
 
 def test_no_text_of_the_model_is_a_word_of_mermaid() -> None:

@@ -8,8 +8,8 @@ import re
 import pytest
 
 from archgen.emit.site import status_marks
-from archgen.emit.site.explorer_files import build_explorer_files, find_explorer_address, list_explorer_scripts
 from archgen.emit.site.page_links import SiteLinks
+from archgen.emit.site.script_files import build_explorer_files, find_explorer_address, list_explorer_scripts
 from archgen.views.explorer.map_shapes import ExplorerMap
 from archgen.views.shapes import Page, Section
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from archgen.emit.file_tree import FileTree
 from archgen.emit.picture import Picture
-from archgen.emit.site.page_policy import PAGE_POLICY
+from archgen.emit.site.page_frame import PAGE_POLICY
 from archgen.emit.site.standalone_page import write_standalone_page
 from archgen.views.shapes import Figure, Outline, Section
 

@@ -11,7 +11,7 @@ import pytest
 
 from archgen import pipeline
 from archgen.emit.site.page_links import SiteLinks
-from archgen.emit.site.search_files import MAX_PART_BYTES, build_search_files
+from archgen.emit.site.script_files import MAX_PART_BYTES, build_search_files
 from archgen.products.output_options import OutputOptions
 from archgen.products.product_inputs import ProductInputs
 from archgen.views.search import make_search_entries

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from archgen.emit.terminal.budget_text import budget_to_json, format_budget
+from archgen.emit.terminal.chain_text import budget_to_json, format_budget
 from archgen.timing.search.chain_budgets import find_chain_budget
 from tests.timing.random_systems import architecture
-from tests.timing.search.trials import start_trials
+from tests.timing.search.trials import bound_with, start_trials
 
 TEXT = """
 partners: {north: {title: North}, south: South}
@@ -27,7 +27,7 @@ chains: {c: {through: [scan, last], deadline: 150 ms}}
 
 def test_partners_see_what_each_may_take() -> None:
     trials = start_trials(architecture(TEXT))
-    result = trials.bound_chain("c")
+    result = bound_with(trials.architecture)["c"]
     budget = find_chain_budget(trials, result)
     assert list(format_budget(result, budget, {"north": "North", "south": "South"}, 200)) == [
         "c: 130 ms, deadline 150 ms, met, 20 ms left",

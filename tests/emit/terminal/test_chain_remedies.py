@@ -6,12 +6,10 @@ from fractions import Fraction
 
 import pytest
 
-from archgen.emit.terminal import chain_remedies
-from archgen.simulation.chain_witnesses import ChainWitness
-from archgen.timing.chains.chain_advice import ChainAdvice
-from archgen.timing.figures.timing_values import TimingValue
+from archgen.emit.terminal import chain_gaps, chain_remedies
+from archgen.simulation.seeded_runs import LateRun
 from archgen.timing.search.change_trials import TriedChange
-from archgen.timing.search.proving_changes import ChainRemedy
+from archgen.timing.search.proposals import Proposal, TriedConfiguration
 from tests.timing.search.trials import bound_with
 from tests.timing.sketches import read_sketch
 
@@ -25,50 +23,69 @@ MS = Fraction(10**6)
 def test_what_is_left_of_a_deadline(deadline: str, text: str) -> None:
     nodes = {"a @p": "period: 96 ms, wcet: 2 ms", "b @p": "wcet: 3 ms"}
     model = read_sketch(nodes, "a>b", f"hosts: {{p: {{cores: 1}}}}\nchains: {{c: {{through: [a, b]{deadline}}}}}")
-    assert chain_remedies.describe_slack(bound_with(model)["c"]) == text
+    assert chain_gaps.describe_slack(bound_with(model)["c"]) == text
 
 
 def test_a_witness_is_told_with_the_command_that_repeats_it() -> None:
-    assert chain_remedies.describe_witness("c", ChainWitness(17, 60, 163 * MS)) == (
+    assert chain_gaps.describe_witness("c", LateRun(17, 60, 163 * MS)) == (
         "seen in `archgen simulate --seed 17 --chain c --seconds 60`: 163 ms"
     )
-    assert chain_remedies.describe_witness("c", None) == ""
+    assert chain_gaps.describe_witness("c", None) == ""
 
 
-@pytest.mark.parametrize(
-    ("changes", "text"),
-    [
-        ((TriedChange("a", "timing.core", "3"),), ("--set a.timing.core=3", "then at most 40 ms")),
+def _propose(bounds: list[dict[str, int | None]], hopeless: dict[str, Fraction] | None = None) -> Proposal:
+    """Return a proposal of configurations in which the chains `a` and `b` take so long, in ms; both may take 100 ms."""
+    tried = []
+    for number, each in enumerate(bounds):
+        late = tuple(name for name, bound in each.items() if bound is None or bound > 100)
+        figures = {name: None if bound is None else bound * MS for name, bound in each.items()}
+        changes = tuple(TriedChange("n", "timing.priority", str(at)) for at in range(number))
+        tried.append(TriedConfiguration(f"way {number}", changes, figures, late, Fraction(len(late))))
+    return Proposal({"a": 100 * MS, "b": 100 * MS}, hopeless or {}, tuple(tried))
+
+
+def test_a_chain_that_the_best_configuration_proves_is_told_with_its_bound() -> None:
+    proposal = _propose([{"a": 120, "b": 90}, {"a": 80, "b": 95}])
+    assert list(chain_remedies.list_remedy_rows(proposal)) == [
+        ("way 1 (`archgen timing --propose`)",),
+        ("a", "then at most 80 ms"),
+    ]
+
+
+def test_a_chain_that_nothing_proves_is_told_with_what_was_tried() -> None:
+    assert list(chain_remedies.list_remedy_rows(_propose([{"a": 120, "b": 90}, {"a": 120, "b": 90}]))) == [
+        ("a", "nothing of what was tried (1 configuration)")
+    ]
+    better = _propose([{"a": 150, "b": None}, {"a": 120, "b": 90}])
+    assert [row[1] for row in list(chain_remedies.list_remedy_rows(better))[1:]] == [
+        "then at most 120 ms, which is not enough",
+        "then at most 90 ms",
+    ]
+    assert list(chain_remedies.list_remedy_rows(None)) == []
+
+
+def test_a_floor_above_the_deadline_is_said_first() -> None:
+    proposal = _propose([{"a": 120, "b": 90}], {"a": 110 * MS})
+    assert chain_remedies.describe_remedy(proposal, "a") == (
+        "with nobody in its way it takes 110 ms: nothing but other rates, triggers or execution times can prove it "
+        "(`archgen timing --budget a`)"
+    )
+
+
+def test_all_that_was_tried_is_a_table_and_the_best_is_marked() -> None:
+    proposal = _propose([{"a": 150, "b": None}, {"a": 120, "b": 90}])
+    lines = [" ".join(line.split()) for line in chain_remedies.format_proposal(proposal)]
+    assert lines[1:] == [
+        "changes met a b above configuration",
+        "0 0 of 2 150 ms no bound 200 % way 0",
+        "-> 1 1 of 2 120 ms 90 ms ok 100 % way 1",
+        "",
+        "Proposed: way 1.",
+        "Not proven then: a 120 ms, 20 ms above its deadline.",
         (
-            (TriedChange("box", "threads", "2"), TriedChange("x y", "callback_groups.g", "c")),
-            ("--set box.threads=2 --set 'x y.callback_groups.g=c'", "then at most 40 ms"),
+            "Priorities are those of processes under SCHED_FIFO: what starts each has to set its own (in a launch file "
+            '`prefix="chrt -f 20"`), and may do so with CAP_SYS_NICE, or with `rtprio 99` in /etc/security/limits.d.'
         ),
-        (
-            (),
-            ("nothing of what was tried: priority of a, b, c, d and 1 more; callback group of n; more could be tried",),
-        ),
-    ],
-)
-def test_what_would_prove_a_chain(changes: tuple[TriedChange, ...], text: tuple[str, ...]) -> None:
-    tried = (("priority", ("a", "b", "c", "d", "e")), ("callback_groups", ("n",)), ("reentrant", ("n",)))
-    remedy = ChainRemedy("c", changes, TimingValue(40 * MS), tried, is_cut=True)
-    assert chain_remedies.describe_chain_remedy(remedy) == text
-
-
-@pytest.mark.parametrize(
-    ("changes", "first_step"),
-    [
-        (
-            (TriedChange("a", "timing.core", "3"),),
-            "This would prove it, found by trying: --set a.timing.core=3 (then at most 40 ms).",
-        ),
-        ((), "Give it up."),
-    ],
-)
-def test_the_change_that_proves_a_chain_is_the_one_thing_to_do(
-    changes: tuple[TriedChange, ...], first_step: str
-) -> None:
-    advice = ChainAdvice("It may take long.", "The largest part: all.", "Give it up.")
-    remedy = ChainRemedy("c", changes, TimingValue(40 * MS), (), is_cut=False)
-    assert chain_remedies.replace_advice(advice, remedy) == advice._replace(first_step=first_step)
-    assert chain_remedies.replace_advice(advice, None) == advice
+    ]
+    worse = list(chain_remedies.format_proposal(_propose([{"a": 120, "b": 90}, {"a": 110, "b": 101}])))
+    assert worse[-1] == "Nothing of what was tried is better than what is written: there is nothing to do."

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import NO_SPAN, SourceTexts, Span
-from archgen.emit.terminal.findings_summary import LONG_LIST, WAITING_SENTENCE, render_summary_tables
-from archgen.emit.terminal.findings_text import render_findings_text
+from archgen.emit.terminal.findings_text import LONG_LIST, WAITING_SENTENCE, render_findings_text, render_summary_tables
 
 
 def _findings(count: int) -> list[Diagnostic]:

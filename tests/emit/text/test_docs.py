@@ -11,7 +11,7 @@ from archgen.emit import text
 from archgen.emit.backend_manifests import find_backends
 from archgen.emit.text.template_filters import TEMPLATE_FILTERS
 from archgen.views.generation import DOCUMENT_VIEWS, list_view_names
-from archgen.views.graph_shapes import GraphKind
+from archgen.views.picture_shapes import GraphKind
 from archgen.views.shapes import Page, Section
 
 ROOT = Path(__file__).resolve().parents[3]

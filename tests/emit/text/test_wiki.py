@@ -9,17 +9,15 @@ from markdown_it import MarkdownIt
 
 from archgen.emit import text
 from archgen.emit.backend_manifests import read_shipped_backend
-from archgen.emit.markdown.escaped_text import escape_markdown, make_code_span
-from archgen.emit.markdown.mermaid_chart import escape_mermaid
-from archgen.emit.markdown.mermaid_folding import fold_for_mermaid
+from archgen.emit.markdown.inert_text import escape_markdown, make_code_span
+from archgen.emit.markdown.mermaid_chart import escape_mermaid, fold_for_mermaid
 from archgen.emit.safe_names import make_identifier
 from archgen.emit.text.template_filters import (
     draw_mermaid,
     draw_mermaid_sequence,
     safe_commonmark,
 )
-from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
-from archgen.views.sequence_shapes import Lifeline, SequenceChart, SequenceMessage
+from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph, Lifeline, SequenceChart, SequenceMessage
 from archgen.views.shapes import Column, Facts, Figure, Markdown, Page, Paragraph, Section, Table, Text, shape_to_plain
 from tests.running import ROOT, archgen_here
 

@@ -11,8 +11,7 @@ import pytest
 
 from archgen.emit.file_tree import OutputError
 from archgen.emit.workspace import workspace_writing
-from archgen.emit.workspace.disk_files import DiskReader
-from archgen.emit.workspace.generated_file import GeneratedFile, find_path_problems
+from archgen.emit.workspace.disk_files import DiskReader, GeneratedFile, find_path_problems
 from archgen.emit.workspace.run_record import read_other_records, read_run_record, write_run_record
 from archgen.emit.workspace.workspace_plan import UserChoices, WorkspacePlan, plan_workspace
 from tests.running import contents

@@ -9,7 +9,7 @@ import pytest
 
 from archgen.passes.pass_shape import STATES
 from archgen.passes.patterns.architecture_view import ArchitectureView
-from archgen.passes.patterns.pass_files import list_shipped_passes
+from archgen.passes.patterns.pattern_registry import list_shipped_passes
 from archgen.passes.patterns.rule_running import run_rules
 from archgen.passes.project_tree import ProjectTree
 from archgen.pipeline import check_project

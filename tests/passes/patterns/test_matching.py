@@ -16,8 +16,7 @@ from archgen.passes.patterns.pattern_shapes import (
     parse_text_pattern,
 )
 from archgen.passes.patterns.rule_reading import RuleReader
-from archgen.passes.patterns.text_matching import match_text
-from archgen.passes.patterns.value_matching import BudgetExceededError, MatchBudget
+from archgen.passes.patterns.value_matching import BudgetExceededError, MatchBudget, match_text
 from archgen.syntax.yaml_parser import parse_yaml
 
 

@@ -10,7 +10,7 @@ import yaml
 
 from archgen.passes.pass_shape import STATES
 from archgen.passes.patterns.expressions import VALUE_FUNCTIONS
-from archgen.passes.patterns.pass_files import FILE_KEYS, MAX_RULES, list_shipped_passes
+from archgen.passes.patterns.pattern_registry import FILE_KEYS, MAX_RULES, list_shipped_passes
 from archgen.passes.patterns.rule_reading import RULE_KEYS
 from tests.passes.patterns.transforming import read
 from tests.running import ROOT

@@ -9,8 +9,7 @@ import yaml
 
 from archgen.checking.checked_packing import pack_checked_project
 from archgen.passes.pass_shape import STATES
-from archgen.passes.patterns.pass_files import list_shipped_passes
-from archgen.passes.patterns.pattern_registry import find_known_passes
+from archgen.passes.patterns.pattern_registry import find_known_passes, list_shipped_passes
 from archgen.pipeline import CheckedProject, check_project, transform_project
 from archgen.syntax.yaml_writer import write_yaml
 from tests.judged_projects import judge_shipped

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from archgen.passes.patterns.pattern_shapes import PortReference
-from archgen.passes.patterns.view_types import ConceptualTypes
+from archgen.passes.patterns.view_elements import ConceptualTypes
 from archgen.passes.patterns.view_values import read_scalar, read_view_value
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, YamlNode
 from tests.passes.patterns.transforming import tree_of

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.passes.patterns import pass_files
+from archgen.passes.patterns import pattern_registry
 from archgen.passes.patterns.pattern_registry import find_known_passes
 from archgen.pipeline import check_project
 from tests.passes.patterns.transforming import read
@@ -214,7 +214,7 @@ def test_a_pass_behind_a_link_is_refused(tmp_path: Path) -> None:
     (tmp_path / "other.yaml").write_text("title: x\n")
     (project / "passes" / "linked.yaml").symlink_to(tmp_path / "other.yaml")
     files = check_project(project).loaded_project.files
-    (found,) = pass_files.list_project_passes(files)
+    (found,) = pattern_registry.list_project_passes(files)
     assert found.read_pass is None
     assert [d.message for d in found.diagnostics] == ["a pass is reached by a link; it stands in the project itself"]
     (tmp_path / "elsewhere").mkdir()
@@ -226,7 +226,8 @@ def test_a_pass_behind_a_link_is_refused(tmp_path: Path) -> None:
     (linked / "archgen.yaml").write_text("archgen: 1\n")
     (linked / "passes").symlink_to(tmp_path / "elsewhere")
     assert all(
-        each.read_pass is None for each in pass_files.list_project_passes(check_project(linked).loaded_project.files)
+        each.read_pass is None
+        for each in pattern_registry.list_project_passes(check_project(linked).loaded_project.files)
     )
 
 

@@ -9,8 +9,8 @@ import yaml
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.passes.pass_shape import STATES
-from archgen.passes.patterns.pass_files import ReadPass, read_pass
 from archgen.passes.patterns.pass_shapes import PatternPass
+from archgen.passes.patterns.pattern_registry import ReadPass, read_pass
 from archgen.passes.patterns.rule_running import run_rules
 from archgen.passes.project_tree import ProjectTree
 from archgen.pipeline import check_project

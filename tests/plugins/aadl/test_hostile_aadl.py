@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from archgen.importers.bounded_files import read_bounded
+from archgen.importers.foreign_files import read_bounded
 from archgen.importers.foreign_import import ForeignFileError
 from archgen.plugins.aadl import aadl_import, hardware_tree, system_walk
 from archgen.plugins.aadl.aadl_import import read_aadl

@@ -13,7 +13,7 @@ from archgen.model.message_types import ConceptualType, DataField
 from archgen.pipeline import check_project
 from archgen.plugins.ros_code.node_programs import make_view
 from archgen.views.generation.generation_context import GenerationContext
-from archgen.views.generation.program_ports import is_envelope
+from archgen.views.generation.program_parts import is_envelope
 from tests.outside_tools import run_judge
 from tests.plugins.ros_code.test_ros2_python import AMENT_FLAKE8
 from tests.ros_2_kilted import build_interfaces, kilted_environment, make_kilted_python

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from archgen.findings.generation_rules import GENERATION_RULES
+from archgen.findings.comparison_rules import GENERATION_RULES
 from archgen.findings.rule_pages import read_rule_page
 from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField
 from archgen.pipeline import check_project

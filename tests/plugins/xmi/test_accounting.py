@@ -7,10 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from archgen.importers.xml_tree import XmlElement
+from archgen.importers.foreign_files import XmlElement
 from archgen.plugins.xmi.import_ledger import NOT_TAKEN, ImportLedger
-from archgen.plugins.xmi.uml_index import UmlIndex, get_kind, get_name
-from archgen.plugins.xmi.xmi_files import read_documents
+from archgen.plugins.xmi.uml_index import UmlIndex, get_kind, get_name, read_documents
 from archgen.plugins.xmi.xmi_import import convert_documents, read_xmi
 from tests.plugins.xmi.uml_models import merge_sections, read_model, tell_notes, write_model
 

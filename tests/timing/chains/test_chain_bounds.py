@@ -273,3 +273,21 @@ def test_nothing_leads_there() -> None:
     result = _one(found, "a", "b", deadline=100)
     assert (result.bound.value, result.verdict) == (None, "open")
     assert result.bound.assumptions == ("no way leads from `a` to `b`",)
+
+
+def test_a_share_is_met_by_the_bound_missed_by_the_best_case_and_else_open() -> None:
+    rest = "chains: {c: {through: [a, b], deadline: {50 %: 1 ms, 90 %: 50 ms, 95 %: 102 ms}}}"
+    model = read_sketch({"a": "period: 100 ms, wcet: 1 ms, bcet: 1 ms", "b": "wcet: 1 ms, bcet: 1 ms"}, "a>b", rest)
+    result = bound_all_chains(analyse_architecture(model), model)["c"]
+    assert result.deadline is None
+    assert [(each.name, each.verdict) for each in result.shares] == [
+        ("50 %", "missed"),
+        ("90 %", "open"),
+        ("95 %", "met"),
+    ]
+    assert [result.find_limit(Fraction(share, 100)) for share in (40, 90, 91, 99)] == [
+        10**6,
+        50 * 10**6,
+        102 * 10**6,
+        None,
+    ]

@@ -16,10 +16,11 @@ from archgen.timing.chains.chain_bounds import (
     find_unmet_chains,
     list_bounded_paths,
 )
-from archgen.timing.chains.chain_regions import ChainPoint, lay_out_chain, resolve_points
+from archgen.timing.chains.chain_regions import lay_out_chain
 from archgen.timing.chains.chain_verdicts import judge_deadline
 from archgen.timing.chains.cost_network import CostNetwork, PathAim
 from archgen.timing.chains.duerr_bounds import PeriodicTask, bound_periodic_chain, bound_reaction, bound_reduced_age
+from archgen.timing.chains.element_index import ChainPoint, ElementIndex
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.run_analysis import analyse_architecture
 from tests.timing.printed import MS, show_ms
@@ -231,7 +232,7 @@ nodes:
 )
 def test_an_element_stands_for_activities(kind: str, id_: str, activities: tuple[str, ...], output: str | None) -> None:
     system = analyse_architecture(POINTS).system
-    (point,) = resolve_points(system, POINTS, (Waypoint(kind, id_),))  # type: ignore[arg-type]
+    (point,) = ElementIndex(system, POINTS).resolve_points((Waypoint(kind, id_),))  # type: ignore[arg-type]
     assert (point.activities, point.output) == (activities, output)
 
 
@@ -276,8 +277,8 @@ groups: {g: {components: {
   a: {outputs: {out: std_msgs/msg/Empty}, inputs: {back: a.out}},
   b: {inputs: {i: a.out}}}}}
 nodes:
-  one: {implements: a, publishes: {out: /t}, subscribes: {back: /t}, timing: {period: 10 ms, wcet: 1 ms}}
-  two: {implements: a, publishes: {out: /t}, subscribes: {back: /t}, timing: {period: 10 ms, wcet: 1 ms}}
+  one: {implements: a, publishes: {out: /t}, subscribes: {back: /t}, timing: {period: 10 ms, wcet: 1 ms, inputs: {back: {memory: each_source}}}}
+  two: {implements: a, publishes: {out: /t}, subscribes: {back: /t}, timing: {period: 10 ms, wcet: 1 ms, inputs: {back: {memory: each_source}}}}
   b: {implements: b, timing: {wcet: 1 ms}}
 chains: {output: {through: [a.out, b]}, component: {through: [a, b]}}
 """)

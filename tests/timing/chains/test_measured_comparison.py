@@ -11,10 +11,14 @@ from archgen.diagnostics.source_span import NO_SPAN
 from archgen.model.quantity import Quantity
 from archgen.project.observation_reading import read_observations
 from archgen.timing.analysis import EventPace
+from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.chains.measured_comparison import MeasuredComparison, Observation, compare_measured
+from archgen.timing.chains.sample_statistics import SampleCounter
 from archgen.timing.figures.timing_values import TimingValue
+from archgen.timing.run_analysis import analyse_architecture
 from archgen.timing.system.timing_system import StoringCallback
 from tests.timing.made import MS, analysis, arc, event, ms, periodic
+from tests.timing.sketches import read_sketch
 
 YAML = """measured:
   cam:
@@ -203,3 +207,20 @@ def test_what_the_recording_cannot_tell_is_no_outlier(inaccuracy: int, verdict: 
     wcet = {"wcet": Quantity(Fraction(12 * MS), "")}
     observed = Observation("cam", wcet, NO_SPAN, {}, {"wcet": Fraction(inaccuracy * MS)})
     assert [row.verdict for row in compare_measured(made, (observed,))[0]] == [verdict]
+
+
+def test_shares_of_reactions_are_judged_by_all_that_was_recorded() -> None:
+    rest = "chains: {c: {through: [a, b], deadline: {always: 1 s, 50 %: 60 ms, 95 %: 90 ms, 99.9 %: 99 ms}}}"
+    model = read_sketch({"a": "period: 100 ms, wcet: 1 ms", "b": "wcet: 1 ms"}, "a>b", rest)
+    found = analyse_architecture(model)
+    counter = SampleCounter()
+    for value in range(1, 101):
+        counter.add_sample(value * MS)
+    latency = {"latency": Quantity(Fraction(100 * MS), "")}
+    observed = Observation("c", latency, NO_SPAN, {"latency": counter.summarise()})
+    rows, _ = compare_measured(found, (observed,), bound_all_chains(found, model))
+    assert [(row.key, row.measured, row.verdict, row.why) for row in rows if row.key != "latency"] == [
+        ("latency of 50 %", 50 * MS, "as designed", ""),
+        ("latency of 95 %", 95 * MS, "outlier", "95 % of its reactions take longer than their deadline"),
+        ("latency of 99.9 %", 100 * MS, "outlier", "99.9 % of its reactions take longer than their deadline"),
+    ]

@@ -5,12 +5,12 @@ from __future__ import annotations
 from fractions import Fraction
 
 from archgen.timing.chains.working_lines import WorkingLines
-from archgen.timing.load.backlog_terms import BacklogTerms
-from archgen.timing.load.way_works import build_thread_work
+from archgen.timing.load.core_paths import build_thread_work
+from archgen.timing.load.shared_core_terms import BacklogTerms
 from archgen.timing.load.work_terms import CountFormulas
 from tests.timing.hand_reader import read_equations
 from tests.timing.load.test_idle_backlogs import EVENT, find_backlog, in_ms, prepare
-from tests.timing.load.test_way_works import prepare_box
+from tests.timing.load.test_works_of_ways import prepare_box
 
 
 def test_a_delay_is_what_is_printed() -> None:

@@ -79,10 +79,11 @@ def test_what_is_behind_an_overload() -> None:
 
 
 def test_jitter_goes_round_two_hosts() -> None:
-    """Each response is the next one's jitter. a: 2 + 3 (d); b: comes (5 - 2) + 1 late, on its host 4 + 2; and so on, until nothing changes.
+    """Each response is the next one's jitter. a: 2 + 3 (d), for the e of the event before ended long ago; b: comes (5 - 2) + 1
+    late, on its host 4 + 2; and so on, until nothing changes.
 
     On r one core works for each of two threads at most. f: 1 + B with 2 B = min(7, B) + 3, so 4; g: 7 + 2, as two of f come within 9
-    and 2 B = 2 + min(3, B); h: 3 + 2, as 2 B = 2 x 1 + min(7, B).
+    and 2 B = 2 + min(3, B); h: 3 + 1, as 2 B = 1 + min(7, B).
     """
     analysis = analyse_sketch(
         {
@@ -101,33 +102,33 @@ def test_jitter_goes_round_two_hosts() -> None:
     )
     assert list_paces(analysis) == [
         "a periodic written: 50 Hz, gap 20, jitter 0, apart 20",
-        "b event inferred: 50 Hz, gap 25, jitter 5, apart 15",
+        "b event inferred: 50 Hz, gap 24, jitter 4, apart 16",
         "c periodic written: 100/3 Hz, gap 30, jitter 0, apart 30",
         "d event inferred: 100/3 Hz, gap 35, jitter 5, apart 25",
-        "e event inferred: 50 Hz, gap 31, jitter 11, apart 9",
-        "f event inferred: 50 Hz, gap 37, jitter 17, apart 3",
+        "e event inferred: 50 Hz, gap 30, jitter 10, apart 10",
+        "f event inferred: 50 Hz, gap 36, jitter 11, apart 9",
         "g periodic written: 25 Hz, gap 40, jitter 0, apart 40",
         "h event inferred: 100/3 Hz, gap 39, jitter 9, apart 21",
     ]
     assert list_outputs(analysis) == [
-        "a g.a.out periodic written: 50 Hz, gap 24, jitter 4, apart 16",
-        "b g.b.out event inferred: 50 Hz, gap 30, jitter 10, apart 10",
+        "a g.a.out periodic written: 50 Hz, gap 23, jitter 3, apart 17",
+        "b g.b.out event inferred: 50 Hz, gap 29, jitter 9, apart 11",
         "c g.c.out periodic written: 100/3 Hz, gap 34, jitter 4, apart 26",
         "d g.d.out event inferred: 100/3 Hz, gap 38, jitter 8, apart 22",
-        "e g.e.out event inferred: 50 Hz, gap 36, jitter 16, apart 4",
-        "f g.f.out event inferred: 50 Hz, gap 41, jitter 21, apart 0",
+        "e g.e.out event inferred: 50 Hz, gap 35, jitter 15, apart 5",
+        "f g.f.out event inferred: 50 Hz, gap 40, jitter 15, apart 5",
         "g g.g.out periodic written: 25 Hz, gap 49, jitter 9, apart 31",
-        "h g.h.out event inferred: 100/3 Hz, gap 44, jitter 14, apart 16",
+        "h g.h.out event inferred: 100/3 Hz, gap 43, jitter 13, apart 17",
     ]
     assert list_responses(analysis) == [
-        "a 2..6 host",
+        "a 2..5 whole way",
         "b 1..6 host",
         "c 2..6 host",
         "d 3..6 host",
         "e 1..6 host",
         "f none ?f..4 cores",
         "g none ?g..9 cores",
-        "h none ?h..5 cores",
+        "h none ?h..4 cores",
     ]
     assert list_hosts(analysis) == [
         "p: 1/4 of 1: schedulable; rm 779763147/1000000000, edf 1",

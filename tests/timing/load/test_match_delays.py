@@ -9,13 +9,15 @@ import pytest
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.event_streams import EventStream, EventStreams
 from archgen.timing.load.match_delays import (
+    MatchedInput,
+    MatchWindows,
     combine_matched,
+    find_match_windows,
     find_matched_input,
     find_stamp_gap,
     has_same_source,
     queue_length,
 )
-from archgen.timing.load.match_windows import MatchedInput, MatchWindows, find_match_windows
 from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.thread_work import WorstResponse
 from archgen.timing.system.timing_system import Activity, Arc

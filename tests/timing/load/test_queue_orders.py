@@ -12,7 +12,7 @@ from archgen.timing.load.queue_orders import (
     bound_edf,
     bound_fifo,
     bound_non_preemptive,
-    bound_round,
+    bound_rounds,
     find_end,
     find_lead,
     find_start,
@@ -56,28 +56,25 @@ def test_what_takes_no_time_waits_for_nobody_in_the_order_of_arrival() -> None:
 
 
 @pytest.mark.parametrize(
-    ("first", "busy_period", "response"),
+    ("first", "response"),
     [
-        # A round is 2 + 3 + 2 x 5 = 15, and a timer's own part of the next one 2: 17, within which none comes again.
-        (task(2, 18, rank=0), 18, 17),
-        (task(2, 18, rank=0), 17, None),
-        # Two wait at 17: two rounds, 32.
-        (task(2, 17, rank=0), 100, 32),
-        # Four wait at 32: that goes on until the busy period ends.
-        (task(2, 10, rank=0), 100, None),
+        # A round is 2 + 3 + 2 x 5 = 15: the one under way, and its own, within which none comes again.
+        (task(2, 31), 30),
+        # Two wait at 30: three rounds.
+        (task(2, 30), 45),
+        (task(2, 30, depth=2), 45),
+        # One is too many for the queue: who knows which is overwritten.
+        (task(2, 30, depth=1), None),
+        # More come than are worked off.
+        (task(2, 15), None),
+        (task(2, 16), 15 * 17),
+        # Of ticks one waits, at whatever load.
+        (task(2, 1, is_timer=True), 30),
     ],
 )
-def test_rounds_of_a_timer(first: QueuedTask, busy_period: int, response: int | None) -> None:
-    tasks = [first, task(3, 100), task(5, 100, rank=2, entities=2)]
-    assert response_of(bound_round(first, tasks, busy_period, SearchBudget())) == response
-
-
-def test_rounds_of_what_comes_behind_timers() -> None:
-    """One round of 15; of the next one 2 + 3 for the subscription, and all for the service."""
-    tasks = [task(2, 18, rank=0), task(3, 100), task(5, 100, rank=2, entities=2)]
-    budget = SearchBudget()
-    assert [response_of(bound_round(each, tasks, 100, budget)) for each in tasks[1:]] == [20, 30]
-    assert budget.spent_terms == 4
+def test_rounds(first: QueuedTask, response: int | None) -> None:
+    tasks = [first, task(3, 100), task(5, 100, entities=2)]
+    assert response_of(bound_rounds(first, tasks, SearchBudget())) == response
 
 
 def test_what_is_not_preempted() -> None:

@@ -16,7 +16,7 @@ from archgen.timing.system.core_placement import ProcessingResource
 from archgen.timing.system.timing_system import Activity, Executor, ResourceUse
 from tests.simulation.systems import event, stores, system, timed
 
-A = QueuedTask("a", 3, (), priority=2, deadline=50, rank=0)
+A = QueuedTask("a", 3, (), priority=2, deadline=50)
 B = QueuedTask("b", 5, (), priority=1, deadline=90)
 MODELS: dict[str, EventStreams | UnknownCause] = {"a": (EventStream(100),), "b": (EventStream(200),)}
 
@@ -35,7 +35,7 @@ def bound(queue: CoreQueue, models: dict[str, EventStreams | UnknownCause], budg
         ("non_preemptive", True, {"a": 8, "b": 8}),
         ("edf", True, {"a": 3, "b": 8}),
         ("edf", False, {"a": 8, "b": 8}),
-        ("ros2_executor", False, {"a": 8 + 3, "b": 8 + 8}),
+        ("ros2_executor", False, {"a": 8 + 8, "b": 8 + 8}),
     ],
 )
 def test_each_order_has_a_bound_of_its_own(order: QueueOrder, is_core: bool, responses: dict[str, int]) -> None:  # noqa: FBT001
@@ -106,10 +106,7 @@ def find_queue(
 
 
 def test_what_waits_for_a_core_or_for_a_thread() -> None:
-    tasks = (
-        QueuedTask("a", 3, (), 7, 50, rank=0),
-        QueuedTask("b", 5, (), None, None, rank=2),
-    )
+    tasks = (QueuedTask("a", 3, (), 7, 50, is_timer=True), QueuedTask("b", 5, (), None, None))
     assert find_queue(ON_CORE) == CoreQueue("fifo", is_core=True, tasks=tasks)
     assert find_queue(IN_THREAD) == CoreQueue("edf", is_core=False, tasks=tasks)
 

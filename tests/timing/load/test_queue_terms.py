@@ -14,10 +14,10 @@ from archgen.timing.load.queue_orders import QueuedTask
 from archgen.timing.load.queue_responses import CoreQueue, QueueOrder
 from archgen.timing.load.work_terms import CountFormulas
 
-A = QueuedTask("a", 3, (), priority=2, deadline=20, rank=0)
+A = QueuedTask("a", 3, (), priority=2, deadline=20)
 B = QueuedTask("b", 5, (), priority=1, deadline=90)
 C = QueuedTask("c", 2, (), priority=3, deadline=30)
-LATE = QueuedTask("late", 4, (), rank=2)
+LATE = QueuedTask("late", 4, ())
 """Without a priority, and without a deadline."""
 BURST = (EventStream(20, 19),)
 """Two may come within 1 ms."""
@@ -108,7 +108,7 @@ def explain(queue: CoreQueue, name: str, models: dict[str, EventStreams | Unknow
             "ros2_executor",
             False,
             "c",
-            ["30 - 0 = 30", "2 x 3 a + 5 b + 2 c, in the rounds before", "1 x 3 a + 5 b + 2 c, in its own round"],
+            ["30 - 0 = 30", "3 x 3 a + 5 b + 2 c, in each round"],
         ),
     ],
 )
@@ -167,14 +167,4 @@ def test_of_one_deadline_each_may_be_first() -> None:
         "8 - 0 = 8",
         "1 x 3 a, its own",
         "1 x 5 b, those that come until 0 ms",
-    ]
-
-
-def test_a_round_ends_with_what_has_the_same_rank() -> None:
-    """Timers come first in a round: `a` waits for a whole round, and works first in its own."""
-    queue = CoreQueue("ros2_executor", is_core=False, tasks=(A._replace(entities=1), LATE))
-    assert explain(queue, "a", MODELS | {"a": (EventStream(50),)}) == [
-        "10 - 0 = 10",
-        "1 x 3 a + 4 late, in the rounds before",
-        "1 x 3 a, in its own round",
     ]

@@ -37,14 +37,13 @@ def test_in_the_order_of_arrival_each_other_thread_comes_once() -> None:
 
 def test_members_of_one_thread_do_not_wait_for_one_another_at_the_gpu() -> None:
     users = [_user("a", 100, 1, 10, container="box"), _user("b", 100, 1, 20, container="box"), _user("c", 100, 1, 5)]
-    of = _system(*users, order="fifo")
-    of = replace(of, threads={"box": 1})
+    of = _system(*users, order="fifo", threads={"box": 1})
     assert (_waits(of, "a"), _waits(of, "c")) == (15, 25)
 
 
 def test_of_a_container_with_two_threads_the_two_longest_count() -> None:
     users = [_user(name, 1000, 1, use, container="box") for name, use in (("a", 10), ("b", 20), ("d", 30))]
-    of = replace(_system(*users, _user("c", 1000, 1, 5), order="fifo"), threads={"box": 2})
+    of = _system(*users, _user("c", 1000, 1, 5), order="fifo", threads={"box": 2})
     assert _waits(of, "c") == 55
     assert _waits(of, "a") == 45  # one other member at a time, and c
 
@@ -80,7 +79,7 @@ def test_load_of_a_gpu(uses: tuple[int, int], verdict: str) -> None:
 def test_a_thread_that_has_more_to_do_than_it_can_is_overloaded(threads: int, is_full: object) -> None:
     """Twice 5 + 6 ms each 20 ms: too much for one thread, though neither for the core nor for the GPU."""
     users = [_user(name, 20, 5, 6, container="box") for name in "ab"]
-    worst = analyse_system(replace(_system(*users), threads={"box": threads})).responses["a"].worst
+    worst = analyse_system(_system(*users, threads={"box": threads})).responses["a"].worst
     assert ("overload" in worst.assumptions) is is_full
 
 
@@ -109,8 +108,10 @@ def _user(name: str, period: int, wcet: int, use: int, **rest: object) -> Activi
     return timed(name, period, wcet, **values)
 
 
-def _system(*activities: Activity, order: SchedulingOrder | None = None, arcs: list[Arc] | None = None) -> TimingSystem:
-    return system(activities, arcs or (), {"pc": 1}, resources={"gpu": SharedResource("gpu", "pc", order)})
+def _system(
+    *activities: Activity, order: SchedulingOrder | None = None, arcs: list[Arc] | None = None, **rest: object
+) -> TimingSystem:
+    return system(activities, arcs or (), {"pc": 1}, resources={"gpu": SharedResource("gpu", "pc", order)}, **rest)
 
 
 def _responses(of: TimingSystem) -> dict[str, Fraction | None]:

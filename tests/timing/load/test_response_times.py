@@ -14,8 +14,7 @@ from archgen.timing.figures.timing_values import UnknownCause, unite_causes
 from archgen.timing.load.busy_windows import ActivityWork, DivergedError, SearchBudget
 from archgen.timing.load.event_streams import EventStream
 from archgen.timing.load.link_queueing import settle_links
-from archgen.timing.load.ranked_threads import RankedThreads
-from archgen.timing.load.response_times import AnalysisEffort, find_responses
+from archgen.timing.load.response_times import AnalysisEffort, RankedThreads, find_responses
 from archgen.timing.load.thread_work import ThreadWork
 from archgen.timing.run_analysis import analyse_architecture
 from archgen.timing.system.core_placement import find_resources
@@ -168,7 +167,8 @@ def test_what_works_only_at_the_start_is_in_nobodys_way(derived: Derived) -> Non
 def test_a_declared_response_is_used_as_it_is(derived: Derived) -> None:
     rows = {"a": periodic("10", "2", "response: 7 ms"), "b": periodic("20", "4", "")}
     found = analyse_architecture(derived(tasks(rows)))
-    assert worst(found) == {"a": 7, "b": 6}
+    # While a waits it is no busy core: what it does then may come together with the next time.
+    assert worst(found) == {"a": 7, "b": 8}
     assert found.responses["a"].worst.assumptions == ("assumed",)
 
 

@@ -11,9 +11,9 @@ from archgen.timing.load.cascade_demand import CascadeDemand
 from archgen.timing.load.core_paths import CorePaths
 from archgen.timing.load.event_propagation import propagate_events
 from archgen.timing.load.event_streams import EventStream
-from archgen.timing.load.full_threads import CoreShares
 from archgen.timing.load.inner_triggers import find_inner_triggers
 from archgen.timing.load.path_work import PathWork
+from archgen.timing.load.shared_core_limits import CoreShares
 from archgen.timing.load.shared_core_responses import open_shared_solver
 from archgen.timing.load.shared_cores import SharedCores, prepare_shared_cores
 from archgen.timing.run_analysis import analyse_architecture

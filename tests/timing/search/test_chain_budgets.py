@@ -34,7 +34,7 @@ def _read(deadline: str) -> str:
 
 def _find_budget(deadline: str) -> ChainBudget:
     trials = start_trials(architecture(_read(deadline)))
-    return find_chain_budget(trials, trials.bound_chain("c"))
+    return find_chain_budget(trials, bound_with(trials.architecture)["c"])
 
 
 def _set(figure: str, key: str, duration: Fraction) -> str:
@@ -80,7 +80,7 @@ def test_all_that_share_a_factor_keep_the_deadline_and_a_thousandth_more_does_no
     ]
     assert bound_with(model, more)["c"].verdict != "met"
     trials = start_trials(model)
-    assert share_chain_budget(trials, trials.bound_chain("c")) == shared
+    assert share_chain_budget(trials, bound_with(trials.architecture)["c"]) == shared
 
 
 def test_each_host_has_a_factor_of_its_own() -> None:
@@ -120,7 +120,7 @@ hosts: {p: {cores: 1}}
 chains: {c: {through: [a, b], deadline: 200 ms}}
 """
     trials = start_trials(architecture(text))
-    shares = share_chain_budget(trials, trials.bound_chain("c")).shares
+    shares = share_chain_budget(trials, bound_with(trials.architecture)["c"]).shares
     assert [(share.activity, share.owners) for share in shares] == [("a", ("vega",)), ("b", ("kite",))]
 
 
@@ -131,7 +131,7 @@ def test_a_factor_is_at_least_a_thousandth(deadline: str, factor: Fraction | Non
     trials = start_trials(
         architecture(sketch(nodes, "a>b", f"chains: {{c: {{through: [a, b], deadline: {deadline}}}}}"))
     )
-    assert share_chain_budget(trials, trials.bound_chain("c")).factor == factor
+    assert share_chain_budget(trials, bound_with(trials.architecture)["c"]).factor == factor
 
 
 def test_a_neighbour_that_cannot_make_the_chain_late_is_left_out() -> None:
@@ -148,12 +148,12 @@ def test_a_neighbour_that_cannot_make_the_chain_late_is_left_out() -> None:
 def test_a_chain_without_a_deadline_or_a_bound_has_no_budget(rest: str, reason: str) -> None:
     trials = start_trials(architecture(sketch(NODES, "scan>plan plan>drive drive>last", rest)))
     with pytest.raises(UnknownBudgetError, match=reason):
-        find_chain_budget(trials, trials.bound_chain("c"))
+        find_chain_budget(trials, bound_with(trials.architecture)["c"])
 
 
 def test_what_there_was_no_try_left_for_is_named() -> None:
     trials = start_trials(architecture(_read("300 ms")), 12)
-    budget = find_chain_budget(trials, trials.bound_chain("c"))
+    budget = find_chain_budget(trials, bound_with(trials.architecture)["c"])
     assert "drive.timing.period" in budget.untried
 
 
@@ -188,7 +188,7 @@ def test_all_of_a_budget() -> None:
     }
     rest = "hosts: {p: {cores: 1}, q: {cores: 1}}\nchains: {c: {through: [a, b], deadline: 80 ms}}"
     trials = start_trials(architecture(sketch(nodes, "a>b", rest)))
-    assert _write_budget(find_chain_budget(trials, trials.bound_chain("c"))) == [
+    assert _write_budget(find_chain_budget(trials, bound_with(trials.architecture)["c"])) == [
         "a.wcet 2 may be 21",
         "b.wcet 5 may be 24",
         "a.period 50 may be 69",

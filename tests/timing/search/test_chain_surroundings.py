@@ -8,7 +8,7 @@ import pytest
 
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
-from archgen.timing.search.chain_surroundings import list_chain_elements, list_neighbours, list_waiting_elements
+from archgen.timing.search.chain_budgets import list_chain_elements, list_neighbours
 from tests.timing.made import MS, analysis, event, ms, periodic
 from tests.timing.sketches import analyse_sketch
 
@@ -52,34 +52,6 @@ def test_the_element_that_adds_most_comes_first(
     terms: list[tuple[str, Figure, Figure, Figure]], names: list[str]
 ) -> None:
     assert _names([*list_chain_elements(_analyse(), _chain(*terms))]) == names
-
-
-@pytest.mark.parametrize(
-    ("terms", "response", "names"),
-    [
-        # Beside 2 of its own a response waits for 3; a clock is waited for up to 100.
-        ([("a", 100, 5, 0), ("b", 0, 6, 0)], 5, ["b", "a"]),
-        ([("a", 102, 5, 0), ("b", 0, 6, 0)], 5, ["a", "b"]),
-        ([("a", 101, 2, 0), ("b", 0, 2, 0)], 2, ["a"]),
-        # What fires nothing of its own accord waits for no clock.
-        ([("a", 100, 2, 0), ("b", 200, 2, 0)], 2, []),
-        # A later step of a run waits as it would alone.
-        ([("a", 0, 2, 0), ("b", 0, 2, 0)], 5, ["a", "b"]),
-        ([("a", 0, 9, 0), ("b", 0, None, 0)], 5, ["b", "a"]),
-        ([("a", None, 2, 0), ("b", 0, 9, 0)], 5, ["a", "b"]),
-    ],
-)
-def test_what_waits_longest_comes_first(
-    terms: list[tuple[str, Figure, Figure, Figure]], response: float, names: list[str]
-) -> None:
-    assert _names([*list_waiting_elements(_analyse(response=response), _chain(*terms))]) == names
-
-
-def test_what_is_declared_waits_for_nobody() -> None:
-    made = _analyse()
-    declared = {name: replace(each, tier="declared") for name, each in made.responses.items()}
-    chain = _chain(("a", 0, 9, 0), ("b", 0, 9, 0))
-    assert list_waiting_elements(replace(made, responses=declared), chain) == []
 
 
 def test_what_takes_most_of_the_hosts_of_a_chain_comes_first() -> None:

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import pytest
 
-from archgen.timing.search.largest_step import climb_steps, find_largest_step
+from archgen.timing.search.chain_budgets import climb_steps, find_largest_step
 
 
 def _count_looks(slack_at: Callable[[int], Fraction | None]) -> tuple[Callable[[int], Fraction | None], list[int]]:

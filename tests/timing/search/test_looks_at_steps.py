@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import pytest
 
-from archgen.timing.search.largest_step import climb_steps, find_largest_step
+from archgen.timing.search.chain_budgets import climb_steps, find_largest_step
 
 Slack = Callable[[int], int | None]
 

@@ -7,7 +7,7 @@ from fractions import Fraction
 import pytest
 
 from archgen.timing.run_analysis import analyse_architecture
-from archgen.timing.search.tried_figures import TriedFigure, find_execution_time, find_own_period
+from archgen.timing.search.chain_budgets import TriedFigure, find_execution_time, find_own_period
 from tests.timing.made import periodic
 from tests.timing.random_systems import architecture
 from tests.timing.sketches import sketch

@@ -49,7 +49,7 @@ def mind(timing: str) -> tuple[Activity, int]:
 
 def test_a_process_is_a_container_or_a_node_outside_of_one() -> None:
     assert list(built().executors.values()) == [
-        Executor("container box", 2, "pc", "non_preemptive"),
+        Executor("container box", 2, "pc", "non_preemptive", suspends=True),
         Executor("container crate", 1, None, None),
         Executor("node mind", 1, "pc", None),
         Executor("node hands", 3, "arm", "ros2_executor"),

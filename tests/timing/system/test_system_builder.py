@@ -94,7 +94,7 @@ def test_hosts_links_and_topics_of_the_system() -> None:
     system = _system(TEXT)
     assert system.external_inputs == {"head.mind": ("g.mind.world",)}
     assert system.optional_inputs == frozenset({"g.mind.b"})
-    assert (system.cores, system.threads) == ({"p": 2, "q": None, "r": 4}, {"box": 3})
+    assert (system.cores, system.executors["container box"].threads) == ({"p": 2, "q": None, "r": 4}, 3)
     assert system.bandwidths == {"slow": None, "fast": 10_000_000, "dark": None}
     assert system.served_outputs == frozenset({("head.mind", "g.mind.ask")})
     assert system.topic_writers["memory g.eye.seen"] == (("head.eye", "g.eye.seen"),)

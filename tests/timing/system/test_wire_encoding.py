@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from archgen.timing.system.wire_encoding import (
+from archgen.timing.system.message_sizes import (
     EMPTY_ROOM,
     NUMBER_WIDTHS,
     WireShape,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from archgen.compare import ChainChange, Change
-from archgen.views.changes.chain_rows import make_chain_row
+from archgen.views.changes.figure_lines import make_chain_row
 
 
 @pytest.mark.parametrize(

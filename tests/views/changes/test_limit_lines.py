@@ -15,7 +15,7 @@ from archgen.compare.figure_noise import FigureNoise
 from archgen.emit.data.comparison_json import comparison_record
 from archgen.products.comparison_input import make_comparison_input
 from archgen.views.changes.comparison_document import describe_comparison
-from archgen.views.changes.limit_lines import write_limit_lines, write_noise_line
+from archgen.views.changes.figure_lines import write_limit_lines, write_noise_line
 from archgen.views.changes.reading_errors import ReadingErrors
 
 PROJECT = """\

@@ -10,8 +10,8 @@ from archgen import pipeline
 from archgen.compare import Comparison
 from archgen.compare.compare_versions import compare_versions
 from archgen.products.comparison_input import make_comparison_input
+from archgen.views.changes.breaking_items import find_repeated_findings
 from archgen.views.changes.comparison_document import describe_comparison
-from archgen.views.changes.repeated_findings import find_repeated_findings
 
 ROBOT = """\
 partners: {vega: Vega, orsa: Orsa}

@@ -12,7 +12,7 @@ from archgen.products.output_options import OutputOptions
 from archgen.products.product_inputs import ProductInputs
 from archgen.products.project_views import select_elements
 from archgen.views.explorer import make_explorer_map
-from archgen.views.explorer.composed_rows import make_composed_rows
+from archgen.views.explorer.explorer_map import make_composed_rows
 
 ROBOT = """\
 archgen: 1

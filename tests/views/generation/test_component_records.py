@@ -7,10 +7,9 @@ from pathlib import Path
 import pytest
 
 from archgen.pipeline import check_project
-from archgen.views.generation.architecture_needs import UNMET_NEED
+from archgen.views.generation.architecture_needs import UNMET_NEED, find_unfit_tags, find_unfit_values
 from archgen.views.generation.component_records import make_view, name_tag, read_own_hints
 from archgen.views.generation.generation_context import GenerationContext
-from archgen.views.generation.property_needs import find_unfit_tags, find_unfit_values
 
 PROJECT = """\
 archgen: 1

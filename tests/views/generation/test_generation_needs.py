@@ -8,9 +8,8 @@ import pytest
 
 from archgen.diagnostics.source_span import Span
 from archgen.pipeline import check_project
-from archgen.views.generation.architecture_needs import find_unmet_needs
+from archgen.views.generation.architecture_needs import find_name_clashes, find_unmet_needs
 from archgen.views.generation.generation_context import GenerationContext
-from archgen.views.generation.name_clashes import find_name_clashes
 
 NEEDS = """\
 component_types:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from itertools import permutations
 
-from archgen.views.graph_shapes import Arrow, Box, Graph, GraphKind
 from archgen.views.graphs import graph_folding
 from archgen.views.graphs.graph_folding import MAX_ARROWS, fold_graph
+from archgen.views.picture_shapes import Arrow, Box, Graph, GraphKind
 
 
 def whole(boxes: int, arrows: list[tuple[int, int, int]], kind: GraphKind = "overview") -> Graph:

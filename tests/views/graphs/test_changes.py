@@ -14,8 +14,8 @@ from archgen.emit import graphviz
 from archgen.emit.markdown.mermaid_chart import write_flowchart
 from archgen.model.selector_evaluation import SelectorEvaluator
 from archgen.products.compared_versions import ProjectVersion, compare_named_versions
-from archgen.views.graph_shapes import Arrow, Box, Graph
 from archgen.views.graphs.changes import LARGE_BUDGET, SMALL_BUDGET, draw_changes
+from archgen.views.picture_shapes import Arrow, Box, Graph
 
 ROBOT = """\
 archgen: 1

@@ -12,10 +12,10 @@ from archgen.diagnostics.source_span import NO_SPAN
 from archgen.emit.graphviz import graph_drawing
 from archgen.model.architecture import Architecture
 from archgen.views import graphs
-from archgen.views.graph_shapes import Arrow, Graph, GraphKind
 from archgen.views.graphs import draw_components, draw_composed, draw_group, make_all_graphs
 from archgen.views.graphs.selection_graphs import draw_functional_part
 from archgen.views.lookup import make_lookup
+from archgen.views.picture_shapes import Arrow, Graph, GraphKind
 
 ROBOT = """
 archgen: 1

@@ -16,7 +16,6 @@ from archgen.model.deployment import Container, Host, Link
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Endpoint, Node, Qos
 from archgen.model.selector_evaluation import Selection
-from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
 from archgen.views.graphs import (
     draw_component,
     draw_components,
@@ -30,6 +29,7 @@ from archgen.views.graphs import (
 from archgen.views.graphs.graph_folding import MAX_ARROWS, MAX_BOXES, fold_graph
 from archgen.views.graphs.selection_graphs import draw_functional_part, draw_implementation_part
 from archgen.views.lookup import Lookup, make_lookup
+from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph
 from archgen.views.search.implementation_entries import make_host_entries
 from archgen.views.tables.deployment_tables import make_link_table
 from archgen.views.timing.timing_lookup import analyse_with_chains

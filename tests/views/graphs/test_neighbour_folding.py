@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from archgen.views.graph_shapes import Arrow, Box, Cluster, Graph
-from archgen.views.graphs.changes.neighbour_folding import fold_neighbours
+from archgen.views.graphs.changes.picture_folding import fold_neighbours
+from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph
 
 
 def fold(boxes: tuple[Box, ...], arrows: tuple[Arrow, ...], *titles: str) -> Graph:

@@ -10,11 +10,11 @@ from archgen import pipeline
 from archgen.emit.graphviz import graph_drawing
 from archgen.model.architecture import Architecture
 from archgen.model.selector_evaluation import evaluate_selector
-from archgen.views.graph_shapes import Graph
 from archgen.views.graphs import draw_components, draw_composed, draw_group, make_all_graphs
-from archgen.views.graphs.open_frames import list_opened
+from archgen.views.graphs.composed_graph import list_opened
 from archgen.views.graphs.selection_graphs import draw_view
 from archgen.views.lookup import make_lookup
+from archgen.views.picture_shapes import Graph
 
 ROBOT = """
 archgen: 1

@@ -8,13 +8,12 @@ import pytest
 
 from archgen.model.selector_evaluation import evaluate_selector
 from archgen.timing.analysis import EventPace
-from archgen.views.chart_shapes import Chart
 from archgen.views.drawing_set import make_drawings
-from archgen.views.graph_shapes import Graph
 from archgen.views.graphs import make_all_graphs
 from archgen.views.lookup import DocumentScope, make_lookup
-from archgen.views.timing import rate_phrases
+from archgen.views.picture_shapes import Chart, Graph
 from archgen.views.timing import timing_lookup as timed_module
+from archgen.views.timing import value_format
 from archgen.views.timing.timing_lookup import analyse_with_chains
 from tests.architectures import generated, robot
 from tests.judged_projects import judge_ramcip
@@ -40,10 +39,10 @@ def test_every_activity_stands_in_the_whole_with_its_figure(pictures: dict[str, 
     boxes = {box.id: box for box in pictures["timing"].boxes}
     assert set(boxes) == set(analysis.system.activities)
     assert {name: box.fill for name, box in boxes.items()} == {
-        n: rate_phrases.find_period_step(p) for n, p in analysis.paces.items()
+        n: value_format.find_period_step(p) for n, p in analysis.paces.items()
     }
     assert {name: box.lines for name, box in boxes.items()} == {
-        n: rate_phrases.format_box_lines(p) for n, p in analysis.paces.items()
+        n: value_format.format_box_lines(p) for n, p in analysis.paces.items()
     }
     assert boxes["object_recognizer"].lines == ("5 Hz · 200 ms",)
     assert boxes["object_recognizer"].fill == "to_300_ms"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from archgen.views.graph_shapes import Arrow, Box, Graph
+from archgen.views.picture_shapes import Arrow, Box, Graph
 from archgen.views.report.report_drawings import drop_neighbours, join_topics
 
 

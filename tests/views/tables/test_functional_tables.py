@@ -9,7 +9,7 @@ import pytest
 from archgen import pipeline
 from archgen.diagnostics.diagnostic import Severity
 from archgen.pipeline import CheckedProject
-from archgen.views import inline_marks
+from archgen.views import inline_text
 from archgen.views.elements.functional_level import describe_purpose
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.shapes import Table
@@ -110,4 +110,4 @@ def test_a_purpose_is_the_first_sentence_with_its_marked_words_set() -> None:
         ("act", False, True),
         (".", False, False),
     ]
-    assert inline_marks.strip_marks("Takes *no* for **an** `answer`") == "Takes no for an answer"
+    assert inline_text.strip_marks("Takes *no* for **an** `answer`") == "Takes no for an answer"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from archgen.model.project_history import FindingCounts, History, HistoryPoint, ProgressRow
 from archgen.views.shapes import Figure, Paragraph, Table
-from archgen.views.tables import project_growth
+from archgen.views.tables import statistics_tables
 
 
 def point(month: int, components: int, mapped: int, errors: int = 0) -> HistoryPoint:
@@ -24,7 +24,7 @@ def cells(table: Table) -> list[tuple[str, ...]]:
 
 
 def test_charts_show_how_much_is_mapped_and_what_is_found() -> None:
-    mapped, found = project_growth.make_growth_charts(GROWN)
+    mapped, found = statistics_tables.make_growth_charts(GROWN)
     assert (mapped.id, mapped.conclusion) == (
         "history/progress",
         "Components mapped to nodes: 0 of 4 in 2026-01, 6 of 6 in 2026-03.",
@@ -39,7 +39,7 @@ def test_charts_show_how_much_is_mapped_and_what_is_found() -> None:
 
 
 def test_the_table_has_the_newest_first_and_groups_are_compared_with_the_beginning() -> None:
-    paragraph, progress, findings, table, groups = project_growth.make_growth_blocks(
+    paragraph, progress, findings, table, groups = statistics_tables.make_growth_blocks(
         GROWN, ("history/progress", "history/findings")
     )
     assert isinstance(paragraph, Paragraph)
@@ -52,17 +52,17 @@ def test_the_table_has_the_newest_first_and_groups_are_compared_with_the_beginni
 
 
 def test_one_month_is_no_history() -> None:
-    assert project_growth.make_growth_blocks(History(GROWN.points[:1], "month"), ()) == ()
+    assert statistics_tables.make_growth_blocks(History(GROWN.points[:1], "month"), ()) == ()
 
 
 def test_what_a_chart_leaves_out_is_said() -> None:
     long = History(tuple(point(1 + at % 12, at + 1, 0) for at in range(30)), "month")
-    (chart, _) = project_growth.make_growth_charts(long)
+    (chart, _) = statistics_tables.make_growth_charts(long)
     assert (len(chart.bars), chart.notes) == (24, ("The table has 6 older months too.",))
 
 
 def test_a_shallow_clone_is_told_and_what_was_not_drawn_is_not_shown() -> None:
-    paragraph, table, _ = project_growth.make_growth_blocks(History(GROWN.points, "month", whole=False), ())
+    paragraph, table, _ = statistics_tables.make_growth_blocks(History(GROWN.points, "month", whole=False), ())
     assert isinstance(paragraph, Paragraph)
     assert "shallow" in str(paragraph)
     assert isinstance(table, Table)

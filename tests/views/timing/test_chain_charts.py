@@ -8,8 +8,9 @@ import pytest
 
 from archgen.timing.analysis import HostLoad
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
-from archgen.views.chart_shapes import Chart
+from archgen.timing.load.host_verdicts import name_host_verdict
 from archgen.views.lookup import make_lookup
+from archgen.views.picture_shapes import Chart
 from archgen.views.timing import chain_charts, load_charts
 from archgen.views.timing.timing_lookup import TimingLookup
 from tests.judged_projects import judge_ramcip
@@ -76,7 +77,7 @@ LOADS = [
         exact(Fraction(9, 10)),
         "undecided",
         (("a", exact(Fraction(9, 10))),),
-        "90 % of 1 core: below full load, so response times decide.",
+        "90 % of 1 core: below full load, but nothing proves of 1 of 1 activity that their work is done in time.",
     ),
     (
         TimingValue(Fraction(1, 5), complete=False, missing=("b",)),
@@ -93,9 +94,25 @@ LOADS = [
 ]
 
 
+UNPROVEN = {"undecided": ("a",)}
+
+
 @pytest.mark.parametrize(("load", "verdict", "parts", "said"), LOADS)
 def test_loads(load: TimingValue, verdict: str, parts: tuple[tuple[str, TimingValue], ...], said: str) -> None:
-    assert load_charts.describe_load(HostLoad(load, 1, exact(Fraction(7, 10)), verdict, parts)) == said  # type: ignore[arg-type]
+    assert (
+        load_charts.describe_load(
+            HostLoad(load, 1, exact(Fraction(7, 10)), verdict, parts, unproven=UNPROVEN.get(verdict, ()))
+        )
+        == said
+    )  # type: ignore[arg-type]
+
+
+def test_nothing_is_said_to_be_done_in_time_that_only_other_priorities_would_do() -> None:
+    load = HostLoad(
+        exact(Fraction(1, 5)), 1, UNKNOWN_VALUE, "schedulable", (("a", exact(Fraction(1, 5))),), unproven=("a",)
+    )
+    assert load_charts.describe_load(load) == "In time: 20 % of 1 core, and priorities by rate are sure to do."
+    assert name_host_verdict(load) == "in time with priorities by rate"
 
 
 def test_a_full_core_is_seen_on_a_host_that_is_not_full() -> None:

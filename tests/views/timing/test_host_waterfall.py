@@ -9,8 +9,7 @@ import pytest
 from archgen.pipeline import check_project
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.shapes import Inlines, Table
-from archgen.views.timing.host_waterfall import make_host_waterfall
-from archgen.views.timing.slack_waterfall import make_slack_waterfall
+from archgen.views.timing.host_waterfall import make_host_waterfall, make_slack_waterfall
 from archgen.views.timing.timing_lookup import analyse_with_chains
 
 ROBOT = """\

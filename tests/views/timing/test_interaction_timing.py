@@ -9,7 +9,7 @@ import pytest
 from archgen import pipeline
 from archgen.views.lookup import DocumentScope, Lookup, make_lookup
 from archgen.views.shapes import Bullets, Facts, Inlines, Paragraph, Table
-from archgen.views.timing import element_timing, interaction_timing, timing_tables, timing_verdicts
+from archgen.views.timing import element_timing, timing_tables, timing_verdicts, use_tables
 from archgen.views.timing.timing_lookup import analyse_with_chains as analysed
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ def read(blocks: Iterable[Block]) -> list[object]:
 
 def test_edges_whose_readers_keep_another_pace(view: Lookup) -> None:
     assert view.timing is not None
-    lead, *rows = read(interaction_timing.make_edge_blocks(view, view.timing))
+    lead, *rows = read(use_tables.make_edge_blocks(view, view.timing))
     assert str(lead).startswith(
         "Of 3 edges whose readers are not asked on demand, 2 are read less or more often than published, or in another rhythm. Of 1 the rates are not known."
     )
@@ -85,14 +85,14 @@ def test_edges_whose_readers_keep_another_pace(view: Lookup) -> None:
 def test_of_a_part_only_the_edges_that_touch_it(view: Lookup) -> None:
     assert view.timing is not None
     part = make_lookup(view.architecture, scope=DocumentScope(nodes=frozenset({"button"})), timing_lookup=view.timing)
-    assert read(interaction_timing.make_edge_blocks(part, view.timing)) == [
+    assert read(use_tables.make_edge_blocks(part, view.timing)) == [
         "Of 1 edge whose readers are not asked on demand, none are read less or more often than published, or in another rhythm. Of 1 the rates are not known."
     ]
 
 
 def test_servers_say_how_long_their_callers_wait(view: Lookup) -> None:
     assert view.timing is not None
-    head, row = read(interaction_timing.make_service_blocks(view, view.timing))
+    head, row = read(use_tables.make_service_blocks(view, view.timing))
     assert head == [
         "Server",
         "Callers",

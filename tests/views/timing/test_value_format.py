@@ -8,7 +8,7 @@ import pytest
 
 from archgen.timing.analysis import EventPace
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
-from archgen.views.timing import rate_phrases, timing_tables, value_format
+from archgen.views.timing import timing_tables, value_format
 from archgen.views.timing.timing_lookup import make_timing_lookup as with_origins
 from tests.timings import MS, analysis_of, exact
 
@@ -95,8 +95,8 @@ def test_missing_figures_are_named_with_what_is_missing() -> None:
     ],
 )
 def test_paces(pace: EventPace | None, lines: tuple[str, ...], step: str) -> None:
-    assert rate_phrases.format_box_lines(pace) == lines
-    assert rate_phrases.find_period_step(pace) == step
+    assert value_format.format_box_lines(pace) == lines
+    assert value_format.find_period_step(pace) == step
 
 
 def test_an_inferred_pace_names_where_it_comes_from() -> None:
@@ -106,6 +106,6 @@ def test_an_inferred_pace_names_where_it_comes_from() -> None:
     )
     timing_lookup = with_origins(analysis)
     assert timing_lookup.rate_origins == {"map": ("lidar",), "plan": ("lidar",), "loop": ("lidar",)}
-    assert rate_phrases.format_rate_words(analysis.paces["map"]) == "10 Hz · 100 ms, event"
+    assert value_format.format_rate_words(analysis.paces["map"]) == "10 Hz · 100 ms, event"
     origin_runs = timing_tables.link_origins(timing_lookup, timing_lookup.rate_origins["map"])
     assert [(run.text, run.ref) for run in origin_runs] == [("lidar", "node:lidar")]

@@ -150,9 +150,8 @@ class LaunchRun(ScopeRun):
         self.run_actions(call(self.context))
 
     def _run_include(self, action: LaunchAction) -> None:
-        text = self.context.resolve(action.get("file"))
-        if isinstance(text, UnknownValue):
-            self._tell_computed(action, "the file", text)
+        text = self.resolve_told(action, "the file", action.get("file"))
+        if text is None:
             return
         self._includes += 1
         path = self.files.find_file(text)
@@ -213,7 +212,7 @@ class LaunchRun(ScopeRun):
         if target is not None and container is None:
             name = self.context.resolve(target)
             if isinstance(name, UnknownValue):
-                self._tell_computed(action, "the container", name)
+                self.tell_computed(action, "the container", name)
             elif OPEN in name:
                 self.add_note(
                     action.word, f"the container is known at the launch only: `{name}`", action.span, fate="noted"

@@ -198,13 +198,8 @@ class SliceMaker:
                 seconds = 0
             if 0 < seconds < 1e6:  # noqa: PLR2004 - longer than any robot waits
                 start["respawn_delay"] = f"{seconds:g} s"
-        if node.environment:
-            start["environment"] = node.environment
-        if node.directory:
-            start["directory"] = node.directory
-        if node.user:
-            start["user"] = node.user
-        return start
+        kept = {"environment": node.environment, "directory": node.directory, "user": node.user}
+        return start | {key: value for key, value in kept.items() if value}
 
     def _write_hint(self, node: LaunchedNode, *, keeps_rest: bool) -> dict[str, Any]:
         hint: dict[str, Any] = {"file": node.file}
@@ -212,14 +207,13 @@ class SliceMaker:
             hint["conditions"] = list(dict.fromkeys(node.conditions))
             if not node.is_on:
                 hint["by_default"] = "off"
-        if node.launch_arguments:
-            hint["arguments"] = node.launch_arguments
-        if node.other_ways:
-            hint["other_ways"] = node.other_ways
-        if node.written:
-            hint["written"] = node.written
+        kept: dict[str, Any] = {
+            "arguments": node.launch_arguments,
+            "other_ways": node.other_ways,
+            "written": node.written,
+        }
         if keeps_rest:
-            rest = {
+            kept |= {
                 "arguments_of_program": node.arguments,
                 "remaps": node.remaps,
                 "parameter_files": node.parameter_files,
@@ -228,8 +222,7 @@ class SliceMaker:
                 "directory": node.directory,
                 "parameter_commands": node.parameter_commands,
             }
-            hint |= {key: value for key, value in rest.items() if value}
-        return hint
+        return hint | {key: value for key, value in kept.items() if value}
 
     def _comment(self, path: tuple[str | int, ...], node: LaunchedNode) -> None:
         if node.conditions:

@@ -64,9 +64,8 @@ class NodeMaker:
         for value in wrap_in_list(action.get("command")):
             if value is None:
                 continue
-            text = self._run.context.resolve(value)
-            if isinstance(text, UnknownValue):
-                self._run.tell_computed(action.word, "a word of the command", text, action.span)
+            text = self._run.resolve_told(action, "a word of the command", value)
+            if text is None:
                 return None
             words += split_words(text) if action.get("splits_words") else [text]
         if not words:
@@ -93,9 +92,8 @@ class NodeMaker:
         value = action.get(key)
         if value is None:
             return ""
-        text = self._run.context.resolve(value)
-        if isinstance(text, UnknownValue):
-            self._run.tell_computed(action.word, f"its {key}", text, action.span)
+        text = self._run.resolve_told(action, f"its {key}", value)
+        if text is None:
             return ""
         if OPEN in text:
             self._run.add_note(
@@ -119,7 +117,7 @@ class NodeMaker:
         inner = self._run.context.resolve("" if value is None else value)
         for part in (outer, inner):
             if isinstance(part, UnknownValue):
-                self._run.tell_computed(action.word, "its namespace", part, action.span)
+                self._run.tell_computed(action, "its namespace", part)
                 return
         joined = join_names(str(outer), str(inner))
         if OPEN in joined:
@@ -138,7 +136,7 @@ class NodeMaker:
         for pair in pairs:
             if isinstance(pair, UnknownValue) or not isinstance(pair, list | tuple) or len(pair) != 2:  # noqa: PLR2004
                 unknown = pair if isinstance(pair, UnknownValue) else UnknownValue(describe_launch_value(pair))
-                self._run.tell_computed(action.word, "a remap", unknown, action.span)
+                self._run.tell_computed(action, "a remap", unknown)
                 continue
             self._add_remap(node, action, pair)
 
@@ -146,7 +144,7 @@ class NodeMaker:
         own_name, name = (self._run.context.resolve(part) for part in pair)
         unknown = next((each for each in (own_name, name) if isinstance(each, UnknownValue)), None)
         if unknown is not None:
-            self._run.tell_computed(action.word, "a remap", unknown, action.span)
+            self._run.tell_computed(action, "a remap", unknown)
             return
         assert isinstance(own_name, str)  # noqa: S101 - nothing unknown is left
         assert isinstance(name, str)  # noqa: S101 - as above
@@ -171,10 +169,10 @@ class NodeMaker:
                 node.environment[variable] = setting
             else:
                 unknown = setting if isinstance(setting, UnknownValue) else UnknownValue(describe_launch_value(name))
-                self._run.tell_computed(action.word, "a variable of its environment", unknown, action.span)
+                self._run.tell_computed(action, "a variable of its environment", unknown)
         directory = context.resolve(action.get("directory")) if action.get("directory") is not None else ""
         if isinstance(directory, UnknownValue):
-            self._run.tell_computed(action.word, "its folder", directory, action.span)
+            self._run.tell_computed(action, "its folder", directory)
         else:
             node.directory = directory
         prefix = context.resolve(action.get("prefix")) if action.get("prefix") is not None else ""
@@ -189,9 +187,8 @@ class NodeMaker:
         for key in ("arguments", "ros_arguments"):
             given: list[str] = []
             for value in wrap_in_list(action.get(key)):
-                text = self._run.context.resolve(value)
-                if isinstance(text, UnknownValue):
-                    self._run.tell_computed(action.word, "an argument of the program", text, action.span)
+                text = self._run.resolve_told(action, "an argument of the program", value)
+                if text is None:
                     continue
                 self._keep_written(node, "arguments", value)
                 given += split_words(text) if action.get("splits_words") else [text]
@@ -211,7 +208,7 @@ class NodeMaker:
                     if isinstance(name, str):
                         self._set_parameter(node, action, name, value)
                     else:
-                        self._run.tell_computed(action.word, "the name of a parameter", name, action.span)
+                        self._run.tell_computed(action, "the name of a parameter", name)
             else:
                 self._add_file_value(node, action, entry)
 
@@ -221,7 +218,7 @@ class NodeMaker:
             node.parameters.pop(inner_name, None)
             node.parameter_commands.pop(inner_name, None)
             if isinstance(other, UnknownValue):
-                self._run.tell_computed(action.word, f"the parameter `{inner_name}`", other, action.span)
+                self._run.tell_computed(action, f"the parameter `{inner_name}`", other)
             elif other:
                 node.parameter_commands[inner_name] = list(other)
         if found is not None:
@@ -237,9 +234,8 @@ class NodeMaker:
             entry = entry.parts[0]
         is_file = isinstance(entry, Substitution) and entry.kind == FILE_KIND
         value, namespace, changes = entry.parts if is_file else (entry, "", None)
-        text = self._run.context.resolve(value)
-        if isinstance(text, UnknownValue):
-            self._run.tell_computed(action.word, "a parameter file", text, action.span)
+        text = self._run.resolve_told(action, "a parameter file", value)
+        if text is None:
             return
         self._keep_written(node, "parameter_files", value)
         self._add_file(
@@ -273,7 +269,7 @@ class NodeMaker:
         for name, value in (changes.change_values(values, self._run.context) if changes else values).items():
             if isinstance(value, UnknownValue):
                 node.parameters.pop(name, None)
-                self._run.tell_computed(node.word, f"the parameter `{name}`", value, node.span)
+                self._run.tell_computed(node, f"the parameter `{name}`", value)
             else:
                 node.parameters[name] = value
 

@@ -43,7 +43,7 @@ class ExpressionReader(ABC):
             ast.Attribute: self._read_attribute,
             ast.List: self._read_list,
             ast.Tuple: self._read_tuple,
-            ast.Set: self._read_set,
+            ast.Set: self._read_list,
             ast.Dict: self._read_dict,
             ast.JoinedStr: self._read_joined_text,
             ast.BinOp: self._read_operation,
@@ -143,14 +143,11 @@ class ExpressionReader(ABC):
             return Substitution("path", owner.parts[:-1]) if node.attr == "parent" else owner.parts[-1]
         return self.quote(node)
 
-    def _read_list(self, node: ast.List, scope: NameScope) -> LaunchValue:
+    def _read_list(self, node: ast.List | ast.Set, scope: NameScope) -> LaunchValue:
         return list(self._read_items(node.elts, scope))
 
     def _read_tuple(self, node: ast.Tuple, scope: NameScope) -> LaunchValue:
         return tuple(self._read_items(node.elts, scope))
-
-    def _read_set(self, node: ast.Set, scope: NameScope) -> LaunchValue:
-        return list(self._read_items(node.elts, scope))
 
     def _read_items(self, nodes: list[ast.expr], scope: NameScope) -> Iterator[LaunchValue]:
         count = len(nodes)

@@ -25,15 +25,11 @@ class ComprehensionReader(ExpressionReader):
         super().__init__(file, lines)
         self._expression_readers |= {
             ast.ListComp: self._read_list_comprehension,
-            ast.GeneratorExp: self._read_generator,
+            ast.GeneratorExp: self._read_list_comprehension,
             ast.DictComp: self._read_dict_comprehension,
         }
 
-    def _read_list_comprehension(self, node: ast.ListComp, scope: NameScope) -> LaunchValue:
-        scopes = self._walk_generators(node.generators, NameScope(scope), 0)
-        return self.quote(node) if scopes is None else [self.evaluate(node.elt, each) for each in scopes]
-
-    def _read_generator(self, node: ast.GeneratorExp, scope: NameScope) -> LaunchValue:
+    def _read_list_comprehension(self, node: ast.ListComp | ast.GeneratorExp, scope: NameScope) -> LaunchValue:
         scopes = self._walk_generators(node.generators, NameScope(scope), 0)
         return self.quote(node) if scopes is None else [self.evaluate(node.elt, each) for each in scopes]
 
@@ -71,6 +67,7 @@ class ComprehensionReader(ExpressionReader):
 
 Ending = Literal["", "return", "break", "continue", "raise"]
 """How a block ended."""
+_JUMPS: dict[type[ast.stmt], Ending] = {ast.Raise: "raise", ast.Break: "break", ast.Continue: "continue"}
 _MAX_FUNCTIONS = 20
 _REMEMBERED_IN_A_STEP = 10
 
@@ -92,9 +89,7 @@ class StatementReader(ComprehensionReader):
             ast.ImportFrom: self._run_import_from,
             ast.FunctionDef: self._run_definition,
             ast.Return: self._run_return,
-            ast.Raise: self._run_raise,
-            ast.Break: self._run_break,
-            ast.Continue: self._run_continue,
+            **dict.fromkeys(_JUMPS, self._run_jump),
             ast.With: self._run_with,
             ast.Try: self._run_try,
             ast.If: self._run_if,
@@ -185,14 +180,8 @@ class StatementReader(ComprehensionReader):
         scope.returned.append(list(value) if isinstance(value, list) and self.conditions else value)
         return "return"
 
-    def _run_raise(self, _statement: ast.Raise, _scope: NameScope) -> Ending:
-        return "raise"
-
-    def _run_break(self, _statement: ast.Break, _scope: NameScope) -> Ending:
-        return "break"
-
-    def _run_continue(self, _statement: ast.Continue, _scope: NameScope) -> Ending:
-        return "continue"
+    def _run_jump(self, statement: ast.stmt, _scope: NameScope) -> Ending:
+        return _JUMPS[type(statement)]
 
     def _run_with(self, statement: ast.With, scope: NameScope) -> Ending:
         for item in statement.items:

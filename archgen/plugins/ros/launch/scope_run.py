@@ -6,7 +6,14 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from archgen.plugin.importing import ImportNote, Span
-from archgen.plugins.ros.launch.launch_actions import ActionKind, ConditionalValue, LaunchAction, clean_name, join_names
+from archgen.plugins.ros.launch.launch_actions import (
+    ActionKind,
+    ConditionalValue,
+    LaunchAction,
+    LaunchedNode,
+    clean_name,
+    join_names,
+)
 from archgen.plugins.ros.launch.launch_arguments import DeclaredArgument, LaunchArguments
 from archgen.plugins.ros.launch.launch_context import LaunchContext
 from archgen.plugins.ros.launch.launch_files import LaunchFiles
@@ -36,7 +43,7 @@ class ScopeRun:
         self._handlers: dict[ActionKind, Callable[[LaunchAction], None]] = {
             "argument": self._run_argument,
             "configure": self._run_configure,
-            "namespace": self._run_namespace,
+            "namespace": lambda action: self.push_namespace(action, action.get("namespace")),
             "parameter": self._run_parameter,
             "parameter_file": self._run_parameter_file,
             "remap": self._run_remap,
@@ -46,9 +53,8 @@ class ScopeRun:
         """Who walks through which kind of action; any other kind is not read."""
 
     def _run_argument(self, action: LaunchAction) -> None:
-        name = self.context.resolve(action.get("name"))
-        if isinstance(name, UnknownValue):
-            self._tell_computed(action, "its name", name)
+        name = self.resolve_told(action, "its name", action.get("name"))
+        if name is None:
             return
         if self._can_be_set():
             self.arguments.declare(name, DeclaredArgument(action.span, self._read_choices(action)))
@@ -75,9 +81,8 @@ class ScopeRun:
         return plain_texts if len(plain_texts) == len(texts) else ()
 
     def _run_configure(self, action: LaunchAction) -> None:
-        name = self.context.resolve(action.get("name"))
-        if not isinstance(name, str):
-            self._tell_computed(action, "its name", name)
+        name = self.resolve_told(action, "its name", action.get("name"))
+        if name is None:
             return
         if action.get("is_fixed") and self._can_be_set():
             self.arguments.declare(name, DeclaredArgument(action.span, is_fixed=True))
@@ -88,24 +93,19 @@ class ScopeRun:
             value = UnknownValue(f"either way of `{unsure}`", action.span.line, action.span.file)
         self.context.scope.configurations[name] = value
 
-    def _run_namespace(self, action: LaunchAction) -> None:
-        self.push_namespace(action, action.get("namespace"))
-
     def push_namespace(self, action: LaunchAction, value: LaunchValue) -> None:
         """Go into a namespace."""
         text = self.context.resolve(value)
         scope = self.context.scope
         if isinstance(text, UnknownValue):
-            self._tell_computed(action, "the namespace", text)
+            self.tell_computed(action, "the namespace", text)
             scope.namespace = text
         elif isinstance(scope.namespace, str):
             scope.namespace = join_names(scope.namespace, text)
 
     def _run_parameter(self, action: LaunchAction) -> None:
-        name = self.context.resolve(action.get("name"))
-        if isinstance(name, UnknownValue):
-            self._tell_computed(action, "its name", name)
-        else:
+        name = self.resolve_told(action, "its name", action.get("name"))
+        if name is not None:
             self.context.scope.parameters = (*self.context.scope.parameters, {name: action.get("value")})
 
     def _run_parameter_file(self, action: LaunchAction) -> None:
@@ -116,7 +116,7 @@ class ScopeRun:
         pair = (self.context.resolve(action.get("from")), self.context.resolve(action.get("to")))
         own_name, name = pair
         if isinstance(own_name, UnknownValue) or isinstance(name, UnknownValue):
-            self._tell_computed(action, "the name", next(each for each in pair if isinstance(each, UnknownValue)))
+            self.tell_computed(action, "the name", next(each for each in pair if isinstance(each, UnknownValue)))
         else:
             scope = self.context.scope
             if self.context.is_ros_1:
@@ -130,7 +130,7 @@ class ScopeRun:
         if isinstance(name, str) and isinstance(value, str):
             self.context.scope.environment = (*self.context.scope.environment, (name, value))
         else:
-            self._tell_computed(
+            self.tell_computed(
                 action, "the value", value if isinstance(value, UnknownValue) else UnknownValue(str(name))
             )
 
@@ -177,10 +177,15 @@ class ScopeRun:
             self._seen_notes.add(key)
             self.notes.append(ImportNote(kind, message, span, help_line, fate))
 
-    def _tell_computed(self, action: LaunchAction, what: str, value: UnknownValue) -> None:
-        self.tell_computed(action.word, what, value, action.span)
+    def tell_computed(self, action: LaunchAction | LaunchedNode, what: str, value: UnknownValue) -> None:
+        """Note what only running the file would tell of an action, or of what it starts."""
+        place = Span(value.file or action.span.file, value.line, 1, value.line, 2) if value.line else action.span
+        self.add_note(action.word, f"{what} is computed: `{value.reason}`", place)
 
-    def tell_computed(self, word: str, what: str, value: UnknownValue, span: Span) -> None:
-        """Note what only running the file would tell."""
-        place = Span(value.file or span.file, value.line, 1, value.line, 2) if value.line else span
-        self.add_note(word, f"{what} is computed: `{value.reason}`", place)
+    def resolve_told(self, action: LaunchAction, what: str, value: LaunchValue) -> str | None:
+        """Return a value as text; None for what only running the file would tell, which is noted."""
+        text = self.context.resolve(value)
+        if isinstance(text, str):
+            return text
+        self.tell_computed(action, what, text)
+        return None

@@ -86,16 +86,15 @@ def read_server_parameters(run: ScopeRun, action: LaunchAction) -> dict[str, Any
             _read_server_file(run, action, entry, server_values)
         elif isinstance(entry, Mapping):
             for raw_name, raw_value in entry.items():
-                name = run.context.resolve(raw_name)
-                if isinstance(name, UnknownValue):
-                    run.tell_computed(action.word, "the name of a parameter", name, action.span)
+                name = run.resolve_told(action, "the name of a parameter", raw_name)
+                if name is None:
                     continue
                 value, others = split_parameter(evaluate_parameter(raw_value, run.context), name)
                 if value is not None:
                     server_values[name] = value
                 for inner_name, other in others:
                     if isinstance(other, UnknownValue):
-                        run.tell_computed(action.word, f"the parameter `{inner_name}`", other, action.span)
+                        run.tell_computed(action, f"the parameter `{inner_name}`", other)
                     else:
                         server_values[inner_name.replace(".", "/")] = other
     return server_values

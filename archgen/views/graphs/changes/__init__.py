@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from archgen.compare import Comparison
-from archgen.views.graph_shapes import Graph
 from archgen.views.graphs.changes.component_changes import draw_component_changes
 from archgen.views.graphs.changes.node_changes import draw_node_changes
-from archgen.views.graphs.changes.picture_budget import LARGE_BUDGET, SMALL_BUDGET, PictureBudget
+from archgen.views.graphs.changes.picture_folding import LARGE_BUDGET, SMALL_BUDGET, PictureBudget
+from archgen.views.picture_shapes import Graph
 
 __all__ = ["LARGE_BUDGET", "SMALL_BUDGET", "PictureBudget", "draw_changes"]
 

@@ -10,7 +10,7 @@ from archgen.compare import Comparison
 from archgen.compare.agreements import find_partner_id
 from archgen.model.architecture import Architecture
 from archgen.views.changes.breaking_items import is_break_shown
-from archgen.views.changes.partner_names import name_each, name_partners
+from archgen.views.changes.named_elements import name_each, name_partners
 from archgen.views.graphs.changes.merged_versions import MergedEdge
 
 _NAMES = re.compile(r"`([^`]+)`")

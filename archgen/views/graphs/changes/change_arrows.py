@@ -6,8 +6,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from archgen.views.changes.change_wording import BREAK_SIGN, CHANGE_SIGNS
-from archgen.views.graph_shapes import Arrow, ElementChange
-from archgen.views.graphs.component_flows import FlowStyle
+from archgen.views.graphs.drawn_level import FlowStyle
+from archgen.views.picture_shapes import Arrow, ElementChange
 
 _MAX_LABELS = 3
 ArrowKey = tuple[str, str, FlowStyle, ElementChange | None, tuple[str, ...]]

@@ -9,11 +9,9 @@ from archgen.compare import Comparison
 from archgen.model.component import Component
 from archgen.views.changes.change_wording import BREAK_SIGN, CHANGE_SIGNS
 from archgen.views.elements import element_names
-from archgen.views.graph_shapes import Box, Cluster, ElementChange, Graph
 from archgen.views.graphs import element_boxes
 from archgen.views.graphs.changes.broken_readers import BrokenReaders
 from archgen.views.graphs.changes.change_arrows import ConnectionLine, bundle_arrows
-from archgen.views.graphs.changes.group_folding import fold_to_budget
 from archgen.views.graphs.changes.merged_versions import (
     ChangeNotes,
     MergedEdge,
@@ -21,11 +19,11 @@ from archgen.views.graphs.changes.merged_versions import (
     describe_changed_flows,
     merged_edges,
 )
-from archgen.views.graphs.changes.neighbour_folding import fold_neighbours
-from archgen.views.graphs.changes.picture_budget import PictureBudget
+from archgen.views.graphs.changes.picture_folding import PictureBudget, fold_neighbours, fold_to_budget
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup, make_lookup
+from archgen.views.picture_shapes import Box, Cluster, ElementChange, Graph
 
 GRAPH_ID = "changes/components"
 _MAX_NAMES = 12

@@ -13,8 +13,8 @@ from archgen.compare import Change, Comparison
 from archgen.compare.matched_ids import MatchedIds
 from archgen.model.architecture import Architecture
 from archgen.views.changes.change_wording import is_textual
-from archgen.views.graph_shapes import ElementChange
-from archgen.views.graphs.component_flows import FlowStyle, flow_style
+from archgen.views.graphs.drawn_level import FlowStyle, flow_style
+from archgen.views.picture_shapes import ElementChange
 
 _PORT_KINDS = frozenset({"input", "output"})
 

@@ -11,13 +11,12 @@ from archgen.compare.matched_ids import MatchedIds
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, Topic
 from archgen.views.changes.change_wording import CHANGE_SIGNS, is_textual
-from archgen.views.graph_shapes import Box, ElementChange, Graph
-from archgen.views.graphs import node_boxes
+from archgen.views.graphs import element_boxes
 from archgen.views.graphs.changes.change_arrows import ConnectionLine, bundle_arrows
-from archgen.views.graphs.changes.group_folding import fits_budget
-from archgen.views.graphs.changes.picture_budget import PictureBudget
+from archgen.views.graphs.changes.picture_folding import PictureBudget, fits_budget
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.lookup import Lookup, make_lookup
+from archgen.views.picture_shapes import Box, ElementChange, Graph
 
 GRAPH_ID = "changes/nodes"
 UseKey = tuple[str, str, str]
@@ -191,7 +190,7 @@ def _draw_node(overlay: _OverlaidNodes, node_id: str) -> Box:
     view = overlay.new_lookup if node else overlay.old_lookup
     if node is None:
         node = overlay.old_lookup.architecture.nodes[overlay.matched_ids.old_ids.get("node", {}).get(node_id, node_id)]
-    node_box = node_boxes.node_box(view, node)
+    node_box = element_boxes.node_box(view, node)
     plain_box = replace(node_box, id=f"node {node_id}", status=None, ref="changes:Nodes")
     change_kind = overlay.change_kinds.get(node_id) or _planned_node_change(overlay, node_id)
     if change_kind is None:
@@ -214,7 +213,7 @@ def _draw_topic(overlay: _OverlaidNodes, topic_name: str) -> Box:
         overlay.old_lookup.architecture.topics.get(topic_name),
         overlay.new_lookup.architecture.topics.get(topic_name),
     )
-    topic_box = replace(node_boxes.topic_box(overlay.topics[topic_name]), id=f"topic {topic_name}", ref=None)
+    topic_box = replace(element_boxes.topic_box(overlay.topics[topic_name]), id=f"topic {topic_name}", ref=None)
     change_kind: ElementChange | None = "added" if old_topic is None else "removed" if new_topic is None else None
     if old_topic and new_topic and old_topic.messages != new_topic.messages:
         change_kind = "changed"

@@ -1,0 +1,114 @@
+"""What the elements of chains stand for, and what their bounds rest on: looked up once for all chains of an analysis.
+
+To go through all activities for each chain takes time in proportion to both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from archgen.frozen import dataclass
+from archgen.model.architecture import Architecture, Waypoint
+from archgen.model.graph_search import find_strong_components
+from archgen.timing.analysis import Analysis
+from archgen.timing.chains.trigger_arrivals import TriggerArrivals
+from archgen.timing.figures.figure_wording import join_first_names
+from archgen.timing.system.timing_system import TimingSystem
+
+
+@dataclass(frozen=True, slots=True)
+class ChainPoint:
+    """What an element of a chain stands for: activities, and the output by which it is left (None: any)."""
+
+    activities: tuple[str, ...]
+    output: str | None = None
+
+
+class ElementIndex:
+    """The activities of each node and component."""
+
+    def __init__(self, system: TimingSystem, architecture: Architecture) -> None:
+        """Go through all activities."""
+        self._system, self._architecture = system, architecture
+        self._of_node: dict[str, list[str]] = {}
+        self._of_component: dict[str, list[str]] = {}
+        for activity in system.activities.values():
+            self._of_node.setdefault(activity.node, []).append(activity.id)
+            node = architecture.nodes.get(activity.node)
+            for component in _component_ids(activity.component, node.implements if node else ()):
+                self._of_component.setdefault(component, []).append(activity.id)
+
+    def resolve_points(self, waypoints: Sequence[Waypoint]) -> tuple[ChainPoint, ...]:
+        """Return the activities of each element."""
+        return tuple(self._resolve_point(point) for point in waypoints)
+
+    def _resolve_point(self, point: Waypoint) -> ChainPoint:
+        activities = self._system.activities
+        if point.kind == "node":
+            return ChainPoint((point.id,) if point.id in activities else tuple(self._of_node.get(point.id, ())))
+        if point.kind == "component":
+            # A composed component is the worst way through its leaves.
+            leaves = self._architecture.leaves_of(point.id)
+            return ChainPoint(tuple(each for leaf in leaves for each in self._of_component.get(leaf, ())))
+        output = self._architecture.outputs.get(point.id)
+        owners = self._of_component.get(output.component, []) if output else []
+        publishing = [name for name in owners if point.id in activities[name].outputs]
+        return ChainPoint(tuple(publishing or owners), point.id)
+
+
+def _component_ids(own_name: str | None, implemented_ids: Sequence[str]) -> tuple[str, ...]:
+    """Return the complete ids of the components that an activity belongs to."""
+    if own_name is None:
+        # An activity's component may be the last part of an id only (see `name_activities`).
+        return tuple(implemented_ids[:1])
+    return tuple(component for component in implemented_ids if own_name in {component, component.rpartition(".")[2]})
+
+
+class MeasuredBasis:
+    """The measured execution times on which figures rest: they are the longest that were seen, and prove nothing."""
+
+    def __init__(self, analysis: Analysis) -> None:
+        """Find what each activity rests on: what fires it, what shares a host or a resource, and what these rest on."""
+        activities = analysis.system.activities
+        self._measured = [name for name, activity in activities.items() if activity.wcet_measured]
+        self._basis_of: dict[str, int] = {}
+        """The measured activities (as bits) on which each activity, host and resource rests."""
+        if self._measured:
+            neighbours = _list_neighbours(analysis)
+            bits = {name: 1 << number for number, name in enumerate(self._measured)}
+            parts = find_strong_components(neighbours, lambda name: neighbours[name])
+            for part in reversed(parts):  # what a part rests on is found before
+                basis = 0
+                for name in part:
+                    basis |= bits.get(name, 0)
+                    for neighbour in neighbours[name]:
+                        basis |= self._basis_of.get(neighbour, 0)
+                self._basis_of.update(dict.fromkeys(part, basis))
+
+    def describe(self, through: Iterable[str]) -> str:
+        """Say which measured execution times the bound of a chain rests on; empty for none."""
+        basis = 0
+        for name in through if self._basis_of else ():
+            basis |= self._basis_of[name]
+        names = tuple(name for number, name in enumerate(self._measured) if basis >> number & 1)
+        return (
+            f"the execution time of {join_first_names(names)} is the longest that was seen, not proven" if names else ""
+        )
+
+
+def _list_neighbours(analysis: Analysis) -> dict[str, list[str]]:
+    """Return on what each activity rests at once, with places between those that share them."""
+    arrivals, activities = TriggerArrivals(analysis), analysis.system.activities
+    neighbours: dict[str, list[str]] = {
+        name: [arc.source for arc in analysis.system.arcs_into.get(name, ()) if arrivals.fires_reader(arc)]
+        for name in activities
+    }
+    # Ids have no blanks.
+    for name, activity in activities.items():
+        if activity.response is not None:
+            continue
+        places = [f"host {activity.host}"] if activity.host else []
+        for place in (*places, *(f"resource {key}" for key in activity.uses)):
+            neighbours[name].append(place)
+            neighbours.setdefault(place, []).append(name)
+    return neighbours

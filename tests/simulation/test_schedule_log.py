@@ -1,0 +1,71 @@
+"""What is recorded of a late run: it is the run of the witness, nothing overlaps, and the way adds up."""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from itertools import pairwise
+
+import pytest
+
+from archgen.simulation.analysis_bounds import find_publish_pauses
+from archgen.simulation.schedule_log import LateSchedule, record_schedule
+from tests.simulation.late_robot import analyse, record_witnesses
+from tests.timing.random_styles import random_style_text
+
+_NEVER_SEEN_LATE = {24}
+"""No run of this project takes half of a bound."""
+
+
+def _check_schedule(schedule: LateSchedule) -> None:
+    """Check that steps follow one another without a gap, and that no thread and no resource does two things at once."""
+    assert all(earlier.end == later.start for earlier, later in pairwise(schedule.way))
+    assert all(step.end > step.start for step in schedule.way)
+    assert all(
+        time <= step.end - step.start for step in schedule.way for _, time in step.holders if step.kind == "queues"
+    )
+    uses = defaultdict(list)
+    for track in schedule.tracks:
+        assert all(earlier.end <= later.start for earlier, later in pairwise(track.spans))
+        for span in track.spans:
+            assert span.end > span.start
+            assert (span.state in {"uses", "awaits"}) == bool(span.resource)
+            if span.state == "uses":
+                uses[span.resource].append((span.start, span.end))
+    for times in uses.values():
+        assert all(earlier[1] <= later[0] for earlier, later in pairwise(sorted(times)))
+
+
+def test_the_recorded_run_is_that_of_the_witness_and_names_who_held_the_thread() -> None:
+    witness, schedule = record_witnesses()["stop"]
+    assert schedule.longest == witness.longest > 250 * 10**6
+    assert schedule.orders == witness.orders
+    _check_schedule(schedule)
+    longest = max(schedule.way, key=lambda step: step.end - step.start)
+    assert longest.words in {"until costmap looks", "costmap waits for its turn"}
+    assert longest.holders[0][0] == "planner"
+    assert {track.name for track in schedule.tracks} == {"lidar", "box", "detector", "other"}
+    assert {step.activity for step in schedule.way} == {"lidar", "costmap", "detector"}
+
+
+def test_what_is_recorded_is_the_same_each_time() -> None:
+    assert record_witnesses() == record_witnesses()
+
+
+@pytest.mark.parametrize("seed", range(0, 60, 3))
+def test_each_late_run_adds_up(seed: int) -> None:
+    """Of random projects of all styles, with deadlines half of their bounds."""
+    text = random_style_text(seed)
+    _, analysis, results = analyse(text)
+    pauses = find_publish_pauses(analysis)
+    for result in results.values():
+        schedule = record_schedule(analysis.system, result.through, seed % 8, 1, pauses)
+        if schedule is not None:
+            _check_schedule(schedule)
+    bounded = [each for each in results.values() if each.bound.complete and each.bound.value]
+    for each in bounded:
+        deadline = f"{each.id}: {{deadline: {int(each.bound.value or 0) // 2000 or 1} us, "
+        text = re.sub(rf"\b{each.id}: \{{(?=through)", lambda _, new=deadline: new, text)
+    witnesses = record_witnesses(text)
+    assert all(schedule.longest == witness.longest for witness, schedule in witnesses.values())
+    assert witnesses or not bounded or seed in _NEVER_SEEN_LATE
