@@ -52,7 +52,6 @@ from archgen.timing.system.core_sets import ThreadUnit
 from archgen.timing.system.fair_hosts import find_fair_share
 from archgen.timing.system.thread_pools import (
     find_crowded_pools,
-    find_pool,
     find_thread_count,
     is_reentrant,
     works_in_order,
@@ -128,10 +127,11 @@ def _group_threads(system: TimingSystem, units: Iterable[ThreadUnit]) -> dict[st
     units_by_process: dict[str, list[ThreadUnit]] = {}
     width_of: dict[str, int | None] = {}
     for unit in units:
-        pool = find_pool(system, system.activities[unit[0]])
-        key = f"activity {unit[0]}" if pool is None else pool.key
+        executor = system.executors.get(system.activities[unit[0]].executor)
+        key = f"activity {unit[0]}" if executor is None else executor.id
         units_by_process.setdefault(key, []).append(unit)
-        width_of[key] = 1 if pool is None else pool.threads
+        # Threads that compute one at a time are several for the kernel, which serves each of them.
+        width_of[key] = 1 if executor is None else executor.threads
     return {
         key: ThreadGroup(
             tuple(group),
@@ -145,7 +145,10 @@ def _group_threads(system: TimingSystem, units: Iterable[ThreadUnit]) -> dict[st
 def _list_fair_threads(
     system: TimingSystem, units: Iterable[ThreadUnit], groups: Mapping[str, ThreadGroup]
 ) -> Iterator[FairThread]:
-    """Yield the threads without a priority, of which all execution times are known and nothing works only once."""
+    """Yield the threads without a priority, of which all execution times are known and nothing works only once.
+
+    Not those that compute one at a time: a thread that hands over to another one wakes it up, as often as it likes.
+    """
     key_of = {unit: key for key, group in groups.items() for unit in group.units}
     crowded = find_crowded_pools(system, [system.activities[name] for unit in key_of for name in unit])
     for unit in units:
@@ -154,7 +157,10 @@ def _list_fair_threads(
         own_units = group.units if is_whole else (unit,)
         own_ids = tuple(name for each in own_units for name in each)
         activities = [system.activities[name] for name in own_ids]
-        if group.is_urgent or any(each.wcet is None or (each.behaviour == "once" and each.wcet) for each in activities):
+        executor = system.executors.get(activities[0].executor)
+        if group.is_urgent or (executor is not None and executor.is_serial):
+            continue
+        if any(each.wcet is None or (each.behaviour == "once" and each.wcet) for each in activities):
             continue
         rest = tuple(each for each in group.units if each not in own_units)
         yield FairThread(unit, own_ids, group.width != 1, key_of[unit], group._replace(units=rest) if rest else None)
@@ -337,14 +343,20 @@ class FairSolver:
         """Return how much of a process comes at once."""
         return sum([self._look_up_lane(unit).least for unit in group.units])
 
-    def serve_others(self) -> Interference | None:
-        """Return how long others may be served before the only thread, which waits for each of its uses in between."""
+    def serve_others(self, limit: int | None) -> Interference | None:
+        """Return how long others may be served before the only thread, which waits for each of its uses in between.
+
+        None where that is not known, or is not below the limit.
+        """
         thread = next(iter(self.cores.threads), None)
         own_works = self._list_own(thread) if thread else None
         if thread is None or own_works is None:
             return None
+        if limit is not None and self._serve_least(thread, max(work.cost for work in own_works)) >= limit:
+            return None
         others, lead = self._collect_others(thread), self.cores.lead
-        uses = [len(self.cores.system.activities[name].uses) + thread.changes_threads for name in thread.own_ids]
+        own_activities = [self.cores.system.activities[name] for name in thread.own_ids]
+        uses = [len(each.uses) + (each.wait > 0) + thread.changes_threads for each in own_activities]
         work_and_lead = [
             ActivityWork(work.cost + lead * count, work.streams) for work, count in zip(own_works, uses, strict=True)
         ]
@@ -366,6 +378,17 @@ class FairSolver:
         ]
         return Interference(
             DemandFunction(serve_within, others.term_count), sum_fractions([Fraction(0), *served_shares])
+        )
+
+    def _serve_least(self, thread: FairThread, own_cost: int) -> int:
+        """Return how long others are served where one job of each comes first."""
+        activities, cut = self.cores.system.activities, own_cost + self.cores.lead
+        return sum(
+            [
+                group.cut_work(sum([activities[name].wcet or 0 for unit in group.units for name in unit]), cut)
+                for key, group in self.cores.groups.items()
+                if key != thread.process
+            ]
         )
 
     def _find_window(self, thread: FairThread, own_works: Sequence[ActivityWork], others: _OtherWork) -> int:

@@ -52,6 +52,8 @@ class PropagationState:
     """Event models of what leaves each activity; filled on demand by sent_models, once everything else is found."""
     turn_times: dict[tuple[str, tuple[str, ...]], dict[str, int | None]] = field(default_factory=dict)
     """How long each use of a resource takes that serves its users in the order in which they come."""
+    resource_users: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    """The activities that use each resource."""
     resource_loads: dict[str, tuple[tuple[object, ...], Fraction]] = field(default_factory=dict)
     """The share of each resource that is used, for the event models for which it was found last."""
     late_threads: dict[tuple[str, ...], tuple[tuple[object, ...], ThreadWork]] = field(default_factory=dict)

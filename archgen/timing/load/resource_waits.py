@@ -46,6 +46,12 @@ def find_users(system: TimingSystem, resource_id: str) -> tuple[str, ...]:
     )
 
 
+def _look_up_users(state: PropagationState, resource_id: str) -> tuple[str, ...]:
+    if resource_id not in state.resource_users:
+        state.resource_users[resource_id] = find_users(state.system, resource_id)
+    return state.resource_users[resource_id]
+
+
 def find_use_times(state: PropagationState, name: str, budget: SearchBudget) -> int | UnknownCause:
     """Return how long an activation waits for all resources and uses them, and waits for the world outside, in ticks."""
     times = [find_use_time(state, name, resource_id, budget) for resource_id in state.system.activities[name].uses]
@@ -63,7 +69,7 @@ def find_use_time(state: PropagationState, name: str, resource_id: str, budget: 
     order = _find_order(state.system, resource_id)
     if find_load(state, resource_id) > 1:
         return OVERLOAD_CAUSE
-    users = tuple([user for user in find_users(state.system, resource_id) if state.event_models[user] != ()])
+    users = tuple([user for user in _look_up_users(state, resource_id) if state.event_models[user] != ()])
     if order == "fifo" and (resource_id, users) not in state.turn_times:
         state.turn_times[resource_id, users] = bound_in_turn(state.system, resource_id, users)
     in_turn = state.turn_times[resource_id, users].get(name) if order == "fifo" else None
@@ -77,7 +83,7 @@ def find_use_time(state: PropagationState, name: str, resource_id: str, budget: 
 
 def find_load(state: PropagationState, resource_id: str) -> Fraction:
     """Return the share of a resource that is used in the long run; what is not known of it counts as nothing."""
-    users = find_users(state.system, resource_id)
+    users = _look_up_users(state, resource_id)
     models = tuple([state.event_models[user] for user in users])
     known_models, load = state.resource_loads.get(resource_id, ((), Fraction(0)))
     if known_models != models:
@@ -196,12 +202,14 @@ def find_rivals(state: PropagationState, own_ids: Sequence[str], resource_id: st
     waiting = [activity for name in own_ids if resource_id in (activity := system.activities[name]).uses]
     by_priority = _find_order(system, resource_id) == "fixed_priority"
     lowest = min(map(_rank_priority, waiting), default=-1)
+    waiting_keys = {thread_key(activity) for activity in waiting}
     competitors: list[Competitor] = []
     blocking = 0
-    for user in find_users(system, resource_id):
+    for user in _look_up_users(state, resource_id):
         other, model = system.activities[user], state.event_models[user]
         is_own = user in own_ids and not (len(own_ids) == 1 and _may_overlap(other))
-        if model == () or is_own or all(_never_overlap(system, each, other) for each in waiting):
+        is_mate = thread_key(other) in waiting_keys and all(_never_overlap(system, each, other) for each in waiting)
+        if model == () or is_own or is_mate:
             continue
         worst = other.uses[resource_id].worst
         if by_priority and _rank_priority(other) < lowest:

@@ -29,7 +29,7 @@ from archgen.timing.load.busy_windows import (
     longest_wait_for_turn,
     worst_response,
 )
-from archgen.timing.load.event_streams import EventStreams, delay_streams, max_arrivals
+from archgen.timing.load.event_streams import EventStreams, delay_streams
 from archgen.timing.load.inner_core import urgency_of
 from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.resource_waits import Rivals, find_load, find_rivals, find_use_times
@@ -50,8 +50,8 @@ from archgen.timing.system.fair_hosts import PREEMPTIVE_ORDERS
 from archgen.timing.system.thread_pools import find_pool, find_serial_process, is_reentrant, works_in_order
 from archgen.timing.system.timing_system import TimingSystem
 
-ServedWork = Callable[[], "Interference | None"]
-"""Returns how long others may be served before a thread that waits for resources; None where that is not known."""
+ServedWork = Callable[[int | None], "Interference | None"]
+"""Returns how long others may be served before a thread that waits; None where that is not known, or not below a limit."""
 
 
 def find_waiting_responses(
@@ -92,11 +92,15 @@ def _limit_to_served(
 ) -> WorstResponse:
     """Return a response, or what it is with what others are served before the thread and a lead more for each wait."""
     own_ids = _list_own(state.system, resource)
-    interference = None if _fills_resource(state, own_ids) else serve_others()
+    waits = OVERLOAD_CAUSE if _fills_resource(state, own_ids) else _waits_by_use(state, own_ids, budget)
+    if isinstance(waits, UnknownCause):
+        return response
+    limit = None if response.value is None else response.value - max(work.cost for work in waits.works)
+    interference = serve_others(limit)
     if interference is None:
         return response
     is_in_order = len(own_ids) == 1 and works_in_order(state.system, state.system.activities[own_ids[0]])
-    bound = _bound_with(_waits_by_use(state, own_ids, budget), interference, budget, in_order=is_in_order)
+    bound = _bound_with(waits, interference, budget, in_order=is_in_order)
     if isinstance(bound, UnknownCause) or (response.value is not None and response.value <= bound):
         return response
     return WorstResponse(bound, "fair")
@@ -153,23 +157,17 @@ def _bound_unit(
     causes = [thread.cause for thread in others if thread.cause]
     if causes:
         return WorstResponse(None, tier, unite_causes(causes))
-    interference = _divide_demand(
-        [thread for thread in others if not _computes_in_turn(system, resource, thread)],
-        1 if resource.joined else resource.cores,
-    )
-    mates = [thread for thread in others if _computes_in_turn(system, resource, thread)]
+    mates = _list_mates(system, resource, others)
+    beside = [thread for thread in others if thread not in mates] if mates else others
+    interference = _divide_demand(beside, 1 if resource.joined else resource.cores)
     if mates:  # they hold one another up for all that they compute, on however many cores
         interference = interference.add(_divide_demand(mates, 1))
     is_in_order = not any_order and len(own_ids) == 1 and works_in_order(system, system.activities[own_ids[0]])
-    waits = _waits_by_use(state, own_ids, budget)
-    candidates = [_bound_with(waits, interference, budget, in_order=is_in_order)]
-    # Use by use, or all uses of others in the whole time at once: either may be the smaller one, but for a single activation.
-    if isinstance(waits, UnknownCause) or any(
-        isinstance(bound, UnknownCause) or max_arrivals(work.streams, bound + 1) > 1
-        for bound in candidates
-        for work in waits.works
-    ):
-        candidates.append(_bound_with(_waits_together(state, own_ids), interference, budget, in_order=is_in_order))
+    # Use by use, or all uses of others in the whole time at once: either may be the smaller one.
+    candidates = [
+        _bound_with(waits, interference, budget, in_order=is_in_order)
+        for waits in (_waits_by_use(state, own_ids, budget), _waits_together(state, own_ids))
+    ]
     bounds = [bound for bound in candidates if not isinstance(bound, UnknownCause)]
     if bounds:
         return WorstResponse(min(bounds), tier)
@@ -332,7 +330,7 @@ def _list_others(
         for unit in other_units
     ]
     threads = lower_crowded_threads(system, [build_thread(system, resource.units[0], models), *others], models)
-    mates = [thread for thread in threads[1:] if _computes_in_turn(system, resource, thread)]
+    mates = _list_mates(system, resource, threads[1:])
     # Who computes in turn with something less urgent waits for whatever keeps that from its core.
     lowest = min((each.lowest_priority for each in (threads[0], *mates)), key=urgency_of)
     level = None if _ignores_priorities(system, resource) else lowest
@@ -356,14 +354,17 @@ def _build_late_thread(
     if known is None or known[0] != found_from:
         late = {name: delayed_model(state, name, waiting_ids, always=is_late) for name in unit}
         known = state.late_threads[unit] = found_from, build_thread(state.system, unit, late)
-    models.update((name, state.event_models[name]) for name in unit)
+    for name in unit:
+        models[name] = state.event_models[name]
     return known[1]
 
 
-def _computes_in_turn(system: TimingSystem, resource: ProcessingResource, thread: ThreadWork) -> bool:
-    """Whether a thread is of the process that waits, and computes only while no other thread of it does."""
+def _list_mates(system: TimingSystem, resource: ProcessingResource, threads: Iterable[ThreadWork]) -> list[ThreadWork]:
+    """Return the threads of the process that waits, where each computes only while no other one does."""
     process = find_serial_process(system, resource.units[0][0])
-    return process is not None and find_serial_process(system, thread.unit[0]) == process
+    if process is None:
+        return []
+    return [thread for thread in threads if find_serial_process(system, thread.unit[0]) == process]
 
 
 def _ignores_priorities(system: TimingSystem, resource: ProcessingResource) -> bool:

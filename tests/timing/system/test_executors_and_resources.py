@@ -38,7 +38,7 @@ resources: {gpu: {host: pc, scheduling: fixed_priority}, tpu: {}}
 
 
 def built(timing: str = "") -> TimingSystem:
-    return build_system(architecture(TEXT.replace("TIMING", timing)))[0]
+    return build_system(architecture(TEXT.replace("TIMING", timing), is_fair=True))[0]
 
 
 def mind(timing: str) -> tuple[Activity, int]:
