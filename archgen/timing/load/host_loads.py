@@ -7,6 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 from archgen.timing.analysis import EventPace, HostLoad, Reason, ResponseTime, RunResponse
+from archgen.timing.figures.figure_wording import format_share
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
 from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue
 from archgen.timing.figures.value_arithmetic import (
@@ -18,6 +19,7 @@ from archgen.timing.figures.value_arithmetic import (
 )
 from archgen.timing.load.host_verdicts import HostJudge, rate_monotonic_bound
 from archgen.timing.load.propagation_state import PropagationState
+from archgen.timing.load.resource_loads import list_turn_notes
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.thread_work import WorstResponse
 from archgen.timing.system.core_placement import ProcessingResource
@@ -41,16 +43,21 @@ _TIER_SENTENCES = {
     "unknown": "no execution time is written",
 }
 _OWN_CORE_SENTENCE = "its own work: {0} has no more threads than cores"
+_SHARED_SENTENCE = "other programs take {1} of each core of {0}: all execution times are that much longer there"
 _OPEN_CORES_SENTENCE = "nobody wrote how many cores {0} has"
 
 
 def build_response_times(state: PropagationState, resources: Iterable[ProcessingResource]) -> dict[str, ResponseTime]:
     """Return the best and worst response of every activity, in ns."""
     resource_of = {name: resource for resource in resources for name in resource.members}
-    return {
-        name: _build_response_time(state, name, state.responses[name], resource_of.get(name))
-        for name in state.system.activities
-    }
+    turn_notes = list_turn_notes(state.system)
+    responses: dict[str, ResponseTime] = {}
+    for name, activity in state.system.activities.items():
+        response = _build_response_time(state, name, state.responses[name], resource_of.get(name))
+        notes = [turn_notes[key] for key in activity.uses if key in turn_notes and response.tier != "declared"]
+        worst = replace(response.worst, assumptions=(*response.worst.assumptions, *notes))
+        responses[name] = replace(response, worst=worst) if notes else response
+    return responses
 
 
 def _build_response_time(
@@ -70,11 +77,14 @@ def _build_response_time(
     if share := state.system.fair_shares.get(activity.host or ""):
         sentence_arguments = (*sentence_arguments, share.figures)
     span = activity.places.get("response" if worst_response.tier == "declared" else "wcet", activity.at)
+    reasons = [Reason(sentence, span, sentence_arguments)]
+    if share and share.other_load:
+        reasons.append(Reason(_SHARED_SENTENCE, span, (activity.host or "", format_share(share.other_load))))
     return ResponseTime(
         best,
         _worst_value(state.system, activity, worst_response, resource),
         worst_response.tier,
-        (Reason(sentence, span, sentence_arguments),),
+        tuple(reasons),
     )
 
 
@@ -221,8 +231,16 @@ def _build_host_load(
 ) -> HostLoad:
     """Return the load of one host."""
     shares = {name: share_of[name] for resource in host_resources for name in resource.members}
+    fair_share = judge.system.fair_shares.get(host)
+    other_load = TimingValue(fair_share.other_load if fair_share else Fraction(0))
     loads = tuple(
-        (resource.id, resource.cores, add_values(shares[name] for name in resource.members))
+        (
+            resource.id,
+            resource.cores,
+            add_values(
+                (*(shares[name] for name in resource.members), multiply_value(other_load, Fraction(resource.cores)))
+            ),
+        )
         for resource in host_resources
         if not resource.missing
     )
@@ -233,7 +251,7 @@ def _build_host_load(
     # Elements that add nothing to the load are no tasks in the sense of the bound, which falls with their number.
     working = sum(1 for utilisation in shares.values() if utilisation.value != 0)
     return HostLoad(
-        utilisation=add_values(shares.values()),
+        utilisation=add_values((*shares.values(), multiply_value(other_load, Fraction(cores or 1)))),
         cores=cores,
         rate_monotonic_bound=TimingValue(rate_monotonic_bound(working)) if cores == 1 else _ONE_CORE_ONLY,
         verdict="unknown" if is_open and verdict != "overload" else verdict,

@@ -147,7 +147,9 @@ class StepUpdates(PropagationSteps):
             ways = self.state.transaction_ways.get(name)
             response = max((way.delay or 0) - way.best_before for way in ways) if ways else 0
             # What was found place by place is found again there.
-            is_known = any(way.steps == (name,) and way.delay == response for way in self.state.place_ways.get(name, ()))
+            is_known = any(
+                way.steps == (name,) and way.delay == response for way in self.state.place_ways.get(name, ())
+            )
             if ways and not is_known:
                 limit = HostLimit(response, None, None, "whole way")
                 limits[name] = limits[name].limit_to(limit) if name in limits else limit

@@ -22,10 +22,13 @@ def build_fair_share(host: Host, tick_unit: TickUnit) -> FairShare:
     figures = f"{lead} times a slice of {slice_time} and a tick of {tick_time}"
     is_all_written = None not in (host.scheduling, written.slice, written.tick, written.lead)
     turn = tick_unit.ns_to_ticks(slice_time.value + tick_time.value)
+    other_load = written.other_load or Fraction(0)
+    left = 1 - other_load
     return FairShare(
-        lead * turn,
+        # What is served takes longer beside other programs, a lead as well.
+        -(-lead * turn * left.denominator // left.numerator),
         turn,
-        written.other_load or Fraction(0),
+        other_load,
         "" if is_all_written else f"threads of {host.id} lead one another by at most {figures}",
         figures,
     )
