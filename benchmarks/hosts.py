@@ -14,8 +14,9 @@ from pathlib import Path
 _ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(_ROOT))
 
+from refinements import REFINEMENTS, without  # noqa: E402
+
 from archgen.timing.run_analysis import analyse_architecture  # noqa: E402 - the checkout is what is measured
-from benchmarks.refinements import REFINEMENTS, without  # noqa: E402
 from tests.timing.random_systems import architecture  # noqa: E402
 from tests.timing.random_transactions import draw_system  # noqa: E402
 

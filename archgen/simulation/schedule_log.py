@@ -17,15 +17,16 @@ from archgen.simulation.simulation_run import SimulationRun, ThreadState
 from archgen.timing.system.timing_system import TimingSystem
 
 _SECOND = 10**9
-StepKind = Literal["waits", "queues", "works", "stays"]
+StepKind = Literal["waits", "rereads", "queues", "works", "stays"]
 _STEP_WORDS: dict[StepKind, str] = {
     "waits": "until {} looks",
+    "rereads": "until {} looks for the last time",
     "queues": "{} waits for its turn",
     "works": "{} works",
     "stays": "until {} sends the next",
 }
-"""What keeps the data of a chain: they are not asked for yet, who asks has to wait, it works (and is interrupted), or what
-was sent stays until something newer is.
+"""What keeps the data of a chain: they are not asked for yet, or are asked for again since nothing newer has come, who asks
+has to wait, it works (and is interrupted), or what was sent stays until something newer is.
 """
 
 
@@ -162,6 +163,7 @@ def _list_way(
     if passage is None:
         return
     time, activities, unit = passage.begin, run.activities, run.plan.unit
+    sender: tuple[int, int] | None = None
     for activity, job in zip(track.activities, list_passed_jobs(trace, passage), strict=True):
         moments: tuple[tuple[StepKind, int], ...] = (
             ("waits", activities.job_activations[activity][job]),
@@ -172,11 +174,20 @@ def _list_way(
         for kind, end in moments:
             if end > time:
                 # Nobody holds up the world, nor what was sent.
-                is_free = kind == "stays" or (kind == "waits" and activity == track.activities[0])
-                holders = [] if is_free else _find_holders(run, spans, (activity, job), kind, (time, end))
+                is_free = kind == "stays" or (kind == "waits" and sender is None)
+                delayed = activity, job
+                step_kind, held_kind = kind, kind
+                if kind == "waits" and sender is not None and job and activities.job_starts[activity][job - 1] > time:
+                    step_kind = "rereads"
+                    # It looked before: what lasts is that the sender's next message does not come, or is not stored.
+                    next_ends = activities.job_ends[sender[0]][sender[1] + 1 :][:1]
+                    if not 0 <= next(iter(next_ends), -1) < end:
+                        delayed, held_kind = (sender[0], sender[1] + 1), "queues"
+                holders = [] if is_free else _find_holders(run, spans, delayed, held_kind, (time, end))
                 held = tuple((name, length * unit) for name, length in holders)
-                yield WayStep(run.plan.activities[activity].id, job, kind, time * unit, end * unit, held)
+                yield WayStep(run.plan.activities[activity].id, job, step_kind, time * unit, end * unit, held)
                 time = end
+        sender = activity, job
 
 
 def _find_holders(

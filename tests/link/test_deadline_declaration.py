@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from archgen.diagnostics.diagnostic import Severity
 from archgen.link.declare.deadline_declaration import ALWAYS
 from archgen.pipeline import check_text
 from tests.timing.random_systems import architecture
@@ -17,7 +18,9 @@ chains:
 
 def _read(deadline: str) -> tuple[str | None, dict[str, str]]:
     chain = architecture(HEAD + deadline + "\n").chains["c"]
-    return chain.deadline and str(chain.deadline), {name: str(limit) for name, limit in chain.deadline_shares.items()}
+    return str(chain.deadline) if chain.deadline else None, {
+        name: str(limit) for name, limit in chain.deadline_shares.items()
+    }
 
 
 @pytest.mark.parametrize(
@@ -67,7 +70,7 @@ def test_what_cannot_be_asked_is_told_at_its_place(deadline: str, place: int, me
     found = [
         (each.span.line, each.span.column, each.message)
         for each in check_text(HEAD + deadline + "\n")
-        if each.severity.name == "ERROR"
+        if each.severity is Severity.ERROR
     ]
     assert found == [(5, place, message)]
 

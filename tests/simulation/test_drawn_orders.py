@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 
 from archgen.simulation import find_late_runs
 from archgen.simulation.chain_witnesses import find_witnesses
@@ -54,7 +55,7 @@ def test_orders_are_named_by_what_waits_there() -> None:
         {"h": 1},
         executors={f"container {key}": each for key, each in executors.items()},
     )
-    late = find_late_runs(made, {"c": (("n2", "end"), 0)}, seconds=1, seeds=1)["c"]
+    late = find_late_runs(made, {"c": (("n2", "end"), Fraction(0))}, seconds=1, seeds=1)["c"]
     # The thread of `box` is one, that of `end` another: on two cores nobody waits.
     assert [order.place for order in late.orders] == ["h"]
     assert late.orders[0].words.startswith("by priority, then ")

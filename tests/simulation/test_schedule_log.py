@@ -10,6 +10,7 @@ import pytest
 
 from archgen.simulation.analysis_bounds import find_publish_pauses
 from archgen.simulation.schedule_log import LateSchedule, record_schedule
+from tests.running import ROOT
 from tests.simulation.late_robot import analyse, record_witnesses
 from tests.timing.random_styles import random_style_text
 
@@ -42,10 +43,35 @@ def test_the_recorded_run_is_that_of_the_witness_and_names_who_held_the_thread()
     assert schedule.orders == witness.orders
     _check_schedule(schedule)
     longest = max(schedule.way, key=lambda step: step.end - step.start)
-    assert longest.words in {"until costmap looks", "costmap waits for its turn"}
+    assert longest.words == "until costmap looks for the last time"
     assert longest.holders[0][0] == "planner"
     assert {track.name for track in schedule.tracks} == {"lidar", "box", "detector", "other"}
     assert {step.activity for step in schedule.way} == {"lidar", "costmap", "detector"}
+
+
+AGED = """groups: {g: {components: {
+  eye: {outputs: {o: T}}, map: {outputs: {o: T}}, drive: {inputs: {i: g.eye.o}, outputs: {o: {type: T, external: world}}}}}}
+hosts: {pc: {cores: 2}}
+containers: {box: {host: pc, threads: 1}}
+nodes:
+  eye: {implements: g.eye, host: pc, timing: {period: 50 ms, wcet: 1 ms, bcet: 1 ms}}
+  map: {implements: g.map, container: box, timing: {period: 1 s, wcet: 300 ms, bcet: 300 ms}}
+  drive: {implements: g.drive, container: box, timing: {period: 10 ms, wcet: 1 ms, bcet: 1 ms}}
+chains: {stop: {through: [g.eye, g.drive], deadline: 200 ms}}
+"""
+
+
+def test_what_is_read_again_since_the_newer_is_not_stored_is_laid_at_who_keeps_the_reader_busy() -> None:
+    _, schedule = record_witnesses(AGED)["stop"]
+    (step,) = [step for step in schedule.way if step.kind == "rereads"]
+    assert (step.words, step.holders[0][0]) == ("until drive looks for the last time", "map")
+
+
+def test_what_is_read_again_since_nothing_newer_is_sent_is_laid_at_who_keeps_the_sender_busy() -> None:
+    page = (ROOT / "docs/timing_examples.md").read_text(encoding="utf-8")
+    _, schedule = record_witnesses(page.partition("# courier.yaml\n")[2].partition("```")[0])["see_to_stop"]
+    step = next(step for step in schedule.way if step.activity == "guard")
+    assert (step.words, step.holders[0][0]) == ("until guard looks for the last time", "route")
 
 
 def test_what_is_recorded_is_the_same_each_time() -> None:
@@ -65,7 +91,7 @@ def test_each_late_run_adds_up(seed: int) -> None:
     bounded = [each for each in results.values() if each.bound.complete and each.bound.value]
     for each in bounded:
         deadline = f"{each.id}: {{deadline: {int(each.bound.value or 0) // 2000 or 1} us, "
-        text = re.sub(rf"\b{each.id}: \{{(?=through)", lambda _, new=deadline: new, text)
+        text = re.sub(rf"\b{each.id}: \{{(?=through)", deadline, text)
     witnesses = record_witnesses(text)
     assert all(schedule.longest == witness.longest for witness, schedule in witnesses.values())
     assert witnesses or not bounded or seed in _NEVER_SEEN_LATE

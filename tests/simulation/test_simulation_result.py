@@ -26,7 +26,9 @@ def test_a_share_is_judged_by_what_it_took_where_enough_was_seen(count: int, ver
     model = read_sketch({"a": "period: 100 ms, wcet: 1 ms", "b": "wcet: 1 ms"}, "a>b", rest)
     result = bound_all_chains(analyse_architecture(model), model)["c"]
     # All from 0 to 100 ms are equally likely.
-    seen = DurationDistribution(*map(Fraction, (0, 0, 0, 100)), ranges=((0, 100),), unit=Fraction(10**6))
+    seen = DurationDistribution(
+        Fraction(0), Fraction(0), Fraction(0), Fraction(100), ranges=((0, 100),), unit=Fraction(10**6)
+    )
     observed = ObservedChain(("a", "b"), ChainFigures(seen, None, None, None, count), None)
     found = list(list_seen_shares(observed, result))
     assert [(each.share, each.seen, each.verdict) for each in found] == [

@@ -29,7 +29,8 @@ def make_schedule() -> LateSchedule:
 
 
 def _read(schedule: LateSchedule, name: str = "stop") -> dict[str, Any]:
-    return json.loads(format_trace(name, schedule))
+    events: dict[str, Any] = json.loads(format_trace(name, schedule))
+    return events
 
 
 def test_each_event_has_what_the_format_asks_for(schedule: LateSchedule) -> None:

@@ -84,7 +84,13 @@ def test_a_thread_of_another_visit_of_the_way_keeps_a_core_busy_too() -> None:
     assert (exceeded, len(drawn.steps)) == ([], 15)
 
 
-KINDS = ({}, {"pinned": True}, {"gates": True}, {"ranked": True}, {"pinned": True, "gates": True, "ranked": True})
+KINDS: tuple[dict[str, bool], ...] = (
+    {},
+    {"pinned": True},
+    {"gates": True},
+    {"ranked": True},
+    {"pinned": True, "gates": True, "ranked": True},
+)
 
 
 def hold_against_runs(seed: int, **kind: bool) -> tuple[list[str], int]:
@@ -93,10 +99,12 @@ def hold_against_runs(seed: int, **kind: bool) -> tuple[list[str], int]:
     analysis = analyse_architecture(architecture(drawn.text))
     assert analysis.state is not None
     ticks = analysis.system.tick / 1000
-    bounds = {way.steps: (way.delay or 0) * ticks for ways in analysis.state.transaction_ways.values() for way in ways}
+    bounds: dict[tuple[str, ...], Fraction] = {
+        way.steps: (way.delay or 0) * ticks for ways in analysis.state.transaction_ways.values() for way in ways
+    }
     for name, response in analysis.responses.items():
         if response.worst.value is not None:
-            bounds[name,] = min(response.worst.value / 1000, bounds.get((name,), 1 << 60))
+            bounds[name,] = min(response.worst.value / 1000, bounds.get((name,), Fraction(1 << 60)))
     seen: dict[tuple[str, ...], int] = {}
     until = max(4 * max(step.period for step in drawn.steps.values()), 300_000)
     for number in range(len(ORDERS)):

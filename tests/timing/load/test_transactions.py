@@ -15,6 +15,9 @@ def find(of: TimingSystem) -> list[Transactions]:
     return list(find_transactions(of, find_triggers(of), resources, of.arcs))
 
 
+CORES = {"one": 1, "two": 1}
+
+
 def hosted(*, there: str = "two", **rest: object) -> TimingSystem:
     """Make a chain a > b > c, of which b is on another host."""
     return system(
@@ -44,7 +47,7 @@ def test_ways_over_links_have_their_shortest_and_their_longest_time() -> None:
 
 def test_hosts_that_fire_one_another_one_way_only_have_none() -> None:
     chain = hosted()
-    assert find(system(tuple(chain.activities.values())[:2], chain.arcs[:1], {"one": 1, "two": 1})) == []
+    assert find(system(tuple(chain.activities.values())[:2], chain.arcs[:1], CORES)) == []
 
 
 def test_what_is_declared_ends_a_way() -> None:
@@ -52,7 +55,7 @@ def test_what_is_declared_ends_a_way() -> None:
     activities = [
         event("b", 2, "a", host="two", response=9) if each.id == "b" else each for each in of.activities.values()
     ]
-    (found,) = find(system(activities, of.arcs, of.cores))
+    (found,) = find(system(activities, of.arcs, CORES))
     assert ("c",) in {way.steps for way in found.ways.values()}
 
 
@@ -60,14 +63,14 @@ def test_a_call_begins_a_way_of_its_own() -> None:
     request, answer = call("b", "s")
     of = hosted()
     server = event("s", 1, host="one", behaviour="on_demand")
-    (found,) = find(system((*of.activities.values(), server), (*of.arcs, request, answer), of.cores))
+    (found,) = find(system((*of.activities.values(), server), (*of.arcs, request, answer), CORES))
     assert [way.steps for way in found.ways_to["s"]] == [("s",)]
 
 
 def test_a_fork_is_known() -> None:
     of = hosted()
     (found,) = find(
-        system((*of.activities.values(), event("d", 1, "b", host="one")), (*of.arcs, arc("b", "d", worst=1)), of.cores)
+        system((*of.activities.values(), event("d", 1, "b", host="one")), (*of.arcs, arc("b", "d", worst=1)), CORES)
     )
     assert [origin.key for origin in found.forked_origins] == ["a"]
 

@@ -101,10 +101,10 @@ UNPROVEN = {"undecided": ("a",)}
 def test_loads(load: TimingValue, verdict: str, parts: tuple[tuple[str, TimingValue], ...], said: str) -> None:
     assert (
         load_charts.describe_load(
-            HostLoad(load, 1, exact(Fraction(7, 10)), verdict, parts, unproven=UNPROVEN.get(verdict, ()))
+            HostLoad(load, 1, exact(Fraction(7, 10)), verdict, parts, unproven=UNPROVEN.get(verdict, ()))  # type: ignore[arg-type]
         )
         == said
-    )  # type: ignore[arg-type]
+    )
 
 
 def test_nothing_is_said_to_be_done_in_time_that_only_other_priorities_would_do() -> None:
