@@ -52,25 +52,6 @@ class CoreResponses(NamedTuple):
     ways_to: dict[str, tuple[EntryWay, ...]]
     storing_waits: dict[str, WorstResponse]
 
-    def merge(self, others: CoreResponses) -> CoreResponses:
-        """Return the smaller bound of both, of each figure."""
-
-        def choose(first: WorstResponse, second: WorstResponse) -> WorstResponse:
-            is_second = first.value is None or (second.value is not None and second.value < first.value)
-            return second if is_second else first
-
-        return CoreResponses(
-            {name: choose(response, others.response_of[name]) for name, response in self.response_of.items()},
-            {
-                name: tuple(
-                    other if way.delay is None or (other.delay is not None and other.delay < way.delay) else way
-                    for way, other in zip(ways, others.ways_to[name], strict=True)
-                )
-                for name, ways in self.ways_to.items()
-            },
-            {name: choose(wait, others.storing_waits[name]) for name, wait in self.storing_waits.items()},
-        )
-
 
 class LevelBound(NamedTuple):
     """The busy period of a level (ticks), or why there is none; and the demand that it is found from."""

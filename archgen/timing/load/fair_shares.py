@@ -236,7 +236,6 @@ class FairSolver:
     """What is known of the cores' own activities, in any order. What is smaller is put there."""
     foreign_responses: Mapping[str, WorstResponse]
     budget: SearchBudget
-    is_improved: bool = False
     _arrivals: dict[tuple[str, ThreadUnit], EventStreams | None] = field(default_factory=dict)
     _lanes: dict[ThreadUnit, _LaneWork] = field(default_factory=dict)
     _leasts: list[int] = field(default_factory=list)
@@ -252,7 +251,6 @@ class FairSolver:
             self._least_sums = list(accumulate(self._leasts, initial=0))
             if not sum([self._improve_thread(thread) for thread in self.cores.threads]):
                 break
-            self.is_improved = True
 
     def _improve_thread(self, thread: FairThread) -> bool:
         """Make the figures of a thread smaller, and return whether any is."""

@@ -90,10 +90,7 @@ class ResponseTerms:
         if step not in self._solved:
             if step not in self._steps.whole_hosts:
                 self._solve_host(step)
-            found = (
-                self._list_found(step) if step in self._steps.fair_cores and step in self._steps.shared_cores else None
-            )
-            solver = self._steps.open_solver(step, {}, found)
+            solver = self._steps.open_solver(step, {})
             responses = solver.solve()
             if step in self._steps.whole_hosts:
                 self._steps.host_limits[step] = list_host_limits(responses)
@@ -112,14 +109,11 @@ class ResponseTerms:
 
     def _open_fair(self, step: str) -> FairTerms:
         """Return how the figures of fair shares come about, from what was found in the end."""
-        solver = self._steps.open_fair_solver(self._steps.fair_cores[step], step, self._list_found(step), {})
-        return FairTerms(solver, self.formulas)
-
-    def _list_found(self, step: str) -> CoreResponses:
-        """Return what was found in the end of the activities of some cores."""
         state, names = self.state, self._steps.resources[step].members
         ways_to = {name: state.ways_to[name] for name in names if name in state.ways_to}
-        return CoreResponses({name: state.responses[name] for name in names}, ways_to, {})
+        found = CoreResponses({name: state.responses[name] for name in names}, ways_to, {})
+        solver = self._steps.open_fair_solver(self._steps.fair_cores[step], step, found, {})
+        return FairTerms(solver, self.formulas)
 
     def _list_lone(self, name: str) -> Iterator[FigureWorking]:
         """Yield how the response of an activity on a core of its own was found."""

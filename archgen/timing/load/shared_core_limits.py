@@ -10,7 +10,6 @@ from archgen.timing.load.busy_cores import find_blocked_time
 from archgen.timing.load.busy_windows import SearchBudget
 from archgen.timing.load.cascade_demand import CascadeDemand
 from archgen.timing.load.core_paths import CorePath, CorePaths
-from archgen.timing.load.core_responses import CoreResponses
 from archgen.timing.load.idle_backlogs import IdleBacklog
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.shared_cores import SharedCores, WayKey
@@ -29,22 +28,11 @@ _SHARE_BITS = 64
 
 
 class SharedCoreLimits:
-    """The limits of the host as a whole (`of_host`), of what was `found` before, and of the cores' backlog, once it is known."""
+    """The limits of the host as a whole (`of_host`), and those of the backlog of the cores, once it is found."""
 
-    def __init__(
-        self,
-        ways_to: Mapping[str, Sequence[EntryWay]],
-        of_host: Mapping[str, HostLimit],
-        found: CoreResponses | None = None,
-    ) -> None:
+    def __init__(self, ways_to: Mapping[str, Sequence[EntryWay]], of_host: Mapping[str, HostLimit]) -> None:
         """Begin without a backlog."""
         self.ways_to, self.of_host = ways_to, of_host
-        self.found_ways = {
-            name: found.ways_to[name]
-            for name, response in (found.response_of if found else {}).items()
-            if response.value is not None and found and all(way.delay is not None for way in found.ways_to[name])
-        }
-        self.found_responses = {name: found.response_of[name].value or 0 for name in self.found_ways} if found else {}
         self.backlog: IdleBacklog | None = None
         # Each sweep asks for all of them.
         self._delays: dict[WayKey, int | None] = {}
@@ -58,19 +46,13 @@ class SharedCoreLimits:
 
     def has_limit(self, name: str) -> bool:
         """Whether an activity has a limit."""
-        return (
-            name in self.of_host
-            or name in self.found_ways
-            or (self.backlog is not None and (name, 0) in self.backlog.delays)
-        )
+        return name in self.of_host or (self.backlog is not None and (name, 0) in self.backlog.delays)
 
     def limit_delay(self, key: WayKey) -> int | None:
         """Return the limit of a way."""
         if key not in self._delays:
             limit = self.of_host.get(key[0])
             delays = [limit.delay] if limit and limit.delay is not None else []
-            if key[0] in self.found_ways:
-                delays.append(self.found_ways[key[0]][key[1]].delay or 0)
             if self.backlog and key in self.backlog.delays:
                 delays.append(self.backlog.delays[key])
             self._delays[key] = min(delays, default=None)
@@ -81,8 +63,6 @@ class SharedCoreLimits:
         if name not in self._responses:
             limit = self.of_host.get(name)
             responses = [limit.response] if limit else []
-            if name in self.found_responses:
-                responses.append(self.found_responses[name])
             if self.backlog and (name, 0) in self.backlog.delays:
                 ways = enumerate(self.ways_to[name])
                 responses.append(max(self.backlog.delays[name, number] - way.best_before for number, way in ways))

@@ -19,7 +19,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import cache
-from typing import NamedTuple
 
 from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import UnknownCause, unite_causes
@@ -58,23 +57,17 @@ _MAX_WAITING_EVENTS = 50
 """Events of one origin that may come within a delay, before it is said to have run away."""
 
 
-class KnownBounds(NamedTuple):
-    """Bounds that were found before: the responses of the foreign units, what bounds each activity on its host as a whole,
-    and what is known of the cores' own activities.
-    """
-
-    responses: Mapping[str, WorstResponse]
-    of_host: Mapping[str, HostLimit]
-    found: CoreResponses | None = None
-
-
 def open_shared_solver(
     paths: CorePaths,
     model_of: Callable[[EventOrigin, FiringArc | None], EventStreams | UnknownCause],
-    known_bounds: KnownBounds,
+    known_bounds: tuple[Mapping[str, WorstResponse], Mapping[str, HostLimit]],
     budget: SearchBudget,
 ) -> SharedCoreSolver:
-    """Return what finds the responses on some cores, for the event models of what enters them (`model_of`)."""
+    """Return what finds the responses on some cores, for the event models of what enters them (`model_of`).
+
+    `known_bounds` have the responses of the foreign units, which are found elsewhere, and what bounds each activity on
+    its host as a whole.
+    """
     cores = paths.cores
 
     def find_model(origin: EventOrigin) -> EventStreams | UnknownCause:
@@ -90,14 +83,14 @@ class SharedCoreSolver:
         self,
         paths: CorePaths,
         demand: CascadeDemand,
-        known_bounds: KnownBounds,
+        known_bounds: tuple[Mapping[str, WorstResponse], Mapping[str, HostLimit]],
         budget: SearchBudget,
     ) -> None:
         """Take what enters the cores from the demand."""
         self.paths, self.cores, self.demand = paths, paths.cores, demand
         self.whole_budget = self.budget = budget
-        self.known_responses, self.found = known_bounds.responses, known_bounds.found
-        self.limits = SharedCoreLimits(self.cores.ways_to, known_bounds.of_host, self.found)
+        self.known_responses, host_limits = known_bounds
+        self.limits = SharedCoreLimits(self.cores.ways_to, host_limits)
         self.step_responses: dict[str, int] = {}
         self.cause_of: dict[str, UnknownCause] = {}
         self.raised_names: set[str] = set()
@@ -427,7 +420,5 @@ class SharedCoreSolver:
         if name in self.cause_of:
             return WorstResponse(None, tier, cause)
         response = min(self.step_responses[name], max((way.delay or 0) - way.best_before for way in ways))
-        if self.found and response == self.found.response_of[name].value:
-            return self.found.response_of[name]
         limit = self.limits.of_host.get(name)
         return WorstResponse(response, tier if limit is None or response < limit.response else limit.tier)

@@ -16,7 +16,7 @@ from archgen.timing.load.queue_orders import QueueBound
 from archgen.timing.load.queue_responses import CoreQueue
 from archgen.timing.load.response_times import AnalysisEffort, find_dedicated_response, find_responses
 from archgen.timing.load.run_ways import EntryWay
-from archgen.timing.load.shared_core_responses import KnownBounds, SharedCoreSolver, open_shared_solver
+from archgen.timing.load.shared_core_responses import SharedCoreSolver, open_shared_solver
 from archgen.timing.load.single_cores import delay_by_response
 from archgen.timing.load.thread_work import EventModels, WorstResponse
 from archgen.timing.load.transaction_windows import ENDLESS, TransactionWindows
@@ -25,9 +25,6 @@ from archgen.timing.load.whole_hosts import HostLimit, limit_responses, list_hos
 from archgen.timing.system.core_placement import (
     ProcessingResource,
 )
-
-_MAX_FAIR_TURNS = 4
-"""How often bounds in any order are looked for below those of fair shares."""
 
 
 class StepUpdates(PropagationSteps):
@@ -219,14 +216,15 @@ class StepUpdates(PropagationSteps):
         return delay_by_response(model, self.state.responses.get(name))
 
     def open_solver(
-        self, step: str, entering_models: dict[int, EventStreams | UnknownCause], found: CoreResponses | None = None
+        self, step: str, entering_models: dict[int, EventStreams | UnknownCause]
     ) -> CoreSolver | SharedCoreSolver:
         """Return what finds the responses of a core, or several, on which activities fire one another, or of a host."""
         find_model, budget = self._model_finder(step, entering_models), self.budget_of[step]
         if step in self.shared_cores:
-            known_responses = ChainMap(self.state.work_ends, self.state.responses)
-            known_bounds = KnownBounds(known_responses, self._limits_of(step), found)
-            return open_shared_solver(self.shared_cores[step], find_model, known_bounds, budget)
+            known_bounds = ChainMap(self.state.work_ends, self.state.responses)
+            return open_shared_solver(
+                self.shared_cores[step], find_model, (known_bounds, self._limits_of(step)), budget
+            )
         return open_core_solver(self.whole_hosts.get(step) or self.inner_cores[step], find_model, budget)
 
     def _update_inner_core(self, step: str) -> bool:
@@ -267,17 +265,12 @@ class StepUpdates(PropagationSteps):
         cores = self.fair_cores.get(step)
         if cores is None or self.resources[step].waits:
             return found
-        for _ in range(_MAX_FAIR_TURNS):
-            solver = self.open_fair_solver(cores, step, found, entering_models)
-            solver.solve()
-            for name, wait in found.storing_waits.items():
-                hold = solver.find_hold(name, wait.value)
-                if hold is not None and (wait.value is None or hold < wait.value):
-                    found.storing_waits[name] = WorstResponse(hold, "fair")
-            if not solver.is_improved or step not in self.shared_cores:
-                break
-            # What is sooner done is less in the way of others, in any order too.
-            found = self.open_solver(step, entering_models, found).solve().merge(found)
+        solver = self.open_fair_solver(cores, step, found, entering_models)
+        solver.solve()
+        for name, wait in found.storing_waits.items():
+            hold = solver.find_hold(name, wait.value)
+            if hold is not None and (wait.value is None or hold < wait.value):
+                found.storing_waits[name] = WorstResponse(hold, "fair")
         return found
 
     def open_fair_solver(

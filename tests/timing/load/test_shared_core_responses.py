@@ -14,7 +14,7 @@ from archgen.timing.load.event_streams import EventStream
 from archgen.timing.load.inner_triggers import find_inner_triggers
 from archgen.timing.load.path_work import PathWork
 from archgen.timing.load.shared_core_limits import CoreShares
-from archgen.timing.load.shared_core_responses import KnownBounds, open_shared_solver
+from archgen.timing.load.shared_core_responses import open_shared_solver
 from archgen.timing.load.shared_cores import SharedCores, prepare_shared_cores
 from archgen.timing.run_analysis import analyse_architecture
 from archgen.timing.system.core_placement import find_resources
@@ -201,7 +201,7 @@ def test_work_beside_a_path_is_what_comes_and_what_was_pending() -> None:
     assert not shares.fills_core(("b",), paths.look_up(("b",)))
     # Every 100: 4 + 3; 6 + B, where 2 B = min(4, B) + 3; 3 + B, where 2 B = min(6, B) + 4.
     rare_streams = (EventStream(100 * tick),)
-    solver = open_shared_solver(paths, lambda _, __: rare_streams, KnownBounds({}, {}), busy_windows.SearchBudget())
+    solver = open_shared_solver(paths, lambda _, __: rare_streams, ({}, {}), busy_windows.SearchBudget())
     assert {
         name: response.value and response.value // tick for name, response in solver.solve().response_of.items()
     } == {
