@@ -226,20 +226,25 @@ def _add_storing_share(
     return add_values((share, *storing_shares)) if storing_shares else share
 
 
+def _add_other_load(system: TimingSystem, host: str, core_count: int, shares: Iterable[TimingValue]) -> TimingValue:
+    """Return the sum of shares of some cores, with what other programs take of them."""
+    fair_share = system.fair_shares.get(host)
+    load = add_values(shares)
+    if fair_share is None or not fair_share.other_load:
+        return load
+    return add_values((load, TimingValue(fair_share.other_load * core_count)))
+
+
 def _build_host_load(
     host: str, host_resources: list[ProcessingResource], share_of: Mapping[str, TimingValue], judge: HostJudge
 ) -> HostLoad:
     """Return the load of one host."""
     shares = {name: share_of[name] for resource in host_resources for name in resource.members}
-    fair_share = judge.system.fair_shares.get(host)
-    other_load = TimingValue(fair_share.other_load if fair_share else Fraction(0))
     loads = tuple(
         (
             resource.id,
             resource.cores,
-            add_values(
-                (*(shares[name] for name in resource.members), multiply_value(other_load, Fraction(resource.cores)))
-            ),
+            _add_other_load(judge.system, host, resource.cores, [shares[name] for name in resource.members]),
         )
         for resource in host_resources
         if not resource.missing
@@ -251,7 +256,7 @@ def _build_host_load(
     # Elements that add nothing to the load are no tasks in the sense of the bound, which falls with their number.
     working = sum(1 for utilisation in shares.values() if utilisation.value != 0)
     return HostLoad(
-        utilisation=add_values((*shares.values(), multiply_value(other_load, Fraction(cores or 1)))),
+        utilisation=_add_other_load(judge.system, host, cores or 1, shares.values()),
         cores=cores,
         rate_monotonic_bound=TimingValue(rate_monotonic_bound(working)) if cores == 1 else _ONE_CORE_ONLY,
         verdict="unknown" if is_open and verdict != "overload" else verdict,

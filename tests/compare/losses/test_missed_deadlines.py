@@ -321,7 +321,9 @@ TABLE = {
         ["tracking.tracker/timing.wcet certh: overloads the host `pc` (122 % of its core), where `eye` of CERTH runs"],
     ),
     "a host with a core less": (
-        BASE[: BASE.index("chains:")].replace("pc: {cores: 1, scheduling: fixed_priority}", "pc: {cores: 2, scheduling: fixed_priority}").replace("wcet: 20 ms", "wcet: 99 ms"),
+        BASE[: BASE.index("chains:")]
+        .replace("pc: {cores: 1, scheduling: fixed_priority}", "pc: {cores: 2, scheduling: fixed_priority}")
+        .replace("wcet: 20 ms", "wcet: 99 ms"),
         [("pc: {cores: 2, scheduling: fixed_priority}", "pc: {cores: 1, scheduling: fixed_priority}")],
         both(
             "pc/cores",
