@@ -169,13 +169,12 @@ def _list_fair_threads(
 class _LaneWork(NamedTuple):
     """What a lane may do beside a thread: its work in a window, with what may be pending (None: any amount).
 
-    `least` comes at once; `share` is what it takes of a core in the long run; it may run on `width` cores at once.
+    `share` is what it takes of a core in the long run; it may run on `width` cores at once.
     """
 
     within: Callable[[int], int] | None
     share: Fraction | None
     term_count: int
-    least: int
     width: int
     works: Sequence[tuple[str, ActivityWork]] = ()
 
@@ -239,7 +238,7 @@ class FairSolver:
     _arrivals: dict[tuple[str, ThreadUnit], EventStreams | None] = field(default_factory=dict)
     _lanes: dict[ThreadUnit, _LaneWork] = field(default_factory=dict)
     _leasts: list[int] = field(default_factory=list)
-    """The least that each process does beside a thread, in ascending order."""
+    """What one job of each activity of a process takes, in ascending order; empty before somebody asks."""
     _least_sums: list[int] = field(default_factory=list)
 
     def solve(self) -> None:
@@ -247,8 +246,6 @@ class FairSolver:
         for _ in range(_MAX_TURNS):
             self._arrivals.clear()
             self._lanes.clear()
-            self._leasts = sorted(map(self._find_least, self.cores.groups.values()))
-            self._least_sums = list(accumulate(self._leasts, initial=0))
             if not sum([self._improve_thread(thread) for thread in self.cores.threads]):
                 break
 
@@ -332,14 +329,17 @@ class FairSolver:
 
     def _find_least_time(self, thread: FairThread, own_cost: int) -> int:
         """Return how long it takes where one job of each other activity comes first, as far as it may."""
+        if not self._leasts:
+            self._leasts = sorted(map(self._find_least, self.cores.groups.values()))
+            self._least_sums = list(accumulate(self._leasts, initial=0))
         cut = own_cost + self.cores.lead
         short_count = bisect_right(self._leasts, cut)
         beside = self._least_sums[short_count] + cut * (len(self._leasts) - short_count)
         return own_cost + beside - min(self._find_least(self.cores.groups[thread.process]), cut)
 
     def _find_least(self, group: ThreadGroup) -> int:
-        """Return how much of a process comes at once."""
-        return sum([self._look_up_lane(unit).least for unit in group.units])
+        """Return how long one job of each activity of a process takes."""
+        return sum([self.cores.system.activities[name].wcet or 0 for unit in group.units for name in unit])
 
     def serve_others(self, limit: int | None) -> Interference | None:
         """Return how long others may be served before the only thread, which waits for each of its uses in between.
@@ -350,7 +350,8 @@ class FairSolver:
         own_works = self._list_own(thread) if thread else None
         if thread is None or own_works is None:
             return None
-        if limit is not None and self._serve_least(thread, max(work.cost for work in own_works)) >= limit:
+        own_cost = max(work.cost for work in own_works)
+        if limit is not None and self._find_least_time(thread, own_cost) - own_cost >= limit:
             return None
         others, lead = self._collect_others(thread), self.cores.lead
         own_activities = [self.cores.system.activities[name] for name in thread.own_ids]
@@ -376,17 +377,6 @@ class FairSolver:
         ]
         return Interference(
             DemandFunction(serve_within, others.term_count), sum_fractions([Fraction(0), *served_shares])
-        )
-
-    def _serve_least(self, thread: FairThread, own_cost: int) -> int:
-        """Return how long others are served where one job of each comes first."""
-        activities, cut = self.cores.system.activities, own_cost + self.cores.lead
-        return sum(
-            [
-                group.cut_work(sum([activities[name].wcet or 0 for unit in group.units for name in unit]), cut)
-                for key, group in self.cores.groups.items()
-                if key != thread.process
-            ]
         )
 
     def _find_window(self, thread: FairThread, own_works: Sequence[ActivityWork], others: _OtherWork) -> int:
@@ -497,15 +487,14 @@ class FairSolver:
         width = 1
         if is_reentrant(self.cores.system, activities[unit[0]]):
             width = min(find_thread_count(self.cores.system, unit[0]) or self.cores.core_count, self.cores.core_count)
-        least = sum([activities[name].wcet or 0 for name in unit if self._arrivals_at(name, ()) != ()])
         sure_works = [work for work in works if work is not None]
         if len(sure_works) < len(works):
-            return _LaneWork(None, None, 1, least, width)
+            return _LaneWork(None, None, 1, width)
         demand = GrowingLoad(sure_works).demand_function()
         shares = [work_utilisation(each.cost, each.streams) for each in sure_works]
         named_works = tuple(zip(unit, sure_works, strict=True))
         share = sum_fractions([Fraction(0), *shares])
-        return _LaneWork(demand.within, share, demand.term_count, least, width, named_works)
+        return _LaneWork(demand.within, share, demand.term_count, width, named_works)
 
     def _find_work_of_other(self, name: str) -> ActivityWork | None:
         """Return the work of an activity beside a thread, of what may be pending too; None where it is not known."""

@@ -232,12 +232,8 @@ class StepUpdates(PropagationSteps):
         state = self.state
         entering_models: dict[int, EventStreams | UnknownCause] = {}
         solved = self.open_solver(step, entering_models).solve()
-        new_responses, new_ways, new_waits = (
-            limit_responses(solved, self._limits_of(step)) if step in self.inner_cores else solved
-        )
-        new_responses, new_ways, new_waits = self._limit_to_fair(
-            step, CoreResponses(new_responses, new_ways, new_waits), entering_models
-        )
+        found = limit_responses(solved, self._limits_of(step)) if step in self.inner_cores else solved
+        new_responses, new_ways, new_waits = self._limit_to_fair(step, found, entering_models)
         old_ends = dict(self.state.single_ends)
         if step in self.single_cores:
             self._limit_to_single_cores(step, new_responses, new_ways)
