@@ -180,3 +180,12 @@ def test_no_simulated_kernel_exceeds_a_bound(first: int) -> None:
             tiers[found[name].tier] = tiers.get(found[name].tier, 0) + 1
             assert bound is None or seen <= bound, (seed, name, found[name].tier)
     assert tiers["fair"] > 5
+
+
+def test_hundreds_of_users_of_one_resource_are_bounded() -> None:
+    """Each waits for one use of each other thread, which is counted once for all of them."""
+    nodes = {f"u{at} @h": f"{PERIODIC}, period: 1 s, wcet: 1 ms, uses: {{gpu: 600 us}}" for at in range(150)}
+    found = responses(nodes, "{cores: 8}", "resources: {gpu: {host: h}}")
+    assert {tier for _, tier in found.values()} == {"cores"}
+    # 1 + 150 uses, and an eighth of the others' work: of each what comes and what was pending.
+    assert {worst for worst, _ in found.values()} == {1 + 150 * Fraction(6, 10) + Fraction(149, 8)}
