@@ -67,6 +67,11 @@ def test_each_locked_file_is_known_by_its_hash(lock: str) -> None:
     assert "://" not in (ROOT / "ci/locked" / lock).read_text(encoding="utf-8")  # from whatever index one has
 
 
+def test_a_checkout_can_be_installed_from_what_is_locked() -> None:
+    # Without an isolated build nothing else brings it.
+    assert "editables" in read_lock("check.txt")
+
+
 def test_the_locks_agree() -> None:
     run, check = read_lock("run.txt"), read_lock("check.txt")
     assert {name: check.get(name) for name in run} == run

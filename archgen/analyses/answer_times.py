@@ -198,7 +198,12 @@ def _find_long_callbacks(analysis: Analysis, members: Sequence[Activity]) -> Ite
     for slow in members:
         # While it uses a resource, or waits within its declared response, it keeps its thread.
         held = max((slow.wcet or 0) + sum(use.worst for use in slow.uses.values()), slow.response or 0)
-        delayed = [(period, member) for period, member in timed if period < held and member is not slow]
+        # Components of one node that it runs by one timer are no two callbacks.
+        delayed = [
+            (period, other)
+            for period, other in timed
+            if period < held and (other.node, period) != (slow.node, slow.period)
+        ]
         if not delayed:
             continue
         period, first = delayed[0]

@@ -175,7 +175,6 @@ def print_budget(request: TimingRequest, chain_id: str) -> None:
 
 def print_proposal(request: TimingRequest, *, keep_triggers: bool, applies: bool) -> None:
     """Print a configuration in which chains are less late (`--propose`), with its patch; or write it (`--apply`)."""
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.edit.configuration_patch import plan_patch
     from archgen.edit.element_edit import EditRefusedError
     from archgen.emit.terminal import chain_remedies

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import field, replace
+from typing import TYPE_CHECKING
 
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.simulation.chain_witnesses import find_witnesses
 from archgen.simulation.seeded_runs import LateRun
 from archgen.timing.analysis import Analysis, ChainResult
-from archgen.timing.search.change_trials import ChangeTrials, OverrideLayer
-from archgen.timing.search.proposals import MAX_TRIES, Proposal, find_proposal
+
+if TYPE_CHECKING:
+    from archgen.timing.search.change_trials import OverrideLayer
+    from archgen.timing.search.proposals import Proposal
 
 _SMALL_SIZE, _LEAST_TRIES = 150, 12
 """So many activities make a small project; and so many configurations are tried of the largest one."""
@@ -40,6 +43,10 @@ def find_evidence(
     asked_results = [result for name, result in results.items() if asked in {None, name}]
     proposal = None
     if any(result.deadline and result.verdict in {"missed", "not proven"} for result in asked_results):
+        # Of all who show bounds only a terminal asks for this.
+        from archgen.timing.search.change_trials import ChangeTrials
+        from archgen.timing.search.proposals import MAX_TRIES, find_proposal
+
         # Of a large project fewer are tried, since nobody asked for it: `--propose` tries them all.
         tries = max(_LEAST_TRIES, MAX_TRIES * _SMALL_SIZE // max(_SMALL_SIZE, len(analysis.system.activities)))
         proposal = find_proposal(ChangeTrials(architecture, analysis, lay_overrides, tries), results)

@@ -71,7 +71,7 @@ def test_no_picture_is_drawn_in_a_format_that_nobody_shows_it_in(
         asked.append(formats)
         return DrawnPictures()
 
-    monkeypatch.setattr(product_writing, "draw_started_pictures", note_formats)
+    monkeypatch.setattr(product_writing, "_draw_started_pictures", note_formats)
     inputs = product_inputs.ProductInputs(project, OutputOptions(show_history=False))
     product_writing.start_products(inputs, (PRODUCTS["site"], PRODUCTS["report"]))
     site_names, report_names = set(inputs.site_drawings), set(PRODUCTS["report"].list_drawings(inputs))

@@ -95,6 +95,13 @@ def test_a_declared_response_says_that_what_is_read_is_stored_in_time() -> None:
     assert (wait.value, wait.assumptions) == (0, ("what b reads is stored in time",))
 
 
+def test_a_declared_response_says_nothing_where_it_keeps_the_thread_for_more_time_than_there_is() -> None:
+    """It computes 1 ms and waits 29 ms of each 20 ms: what is to be stored in its thread waits longer and longer."""
+    nodes = {"a @far": "period: 30 ms, wcet: 1 ms", "b @pc": "period: 20 ms, wcet: 1 ms, response: 30 ms"}
+    wait = analyse_sketch(nodes, "a>b", ONE_CORE).storing_waits["b"]
+    assert (wait.value, wait.complete, wait.assumptions) == (None, True, ("overload",))
+
+
 def test_storing_takes_time_from_everybody_in_the_thread_and_on_the_core() -> None:
     """Messages each 10 ms take 3 ms to be stored: `b` and `c` wait for them, and the host carries 30 % more."""
     nodes = {

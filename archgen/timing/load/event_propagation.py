@@ -149,7 +149,9 @@ class _Propagation(StepUpdates):
         """Repeat until nothing changes: place by place, and then with what the ways over hosts say of all that leaves them."""
         is_at_rest = self._begin_anew(steps)
         settled_ids = {name for step in steps if step in self.transactions for name in self.transactions[step].place_of}
-        if settled_ids:
+        # What nobody wrote is what is told: no other way of looking finds a bound there, nor does anything diverge.
+        causes = [self.state.responses[name].cause for name in sorted(settled_ids)] if is_at_rest else []
+        if settled_ids and not any(cause is not None and cause.missing for cause in causes):
             is_at_rest = self._settle_transactions(steps, settled_ids, is_at_rest=is_at_rest)
         if not is_at_rest:
             self._give_up_steps(steps)
@@ -157,8 +159,8 @@ class _Propagation(StepUpdates):
     def _settle_transactions(self, steps: tuple[str, ...], settled_ids: set[str], *, is_at_rest: bool) -> bool:
         """Repeat with what the ways over hosts say of all that leaves them, and return whether all came to rest."""
         state = self.state
-        place_responses = {name: state.responses[name] for name in settled_ids} if is_at_rest else {}
-        state.place_ways |= {name: self._list_place_ways(name) if is_at_rest else () for name in settled_ids}
+        place_responses = {name: state.responses[name] for name in sorted(settled_ids)} if is_at_rest else {}
+        state.place_ways |= {name: self._list_place_ways(name) if is_at_rest else () for name in sorted(settled_ids)}
         state.settled_ids |= settled_ids
         if not self._begin_anew(steps):
             state.settled_ids -= settled_ids

@@ -49,11 +49,11 @@ def mind(timing: str) -> tuple[Activity, int]:
 
 def test_a_process_is_a_container_or_a_node_outside_of_one() -> None:
     assert list(built().executors.values()) == [
-        Executor("container box", 2, "pc", "non_preemptive", suspends=True),
-        Executor("container crate", 1, None, None),
-        Executor("node mind", 1, "pc", None),
-        Executor("node hands", 3, "arm", "ros2_executor"),
-        Executor("node planned", 1, None, None),
+        Executor("container box", 2, "pc", "non_preemptive", suspends=True, usual_order="ros2_executor"),
+        Executor("container crate", 1, None, None, usual_order="ros2_executor"),
+        Executor("node mind", 1, "pc", None, usual_order="ros2_executor"),
+        Executor("node hands", 3, "arm", "ros2_executor", usual_order="ros2_executor"),
+        Executor("node planned", 1, None, None, usual_order="ros2_executor"),
     ]
     assert {name: activity.executor for name, activity in built().activities.items()} == {
         "eye": "container box",
