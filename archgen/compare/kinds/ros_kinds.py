@@ -231,10 +231,6 @@ def _resolve_topics(port: NodePort, context: ReadContext) -> frozenset[str]:
     return unordered_values(wire.name or topic for wire, topic in wires)
 
 
-def _read_conditions(port: NodePort, _context: ReadContext) -> Mapping[str, object]:
-    return {name: format_parameter(wanted) or "no value" for name, wanted in port.use.when.items()}
-
-
 PORT = KindSpec(
     "port",
     "Nodes",
@@ -243,7 +239,12 @@ PORT = KindSpec(
         KeySpec("topic", _resolve_topics),
         KeySpec("own_name", lambda port, _: port.use.own_name, Effect.SYSTEM, noun="name in the program"),
         KeySpec("named_by", lambda port, _: port.use.named_by, Effect.SYSTEM, noun="parameter with its name"),
-        KeySpec("when.", _read_conditions, Effect.SYSTEM, noun="condition"),
+        KeySpec(
+            "when.",
+            lambda port, _: {name: format_parameter(wanted) or "no value" for name, wanted in port.use.when.items()},
+            Effect.SYSTEM,
+            noun="condition",
+        ),
         KeySpec("message", lambda port, _: port.use.message, worsening=Worsening.ALWAYS, verb="is"),
         KeySpec("qos.", _read_qos, worsening=Worsening.ALWAYS, noun="QoS"),
     ),

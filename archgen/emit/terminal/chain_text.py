@@ -143,15 +143,15 @@ def format_budget(
     else:
         yield f"All together, each times {figure_wording.format_number(budget.shared.factor)}: who may take how much"
         header = ("partner", "element", "written", "may take", "")
-        rows = [_share_row(share, partner_titles) for share in _sort_shares(budget.shared.shares)]
+        rows = [
+            _share_row(share, partner_titles)
+            for share in sorted(
+                budget.shared.shares, key=lambda share: (not share.owners, share.owners, not share.on_chain)
+            )
+        ]
         yield from align_rows([header, *rows], width)
     if budget.untried:
         yield f"not tried, as {len(budget.untried)} figures are too many: {figure_wording.join_first_names(budget.untried)}"
-
-
-def _sort_shares(shares: tuple[PartnerShare, ...]) -> list[PartnerShare]:
-    """Return shares by partner, what is on the chain first, and else in their order."""
-    return sorted(shares, key=lambda share: (not share.owners, share.owners, not share.on_chain))
 
 
 def _figure_row(budget: FigureBudget) -> TextRow:

@@ -13,7 +13,7 @@ from archgen.model.step_connections import ConnectedStep
 from archgen.timing.analysis import ChainResult
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.search.chain_budgets import PartnerShare, SharedBudget
+from archgen.timing.search.chain_budgets import SharedBudget
 from archgen.views import inline_text, start_phrases
 from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.interface_record import InterfaceRecord
@@ -64,7 +64,8 @@ def _chain_rows(content: AgreementContent, chain_id: str, budget: SharedBudget) 
             inline_text.to_inlines(join_owner_titles(content.lookup, share.owners)),
             inline_text.to_inlines(Text(share.activity, code=True)),
             inline_text.to_inlines(value_format.display_duration(TimingValue(share.written))),
-            inline_text.to_inlines(_write_share(share)),
+            # Exact, so that it still keeps the deadline.
+            inline_text.to_inlines(figure_wording.write_exact_duration(share.may_take)),
         )
 
 
@@ -73,11 +74,6 @@ def _chain_cell(content: AgreementContent, chain_id: str, budget: SharedBudget) 
     parts = [f"{chain.deadline} in all"] if chain.deadline else []
     parts += [f"all times {figure_wording.format_number(budget.factor)}"] if budget.factor is not None else []
     return inline_text.join_lines([inline_text.to_inlines(chain.title), (Text(", ".join(parts), muted=True),)])
-
-
-def _write_share(share: PartnerShare) -> str:
-    """Write a share as it can be set: exact, so that it still keeps the deadline."""
-    return figure_wording.write_exact_duration(share.may_take)
 
 
 _FRAME_LEAD = "These frames are written by one of the two, and used by the other one: its data is given or expected in them, or its own frames are placed in them."

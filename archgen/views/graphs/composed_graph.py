@@ -137,7 +137,10 @@ class _ComposedDrawing:
         outer_flows = [flow for flow in flows if flow.tail not in own_ids or flow.head not in own_ids]
         hue = element_boxes.group_hue(lookup, shell.group)
         arrows = (
-            *(replace(arrow, colour=hue) for arrow in merge_flows(inner_flows, _find_ends, labels=True)),
+            *(
+                replace(arrow, colour=hue)
+                for arrow in merge_flows(inner_flows, lambda flow: (flow.tail, flow.head), labels=True)
+            ),
             *self._draw_rim_arrows(),
             *merge_flows(outer_flows, self._place_ends, labels=True),
         )
@@ -322,10 +325,6 @@ class _ComposedDrawing:
         )
         ports = f"{count_noun(len(shell.inputs), 'input')} and {count_noun(len(shell.outputs), 'output')}"
         return f"{shell.title} with {counts}; it has {ports}."
-
-
-def _find_ends(flow: ComponentFlow) -> tuple[str, str]:
-    return flow.tail, flow.head
 
 
 def _shorten_names(word: str, names: Sequence[str]) -> tuple[str, ...]:

@@ -147,7 +147,11 @@ def make_edge_blocks(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator[Bl
         if _is_any_shown(lookup, timing_lookup, edge.arc.source, edge.arc.target)
     ]
     shown_edges = [edge for edge in all_edges if edge.arc.target not in on_demand_ids]
-    notable_edges = sorted((edge for edge in shown_edges if edge.loss.value or edge.beat.value), key=_loss_order)
+    # Greatest loss first, then the ids.
+    notable_edges = sorted(
+        (edge for edge in shown_edges if edge.loss.value or edge.beat.value),
+        key=lambda edge: (-(edge.loss.value or 0), edge.arc.source, edge.arc.topic, edge.arc.target),
+    )
     unknown_count = sum(edge.loss.value is None for edge in shown_edges)
     if not notable_edges and not unknown_count:
         return
@@ -183,11 +187,6 @@ def _is_any_shown(lookup: Lookup, timing_lookup: TimingLookup, *activity_ids: st
     """Whether any of the activities runs in a shown node."""
     activities = timing_lookup.analysis.system.activities
     return any(lookup.scope.shows_node(activities[name].node) for name in activity_ids if name in activities)
-
-
-def _loss_order(edge: EdgeFit) -> tuple[object, ...]:
-    """Return the sort key of an edge: greatest loss first, then the ids, for a stable order."""
-    return (-(edge.loss.value or 0), edge.arc.source, edge.arc.topic, edge.arc.target)
 
 
 def _edge_row(timing_lookup: TimingLookup, edge: EdgeFit) -> tuple[Inlines, ...]:
