@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 from typing import Any
 
+from archgen.diagnostics.common_wording import join_first
 from archgen.diagnostics.text_columns import TextRow, align_rows
 from archgen.emit.data import timing_json
 from archgen.emit.terminal import chain_gaps, chain_remedies
@@ -151,7 +152,7 @@ def format_budget(
         ]
         yield from align_rows([header, *rows], width)
     if budget.untried:
-        yield f"not tried, as {len(budget.untried)} figures are too many: {figure_wording.join_first_names(budget.untried)}"
+        yield f"not tried, as {len(budget.untried)} figures are too many: {join_first(budget.untried)}"
 
 
 def _figure_row(budget: FigureBudget) -> TextRow:

@@ -25,6 +25,7 @@ from archgen.views.shapes import (
     Section,
     Table,
     Text,
+    make_columns,
 )
 from archgen.views.timing.timing_tables import is_blank
 
@@ -99,12 +100,7 @@ def make_partner_table(lookup: Lookup) -> Table | None:
         )
         for partner in architecture.partners.values()
     )
-    columns = (
-        Column("Partner"),
-        Column("Who it is", 3),
-        Column("Components", 0.6, "right"),
-        Column("Nodes", 0.5, "right"),
-    )
+    columns = make_columns("Partner", ("Who it is", 3), ("Components", 0.6, "right"), ("Nodes", 0.5, "right"))
     anchors = tuple(f"partner:{partner_id}" for partner_id in architecture.partners)
     return Table("table:partners", "Partners", columns, rows, anchors, numbered=False)
 
