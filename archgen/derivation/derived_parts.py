@@ -9,8 +9,7 @@ import operator
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from archgen.derivation.reading_endpoints import WriterIndex, derive_reading_endpoints
-from archgen.derivation.writing_endpoints import NodePart, derive_writing_endpoints
+from archgen.derivation.port_endpoints import NodePart, WriterIndex, derive_reading_endpoints, derive_writing_endpoints
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 from archgen.model.known_parts import KnownParts

@@ -22,8 +22,8 @@ from archgen.compare.kinds.kind_spec import (
     value_feature,
 )
 from archgen.compare.normal_values import unordered_values
+from archgen.derivation.port_endpoints import flow_of_use
 from archgen.derivation.wire.remap_rules import NodeNames
-from archgen.derivation.writing_endpoints import flow_of_use
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField
 from archgen.model.message_types import ConceptualType
