@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
 
 from archgen.derivation import ros_names
 from archgen.derivation.derived_parts import DerivedParts
@@ -15,6 +14,7 @@ from archgen.derivation.portless_endpoints import complete_message, count_shared
 from archgen.derivation.reading_endpoints import derive_reading_endpoints, index_writers
 from archgen.derivation.wire.running_state import complete_states
 from archgen.derivation.writing_endpoints import NodePart, derive_writing_endpoints, find_node_parts
+from archgen.frozen import dataclass, field, replace
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 from archgen.model.derived_names import derive_node_ids

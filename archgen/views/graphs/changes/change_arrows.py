@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
+from archgen.frozen import dataclass
 from archgen.views.changes.change_wording import BREAK_SIGN, CHANGE_SIGNS
 from archgen.views.graphs.drawn_level import FlowStyle
 from archgen.views.picture_shapes import Arrow, ElementChange
