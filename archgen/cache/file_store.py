@@ -12,7 +12,8 @@ import hashlib
 import os
 import tempfile
 from pathlib import Path
-from typing import NamedTuple
+
+from archgen.frozen import NamedTuple
 
 
 class FileStore(NamedTuple):

@@ -178,7 +178,7 @@ def _xml_text(text: str) -> str:
 
 
 def _mutate_yaml(data: bytes, words: Sequence[str], draw: Draw) -> bytes:
-    tree = yaml.load(data, yaml.CSafeLoader)  # noqa: S506 - a safe loader
+    tree = yaml.load(data, yaml.CSafeLoader)
     places = list(_list_places(tree, 0))
     if not places:
         return _mutate_lines(data, words, draw)

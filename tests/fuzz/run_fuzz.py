@@ -321,7 +321,7 @@ def _report(targets: Sequence[Target], work: Path) -> int:
         processor_seconds += counts["processor_seconds"]
         print(
             f"{target.name:16} {counts['inputs']:9,} inputs {counts['seconds']:8.1f} s ({counts['processor_seconds']:6.1f} s of the processor) {edges[-1] if edges else '-':>7} edges {len(counts['faults']):3} faults"
-        )  # noqa: T201
+        )
         for name, count in counts["faults"].items():
             print(f"    {name} ({count} times)")  # noqa: T201
     print(f"{'all':16} {total:9,} inputs {seconds:8.1f} s ({processor_seconds:.1f} s of the processor) {faults} faults")  # noqa: T201
