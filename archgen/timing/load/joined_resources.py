@@ -99,8 +99,7 @@ def _list_uses(system: TimingSystem) -> dict[str, int]:
 
 def _list_turns(system: TimingSystem) -> dict[str, int]:
     """Return how long each activation waits for resources and uses them, where all come in the order of arrival."""
-    times = {name: find_turn_times(system, name) for name in _list_uses(system)}
-    return {name: time for name, time in times.items() if time is not None}
+    return {name: time for name, time in find_turn_times(system).items() if time is not None}
 
 
 def _list_groups(

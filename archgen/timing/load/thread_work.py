@@ -132,6 +132,8 @@ def lower_crowded_threads(
     urgent as some of its members must let pass the work that piled up while its threads were held: more
     than what comes in a busy period of their priority, but no more than in one of the least urgent member's.
     """
+    if all(thread.highest_priority is None for thread in threads):
+        return list(threads)
     lowest_of = _lowest_in_crowded(system, threads, event_models)
     lowered_threads = [
         replace(thread, lowest_priority=lowest_of[thread.unit[0]]) if thread.unit[0] in lowest_of else thread
