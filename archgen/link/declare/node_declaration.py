@@ -22,8 +22,7 @@ from archgen.link.merged_timing import TimingMerger
 from archgen.link.parameter_texts import flatten_parameters
 from archgen.link.path_guesses import take_path_end
 from archgen.link.port_resolution import PortResolver
-from archgen.link.reference_resolution import ReferenceResolver
-from archgen.link.unknown_references import diagnose_unknown_reference
+from archgen.link.reference_resolution import ReferenceResolver, diagnose_unknown_reference
 from archgen.link.value_readers import read_element, read_values
 from archgen.model.component import Component
 from archgen.model.deployment import Container
