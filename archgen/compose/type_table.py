@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
 
 from archgen.compose.instance_overlay import InstanceOverlay
 from archgen.compose.library_types import library_of_type
@@ -12,6 +11,7 @@ from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean
+from archgen.frozen import dataclass, field
 from archgen.syntax.yaml_tree import (
     MappingEntry,
     MappingNode,

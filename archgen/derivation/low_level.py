@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
 
 from archgen.derivation import ros_names
 from archgen.derivation.derived_parts import DerivedParts
@@ -20,6 +19,7 @@ from archgen.derivation.port_endpoints import (
 )
 from archgen.derivation.portless_endpoints import complete_message, count_shared_keys, derive_portless_endpoints
 from archgen.derivation.wire.running_state import complete_states
+from archgen.frozen import dataclass, field, replace
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 from archgen.model.derived_names import derive_node_ids

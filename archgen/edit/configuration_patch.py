@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 
 from archgen import pipeline
@@ -19,6 +18,7 @@ from archgen.edit.element_edit import (
     parse_text,
     read_editable,
 )
+from archgen.frozen import dataclass
 from archgen.model.node import Node
 from archgen.pipeline import CheckedProject
 from archgen.project.project_loading import load_from_files

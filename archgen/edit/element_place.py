@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 from collections import Counter
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from archgen.edit.edit_proof import first_file_of, list_written_nodes
+from archgen.frozen import NamedTuple
 from archgen.pipeline import CheckedProject
 from archgen.project import PROJECT_FILE
 from archgen.syntax import file_patterns

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
 
 from archgen.diagnostics.source_span import Span
+from archgen.frozen import dataclass, field
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.element_outline import ElementOutline
 from archgen.link.port_sources import PortSources

@@ -7,10 +7,9 @@ components pass on what stands inside. `outputs_behind` follows all of these dow
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
 
 from archgen.diagnostics.source_span import Span
-from archgen.frozen import replace
+from archgen.frozen import NamedTuple, replace
 from archgen.link import mapping_values
 from archgen.link.element_outline import ElementOutline
 from archgen.link.reference_resolution import ReferenceResolver

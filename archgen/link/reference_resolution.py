@@ -7,23 +7,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import AskedName, Diagnostic, Label
 from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.frozen import NamedTuple, dataclass, field, replace
 from archgen.language.language_tables import PLAIN_SECTIONS
 from archgen.link import mapping_values
 from archgen.link.path_guesses import PathGuesser, list_possible_kinds
 from archgen.model.path_resolver import NO_MATCH, ElementRef, PathIndex, PathMatch, PathResolver
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from archgen.syntax.yaml_tree import ScalarNode
 
 _MAX_LISTED = 6
 """So many names are listed where no name resembles an unknown one."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from archgen import git, pipeline, project
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.finding_identity import FindingIdentity, identify_finding
+from archgen.frozen import dataclass, field, replace
 from archgen.git import GitError
 from archgen.git.merged_trees import MergeFolder, PathConflict, open_merge_folder
 from archgen.git.repository_lookup import look_up_tree

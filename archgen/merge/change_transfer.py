@@ -8,8 +8,8 @@ from __future__ import annotations
 import re
 import textwrap
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
 
+from archgen.frozen import dataclass, field
 from archgen.merge.renamed_keys import KeyRename
 from archgen.merge.slice_reading import TreeReader, convert_lines, find_line_end
 from archgen.merge.tree_merge import ItemSet, merge_values, read_merged_value

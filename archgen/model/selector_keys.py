@@ -9,9 +9,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
-from typing import NamedTuple
 
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 from archgen.model.deprecation_lookup import list_deprecated_kinds

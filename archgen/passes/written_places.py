@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from archgen.compose.type_expressions import parse_type_expression
 from archgen.compose.type_table import list_generic_names
 from archgen.diagnostics.element_origins import TreePath
+from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 from archgen.model.selector_keys import find_component_status

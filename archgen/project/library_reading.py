@@ -12,13 +12,12 @@ import posixpath
 from collections.abc import Iterator, Mapping
 from functools import cache, lru_cache
 from types import MappingProxyType
-from typing import NamedTuple
 
 from archgen import resources
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import Span
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass
 from archgen.language.key_paths import SLICE
 from archgen.language.language_tables import KEYS, SECTION_KINDS
 from archgen.model.known_interfaces import KNOWN_DISTROS, guess_distro

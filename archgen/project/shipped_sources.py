@@ -7,9 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
-from typing import Any, NamedTuple
+from typing import Any
 
 from archgen import resources
+from archgen.frozen import NamedTuple
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlNode, find_value, list_entries
 
 SOURCE_KINDS = ("documentation", "source text", "recording")

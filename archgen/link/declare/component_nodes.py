@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import NamedTuple
 
 from archgen.compose.expanded_project import ExpandedProject
 from archgen.compose.instance_overlay import lay_node
 from archgen.diagnostics.diagnostic import Diagnostic, Label
+from archgen.frozen import NamedTuple
 from archgen.link import mapping_values
 from archgen.link.declare.component_declaration import DeclaredGroups
 from archgen.link.declare.handed_parameters import HandedParameters

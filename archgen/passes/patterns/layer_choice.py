@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from archgen.diagnostics.element_origins import TreePath
+from archgen.frozen import NamedTuple
 from archgen.passes.patterns.architecture_view import ArchitectureView
 from archgen.passes.patterns.pattern_shapes import ViewValue
 from archgen.passes.patterns.type_layers import Layer

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from archgen.compose.instance_overlay import InstanceOverlay
 from archgen.compose.library_types import library_of_type, list_libraries, list_type_entries
@@ -11,6 +10,7 @@ from archgen.compose.type_expressions import TypeExpression, parse_type_expressi
 from archgen.compose.type_table import TypeTable, list_generic_names
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.element_origins import TreePath
+from archgen.frozen import NamedTuple
 from archgen.passes.patterns.view_elements import path_of_type
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlNode, find_value, list_entries
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from typing import Literal, NamedTuple
+from typing import Literal
 
 from archgen.compose.library_types import library_of_type, list_libraries
 from archgen.diagnostics.element_origins import TreePath
+from archgen.frozen import NamedTuple
 from archgen.model.path_resolver import PathResolver
 from archgen.passes.patterns.matching import IndexToken, list_tokens
 from archgen.passes.patterns.pattern_shapes import PortReference, ViewValue

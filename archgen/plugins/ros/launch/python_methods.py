@@ -73,7 +73,13 @@ class MethodReader(StatementReader):
             and isinstance(text, str)
             and all(isinstance(each, str) for each in arguments.positional)
         ):
-            found: LaunchValue = getattr(text, name)(*arguments.positional) if len(arguments.positional) <= 2 else None  # noqa: PLR2004
+            try:
+                found: LaunchValue = getattr(text, name)(*arguments.positional)
+            except (
+                TypeError,
+                ValueError,
+            ):  # as it would be when the file is run: an empty separator, an argument too few
+                return self.quote(node)
             return found if not isinstance(found, str) or len(found) <= 2 * len(text) + 100 else self.quote(node)
         return self.quote(node)
 
