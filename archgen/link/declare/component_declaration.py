@@ -6,18 +6,13 @@ Declare groups and components as model objects.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import field
 from typing import TypeVar
 
 from archgen.compose import ExpandedProject
 from archgen.compose.expanded_project import ComponentShell
-<<<<<<< HEAD:archgen/link/declare/component_declaration.py
 from archgen.compose.library_types import library_of_type
 from archgen.compose.type_table import is_abstract, list_generic_names
-from archgen.frozen import dataclass, replace
-=======
-from archgen.frozen import NamedTuple, dataclass, replace
->>>>>>> main:archgen/link/declare/group_declaration.py
+from archgen.frozen import NamedTuple, dataclass, field, replace
 from archgen.link import mapping_values
 from archgen.link.automatic_connections import join_ports
 from archgen.link.declare.handed_parameters import HandedParameters, declare_parameters
