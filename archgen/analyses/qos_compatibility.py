@@ -212,10 +212,13 @@ def _report_qos_conflicts(
     if not all(verdicts):
         unsure = writer if writer.qos_if_ignored else reader
         assumption = f" (where `{unsure.node}` {'obeys' if verdicts[0] else 'ignores'} the overrides that it is given)"
-    # Of a program that exists, and of which nobody wrote an end down, the usual profile is no more than a guess.
+    # Of a program that exists, and that only the library describes, the usual profile is no more than a guess.
     is_guess = any(
-        _describe_assumption(each) and not each.written and architecture.nodes[each.node].status == "existing"
+        _describe_assumption(each)
+        and architecture.nodes[each.node].status == "existing"
+        and any(architecture.list_libraries_of(architecture.components[each.component or ""]))
         for each in (writer, reader)
+        if each.component in architecture.components
     )
     yield Diagnostic(
         "incompatible-qos",

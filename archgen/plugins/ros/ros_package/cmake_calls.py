@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path, PurePosixPath
 
@@ -11,7 +11,7 @@ from archgen.plugin import dataclass
 from archgen.plugin.importing import ForeignFileError, read_bounded
 
 _MAX_BYTES = 1_000_000
-_MAX_CALLS = 5000
+_MAX_CALLS = 100_000
 _MAX_DEPTH = 8
 _COMMENT = re.compile(r"#[^\n]*")
 _CALL = re.compile(r"\b([A-Za-z_]\w*)\s*\(([^()]{0,20000})\)")
@@ -30,20 +30,21 @@ class CmakeCall:
     folder: Path
 
 
-def read_cmake_calls(path: Path, package: str, list_files: Callable[[], Sequence[Path]]) -> Iterator[CmakeCall]:
-    """Yield the calls of a file, and of those in folders that it adds. `list_files` gives the files of the package, for globs."""
-    reader = _CmakeReader(path.parent, package, list_files)
+def read_cmake_calls(path: Path, package: str, files: Sequence[Path]) -> Iterator[CmakeCall]:
+    """Yield the calls of a file, and of those in folders that it adds. `files` are those of the package, for globs."""
+    reader = _CmakeReader(path.parent, package, files)
     yield from reader.read_file(path, 0)
 
 
 class _CmakeReader:
     """Reads the files of one package."""
 
-    def __init__(self, root: Path, package: str, list_files: Callable[[], Sequence[Path]]) -> None:
-        self._list_files = list_files
+    def __init__(self, root: Path, package: str, files: Sequence[Path]) -> None:
+        self._files = files
         self._variables: dict[str, list[str]] = {"PROJECT_NAME": [package], "CMAKE_SOURCE_DIR": [root.as_posix()]}
         self._variables["PROJECT_SOURCE_DIR"] = [root.as_posix()]
         self._count = 0
+        self._conditions = 0
 
     def read_file(self, path: Path, depth: int) -> Iterator[CmakeCall]:
         """Yield the calls of a file."""
@@ -85,8 +86,18 @@ class _CmakeReader:
                 place = end + 1
                 continue
             words = self._fill(text)
+            self._conditions += {"if": 1, "endif": -1}.get(name, 0)
             if name == "set" and words:
-                self._variables[words[0]] = [each for each in words[1:] if each not in {"CACHE", "PARENT_SCOPE"}]
+                values = [each for each in words[1:] if each not in {"CACHE", "PARENT_SCOPE"}]
+                if (
+                    self._conditions
+                    and self._variables.setdefault(words[0], values) != values
+                    and f"{{{words[0]}}}" not in text
+                ):
+                    # Which of two values it has is decided by what is not known here.
+                    self._variables[words[0]] = [f"${{{words[0]}}}"]
+                else:
+                    self._variables[words[0]] = values
             elif name == "list" and words[:1] == ["APPEND"] and len(words) > 1:
                 self._variables[words[1]] = [*self._variables.get(words[1], ()), *words[2:]]
             elif name == "file" and words[:1] in (["GLOB"], ["GLOB_RECURSE"]) and len(words) > 1:
@@ -96,7 +107,7 @@ class _CmakeReader:
                 self._variables["PROJECT_NAME"] = [words[0]]
             elif name == "add_subdirectory" and words and depth < _MAX_DEPTH:
                 inner = folder / words[0] / CMAKE_FILE
-                if inner in self._list_files():
+                if inner in self._files:
                     yield from self.read_file(inner, depth + 1)
                     self._variables["CMAKE_CURRENT_SOURCE_DIR"] = [folder.as_posix()]
             else:
@@ -119,7 +130,7 @@ class _CmakeReader:
         for pattern in patterns:
             full = pattern if pattern.startswith("/") else f"{folder.as_posix()}/{pattern}"
             head, tail = str(PurePosixPath(full).parent), PurePosixPath(full).name
-            for path in self._list_files():
+            for path in self._files:
                 is_there = path.parent.as_posix() == head or (is_deep and path.as_posix().startswith(f"{head}/"))
                 if is_there and fnmatchcase(path.name, tail):
                     found.append(path.as_posix())

@@ -4,23 +4,18 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from archgen.plugin.importing import ForeignFileError, Span, read_bounded
 from archgen.plugins.ros.launch.python_parsing import PythonRefusedError, parse_python
+from archgen.plugins.ros.ros_package.cmake_calls import read_cmake_calls
 from archgen.plugins.ros.ros_package.import_account import ImportAccount
 from archgen.plugins.ros.ros_package.package_files import PackageFile, PackageManifest
 
 _MAX_BYTES = 1_000_000
 _MAX_NODES = 100_000
 _ENTRY_POINT = re.compile(r"\s*([A-Za-z0-9_.\-]+)\s*=\s*[A-Za-z_][\w.]*:[A-Za-z_][\w.]*\s*")
-_COMMENT = re.compile(r"#[^\n]*")
-_CMAKE_CALL = re.compile(
-    r"\b((?:ament_auto_)?add_executable|rclcpp_components_register_nodes?)\s*\(([^()]{1,2000})\)", re.IGNORECASE
-)
-_CMAKE_VARIABLE = re.compile(r"\bset\s*\(\s*(\w+)\s+\"?([A-Za-z0-9_.\-]+)\"?\s*\)")
-_CMAKE_USE = re.compile(r"\$\{(\w+)\}")
 _PROGRAM_NAME = re.compile(r"[A-Za-z0-9_.\-]+\Z")
 _CLASS_NAME = re.compile(r"[A-Za-z_]\w*(?:::[A-Za-z_]\w*)+\Z")
 _NO_NODES = frozenset({"IMPORTED", "ALIAS"})
@@ -36,15 +31,10 @@ def find_programs(
     for file in files:
         if file.path.parent != manifest.folder or file.path.name not in {"setup.py", "CMakeLists.txt"}:
             continue
-        try:
-            text = read_bounded(file.path, _MAX_BYTES).decode("utf-8", "replace")
-        except ForeignFileError:
-            continue
-        place = Span.of_file(file.shown)
         if file.path.name == "setup.py":
-            found = _read_setup(text, place, account)
+            found = _read_setup(file, account)
         else:
-            found = _read_cmake(text, manifest.name, place, account)
+            found = _read_cmake(file, manifest.name, files, account)
         for name, more in found:
             if name not in programs:
                 account.count("plug-in" if "plugin" in more else "program")
@@ -52,10 +42,13 @@ def find_programs(
     return programs
 
 
-def _read_setup(text: str, place: Span, account: ImportAccount) -> Iterator[tuple[str, dict[str, Any]]]:
+def _read_setup(file: PackageFile, account: ImportAccount) -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield the console scripts of a setup.py, read by its syntax tree and never run."""
+    place = Span.of_file(file.shown)
     try:
-        tree = parse_python(text)
+        tree = parse_python(read_bounded(file.path, _MAX_BYTES).decode("utf-8", "replace"))
+    except ForeignFileError:
+        return
     except PythonRefusedError as error:
         span = Span(place.file, error.line, error.column, error.line, error.column + 1)
         account.add_note("setup.py", f"it cannot be read: {error.message}", span)
@@ -85,32 +78,20 @@ def _read_scripts(value: ast.expr, place: Span, account: ImportAccount) -> Itera
             account.add_note("console_scripts", words, span)
 
 
-def _read_cmake(text: str, package: str, place: Span, account: ImportAccount) -> Iterator[tuple[str, dict[str, Any]]]:
-    plain_text = _COMMENT.sub("", text)
-    values: dict[str, set[str]] = {}
-    for name, value in _CMAKE_VARIABLE.findall(plain_text):
-        values.setdefault(name, set()).add(value)
-    variables = {"PROJECT_NAME": package, **{name: min(found) for name, found in values.items() if len(found) == 1}}
-    line, counted = 1, 0
-    for match in _CMAKE_CALL.finditer(plain_text):
-        line += plain_text.count("\n", counted, match.start())
-        counted = match.start()
-        words = [_fill_variables(word.strip('"'), variables) for word in match[2].split()]
-        if match[1].lower().endswith("add_executable"):
-            if not words or _NO_NODES & set(words):
-                continue
+def _read_cmake(
+    file: PackageFile, package: str, files: Sequence[PackageFile], account: ImportAccount
+) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield the programs that a CMakeLists.txt makes."""
+    for call in read_cmake_calls(file.path, package, [each.path for each in files]):
+        words = list(call.words)
+        if call.name in {"add_executable", "ament_auto_add_executable"} and words and not _NO_NODES & set(words):
             if not _PROGRAM_NAME.match(words[0]):
-                span = Span(place.file, line, 1, line, 2)
-                account.add_note(match[1].lower(), f"the name of a program is computed: `{words[0]}`", span)
+                span = Span(file.shown, call.line, 1, call.line, 2)
+                account.add_note(call.name, f"the name of a program is computed: `{words[0]}`", span)
             elif not _TEST_WORDS & {word.lower() for word in _WORD_ENDS.split(words[0])}:
                 yield words[0], {"executable": words[0], "language": "cpp"}
-        else:
+        elif call.name in {"rclcpp_components_register_node", "rclcpp_components_register_nodes"}:
             yield from _read_registration(words)
-
-
-def _fill_variables(word: str, variables: Mapping[str, str]) -> str:
-    """Return a word with the variables that are set once, as far as these are plain words."""
-    return _CMAKE_USE.sub(lambda match: variables.get(match[1], match[0]), word)
 
 
 def _read_registration(words: list[str]) -> Iterator[tuple[str, dict[str, Any]]]:

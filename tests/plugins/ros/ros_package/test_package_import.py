@@ -255,7 +255,9 @@ def test_packages_in_packages_and_names_that_look_like_tests(tmp_path: Path) -> 
         (tmp_path / folder / "msg" / f"Of{folder.title() or 'Outer'}.msg").write_text("bool flag\n")
         (tmp_path / folder / "package.xml").write_text(MANIFEST.replace("lifter", folder or "outer"))
     cmake = """set(name a)
+    if(x)
     set(name b)
+    endif()
     add_executable(latest_map m.cpp)
     add_executable(map_test m.cpp)
     add_executable(gridTest m.cpp)
@@ -268,7 +270,7 @@ def test_packages_in_packages_and_names_that_look_like_tests(tmp_path: Path) -> 
     assert list(sections["types"]) == ["Of outer"]
     assert list(sections["component_types"]) == ["latest_map", "a"]
     assert [f"{note.kind}:{note.span.line}: {note.message}" for note in imported.notes if note.kind != "depend"] == [
-        "add_executable:6: the name of a program is computed: `${name}`",
+        "add_executable:8: the name of a program is computed: `${name}`",
         "console_scripts:2: which programs there are is computed",
         "console_scripts:2: `x` is no entry point",
     ]

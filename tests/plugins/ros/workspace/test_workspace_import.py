@@ -130,7 +130,7 @@ groups:
         outputs:
           laser: sensor_msgs/msg/LaserScan
           odom: nav_msgs/msg/Odometry
-          bump: my_msgs/msg/Bump  # name unknown: `open("/etc/hostname").read()`, my_driver/my_driver/driver.py:14
+          bump: my_msgs/msg/Bump  # name unknown: `open("/etc/hostname").read()`, my_driver/my_driver/driver.py:18
           reset: std_srvs/srv/Trigger
       ekf:
         is: ros.ekf
@@ -151,8 +151,8 @@ def test_workspace_of_ros_2(run: Run) -> None:
     done = run("import", "workspace", "src", "--distro", "humble", "-o", "robot")
     assert done.status == 0, done.err
     assert done.out.startswith(
-        "taken: 4 connection, 8 endpoint, 1 endpoint without a name, 5 node, 2 node of the library, 3 node with sources, 1 variant\n"
-        '  noted: my_driver/my_driver/driver.py:14:9: name: the name of what it publishes is computed: `open("/etc/hostname").read()`\n'
+        "taken: 4 connection, 8 endpoint, 1 endpoint without a name, 1 message, 5 node, 2 node of the library, 3 node with sources, 1 variant\n"
+        '  noted: my_driver/my_driver/driver.py:18:16: name: the name of what it publishes is computed: `open("/etc/hostname").read()`\n'
     )
     text = Path("robot/robot.yaml").read_text(encoding="utf-8")
     assert text.startswith(ROBOT)
