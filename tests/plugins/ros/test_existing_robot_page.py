@@ -41,7 +41,7 @@ def test_what_comes_out_is_a_sound_project() -> None:
 
 
 def test_the_formats_are_there() -> None:
-    assert set(re.findall(r"archgen import (\w+) ", PAGE)) == {"launch", "package", "ros2", "orca"}
+    assert set(re.findall(r"archgen import (\w+) ", PAGE)) == {"workspace", "launch", "package", "ros2", "orca"}
     assert set(list_import_formats()) >= {"launch", "package", "ros1", "ros2", "orca"}
 
 

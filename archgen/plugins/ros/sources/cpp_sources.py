@@ -276,6 +276,8 @@ class _Reader:
                 self._read_block(_find_body(child), depth) for child in [node, *node.named_children[1:]]
             )
             return [*tried, *(Statement("branch", self._make(node, "unknown"), body=each) for each in handlers)]
+        if kind == "continue_statement":
+            return [Statement("leave")]
         if kind == "return_statement":
             return [Statement("return", self._read(node.named_children[0], depth) if node.named_children else None)]
         if kind in {"alias_declaration", "type_definition", "using_declaration"}:

@@ -101,6 +101,7 @@ class ProgramWalk(RosCallReader):
             "loop": self._walk_loop,
             "branch": self._walk_branch,
             "return": self._walk_return,
+            "leave": lambda _, __: True,
             "import": self._walk_import,
         }
 

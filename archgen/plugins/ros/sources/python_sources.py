@@ -74,6 +74,8 @@ class _Reader:
                 return [Statement("set", self._make(node, "unknown"), (unknown,))]
             case ast.Expr(value=value):
                 return [Statement("do", self._read(value, depth))]
+            case ast.Continue() | ast.Break():
+                return [Statement("leave")]
             case ast.Return(value=value):
                 return [Statement("return", None if value is None else self._read(value, depth))]
             case ast.For() | ast.AsyncFor():

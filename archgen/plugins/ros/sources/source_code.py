@@ -42,10 +42,10 @@ class Expression:
 @dataclass(slots=True, eq=False)
 class Statement:
     """A statement. `loop`: the targets take each item of the value; `branch`: the value is the condition;
-    `local`: a variable of a type of C++ is made, of what `value` hands to its constructor; `set` gives a value to targets.
+    `local`: a variable of a type of C++ is made, of what `value` hands to its constructor; `set` gives a value to targets; `leave` ends a round of a loop.
     """
 
-    kind: Literal["do", "set", "local", "loop", "branch", "return", "import"]
+    kind: Literal["do", "set", "local", "loop", "branch", "return", "leave", "import"]
     value: Expression | None = None
     targets: tuple[Expression, ...] = ()
     body: tuple[Statement, ...] = ()

@@ -110,12 +110,9 @@ class NodeWriter:
         """Return another node of the same process: what starts the first one counts for it, too."""
         node_id = make_id(show_value(found.name).replace("*", "node"), "node")
         node_id = node_id if node_id != first.id else f"{node_id}_2"
-        shared = {
-            key: first.data[key]
-            for key in ("namespace", "status", "remaps", "arguments", "parameters")
-            if key in first.data
-        }
-        data: dict[str, Any] = {"implements": f"{first.group}.{node_id}", **shared}
+        shared = ("namespace", "status", "remaps", "arguments", "parameters")
+        data: dict[str, Any] = {key: first.data[key] for key in ("implements", *shared) if key in first.data}
+        data["implements"] = f"{first.group}.{node_id}"
         written = WrittenNode(node_id, first.group, data, {}, first.conditions)
         written.comments[()] = f"in the process of {first.id}"
         self._account.count("node")

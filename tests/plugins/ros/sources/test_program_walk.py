@@ -159,6 +159,16 @@ def test_rclpy_conditions(tmp_path: Path) -> None:
                 target = "sky"
                 node.create_publisher(String, target, 1)
             node.create_publisher(String, node.declare_parameter("unset").value, 1)
+            for word in ("a", "b"):
+                if word == "a":
+                    setattr(node, word, "first")
+                    continue
+                node.create_publisher(String, word, 1)
+            try:
+                node.create_publisher(String, "tried", 1)
+            except ValueError:
+                return
+            node.create_publisher(String, "after", 1)
     """
     made, _ = walk(tmp_path, {"chooser.py": text}, "main")
     assert tell(made) == [
@@ -167,6 +177,9 @@ def test_rclpy_conditions(tmp_path: Path) -> None:
         "publishes topic moon? std_msgs/msg/Int8",
         "publishes topic sky? std_msgs/msg/String",
         "publishes topic * std_msgs/msg/String (the parameter unset)",
+        "publishes topic b std_msgs/msg/String",
+        "publishes topic tried std_msgs/msg/String",
+        "publishes topic after std_msgs/msg/String",
     ]
     made, _ = walk(tmp_path, {"chooser.py": text}, "main", debug=True, unset="/set")
     assert "publishes topic debug std_msgs/msg/String" in tell(made)
