@@ -65,7 +65,7 @@ class _CmakeReader:
         ]
         yield from self._read_calls(calls, path.parent, depth)
 
-    def _read_calls(  # noqa: C901 - a command each
+    def _read_calls(  # noqa: C901, PLR0912 - a command each
         self, calls: list[tuple[str, str, int]], folder: Path, depth: int
     ) -> Iterator[CmakeCall]:
         place = 0

@@ -69,6 +69,8 @@ class RosCallReader:
         self.node_names: dict[str, str] = {}
         """The name and namespace that the node is started with, where it is given some."""
         self.is_ros_1 = is_ros_1
+        self.node_parameters: dict[str, Mapping[str, Value]] = {}
+        """What parameter files give to nodes by the names that the program has for them."""
         self.nodes: list[FoundNode] = []
         self.current_node: FoundNode | None = None
         self.conditions = 0
@@ -324,7 +326,9 @@ class RosCallReader:
         if isinstance(default, UnknownText) and not default.text:
             default = node.defaults.get(plain, UnknownText(f"the parameter {name}", span))
         node.defaults[plain] = default
-        given = self._given.get(plain.replace("/", ".")) if is_own else None
+        key, own_name = plain.replace("/", "."), settle(node.name)
+        by_name = self.node_parameters.get(own_name, {}) if isinstance(own_name, str) else {}
+        given = self._given.get(key, by_name.get(key)) if is_own else None
         return ParameterValue(plain if is_own else "", default if given is None else given, default)
 
 

@@ -31,7 +31,7 @@ from archgen.plugins.ros.sources.walk_values import (
     settle,
     show_value,
 )
-from archgen.plugins.ros.workspace.program_reading import ReadProgram
+from archgen.plugins.ros.workspace.program_reading import ReadProgram, flatten_parameters
 
 LIBRARY = "ros"
 """What a project calls the library that ships."""
@@ -153,6 +153,14 @@ class NodeWriter:
             if isinstance(namespace, UnknownText) and not show_value(endpoint.name).startswith("/"):
                 endpoint.name = JoinedText((namespace, "/", endpoint.name))
             self._write_endpoint(written, endpoint, is_ros_1=known.program is not None and known.program.is_ros_1)
+        named_by = {
+            each.name.name: settle(each.name)
+            for each in found.endpoints
+            if isinstance(each.name, ParameterValue) and each.name.name and each.name.value is not each.name.default
+        }
+        if named_by and not (known.program is not None and known.program.is_ros_1):
+            # What names its topics may stand in a file, below a name that only the program knows.
+            data["parameters"] = nest_parameters({**named_by, **flatten_parameters(data.get("parameters", {}))})
         if len(found.periods) == 1 and found.periods[0] and not {"subscribes", "serves"} & set(data):
             data["timing"] = {"period": f"{found.periods[0] * 1000:.6g} ms"}
 

@@ -7,12 +7,13 @@ from typing import Any
 
 from archgen.plugin import dataclass
 from archgen.plugin.importing import Span
-from archgen.plugins.ros.launch.launch_actions import LaunchedNode
+from archgen.plugins.ros.launch.launch_actions import LaunchedNode, join_names
+from archgen.plugins.ros.launch.launch_run import LaunchRun
 from archgen.plugins.ros.ros_package.import_account import ImportAccount
 from archgen.plugins.ros.sources.program_walk import ProgramWalk
 from archgen.plugins.ros.sources.source_index import CppCode, SourceIndex
 from archgen.plugins.ros.sources.walk_values import FoundNode, settle
-from archgen.plugins.ros.workspace.program_sources import ProgramSources, WorkspaceFiles, WorkspacePackage
+from archgen.plugins.ros.workspace.program_sources import WorkspaceFiles, WorkspacePackage
 
 CPP_EXTRA = "pip install 'archgen[sources]'"
 _MAX_DEPTH = 20
@@ -24,14 +25,14 @@ class ReadProgram:
 
     nodes: tuple[FoundNode, ...]
     is_ros_1: bool
-    is_cut: bool = False
 
 
 class ProgramReader:
     """Reads programs. What they have in common is read once."""
 
-    def __init__(self, files: WorkspaceFiles, account: ImportAccount) -> None:
+    def __init__(self, files: WorkspaceFiles, account: ImportAccount, run: LaunchRun) -> None:
         self._files = files
+        self._run = run
         self._account = account
         self._index = SourceIndex(
             files.list_sources(), [(p.manifest.name, p.manifest.folder) for p in files.packages.values()]
@@ -40,24 +41,14 @@ class ProgramReader:
 
     def read_node(self, node: LaunchedNode) -> ReadProgram | None:
         """Return what a launched node says to ROS; None where its sources do not lie in the workspace, or cannot be read."""
-        package = self._files.packages.get(node.package)
-        if package is None:
-            return None
-        program = package.programs.get(node.executable)
-        is_ros_1 = package.manifest.is_ros_1
-        walk: ProgramWalk | None = None
-        given = flatten_parameters(node.parameters)
-        if node.plugin or (program is not None and program.plugin):
-            walk = self._walk_plugin(package, node.plugin or (program.plugin if program else ""), given, node)
-        elif program is None:
-            words = f"the sources of the program `{node.executable}` of `{node.package}` were not found: it is not known what it says"
-            self._account.add_note("program", words, node.span, fate="noted")
-        elif program.language == "python":
-            walk = self._walk_python(program, given, node, is_ros_1=is_ros_1)
-        elif self._has_cpp(node):
-            code = self._gather(package, node.executable)
-            walk = self._start_walk(node, code, given, is_ros_1=is_ros_1)
-            walk.walk_main()
+        walk = self._walk_node(node, {})
+        names = (
+            {name for each in walk.nodes if isinstance(name := settle(each.name), str)} if walk is not None else set()
+        )
+        # What a file gives to a node by a name that only the program knows is known when that is.
+        by_name = {name: self._read_files(node, name) for name in sorted(names - {node.name})}
+        if any(by_name.values()):
+            walk = self._walk_node(node, by_name)
         if walk is None or not walk.nodes:
             return None
         main = next((each for each in walk.nodes if settle(each.name) == node.name), None)
@@ -66,24 +57,45 @@ class ProgramReader:
         if walk.is_cut:
             words = "it takes more steps than archgen walks: what comes later is not read"
             self._account.add_note("program", words, main.span)
-        return ReadProgram((main, *others), is_ros_1, walk.is_cut)
+        return ReadProgram((main, *others), walk.is_ros_1)
 
-    def _start_walk(
-        self, node: LaunchedNode, code: CppCode | None, given: Mapping[str, Any], *, is_ros_1: bool
-    ) -> ProgramWalk:
-        walk = ProgramWalk(self._index, code, given, is_ros_1=is_ros_1)
+    def _read_files(self, node: LaunchedNode, name: str) -> dict[str, Any]:
+        found: dict[str, Any] = {}
+        for text in node.parameter_files:
+            path, full_name = self._run.files.find_file(text), join_names(node.namespace, name)
+            values = None if path is None else self._run.parameter_reader.read_for_node(path, full_name)
+            found |= flatten_parameters(values or {})
+        return found
+
+    def _walk_node(self, node: LaunchedNode, by_name: Mapping[str, Mapping[str, Any]]) -> ProgramWalk | None:
+        package = self._files.packages.get(node.package)
+        if package is None:
+            return None
+        program = package.programs.get(node.executable)
+        plugin = node.plugin or (program.plugin if program is not None else "")
+        if program is None and not plugin:
+            words = f"the sources of the program `{node.executable}` of `{node.package}` were not found: it is not known what it says"
+            self._account.add_note("program", words, node.span, fate="noted")
+            return None
+        is_python = not plugin and program is not None and program.language == "python"
+        if not is_python and not self._has_cpp(node):
+            return None
+        code = None if is_python else self._gather(package, "" if plugin else node.executable)
+        given = flatten_parameters(node.parameters)
+        walk = ProgramWalk(self._index, code, given, is_ros_1=package.manifest.is_ros_1)
         names = {"name": node.name, "namespace": node.namespace}
         walk.node_names = {key: name for key, name in names.items() if name}
-        return walk
-
-    def _walk_python(
-        self, program: ProgramSources, given: Mapping[str, Any], node: LaunchedNode, *, is_ros_1: bool
-    ) -> ProgramWalk | None:
-        file = self._index.read_file(program.sources[0]) if program.sources else None
-        if file is None:
-            return None
-        walk = self._start_walk(node, None, given, is_ros_1=is_ros_1)
-        walk.walk_script(file, program.function)
+        walk.node_parameters = dict(by_name)
+        if plugin:
+            if not walk.walk_class(plugin.replace("/", "::")) and not walk.walk_class(plugin.rpartition("/")[2]):
+                words = f"the class `{plugin}` was not found in the libraries of `{node.package}`: it is not known what it says"
+                self._account.add_note("program", words, node.span, fate="noted")
+        elif program is not None and is_python:
+            file = self._index.read_file(program.sources[0])
+            if file is not None:
+                walk.walk_script(file, program.function)
+        else:
+            walk.walk_main()
         return walk
 
     def _has_cpp(self, node: LaunchedNode) -> bool:
@@ -105,19 +117,6 @@ class ProgramReader:
                 ]
             self._codes[key] = self._index.gather_cpp(sources)
         return self._codes[key]
-
-    def _walk_plugin(
-        self, package: WorkspacePackage, plugin: str, given: Mapping[str, Any], node: LaunchedNode
-    ) -> ProgramWalk | None:
-        if not self._has_cpp(node):
-            return None
-        code = self._gather(package, "")
-        walk = self._start_walk(node, code, given, is_ros_1=package.manifest.is_ros_1)
-        if walk.walk_class(plugin.replace("/", "::")) or walk.walk_class(plugin.rpartition("/")[2]):
-            return walk
-        words = f"the class `{plugin}` was not found in the libraries of `{package.manifest.name}`: it is not known what it says"
-        self._account.add_note("program", words, node.span, fate="noted")
-        return None
 
     def tell_unread(self) -> None:
         """Note each file that was looked into and could not be read."""

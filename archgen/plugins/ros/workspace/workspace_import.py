@@ -60,7 +60,7 @@ def read_workspace(
     nodes = launched.choose_nodes()
     is_ros_1 = all(package.manifest.is_ros_1 for package in workspace.packages.values())
     known_distro = distro or ("noetic" if is_ros_1 else _ASSUMED_DISTRO)
-    reader = ProgramReader(workspace, account)
+    reader = ProgramReader(workspace, account, launched.run)
     knowledge = [_read_knowledge(node, reader, known_distro) for node in nodes]
     reader.tell_unread()
     uses_library = any(each.library_type for each in knowledge)
