@@ -72,6 +72,8 @@ class LaunchedNode:
     command: list[str] = field(default_factory=list)
     arguments: list[str] = field(default_factory=list)
     remaps: dict[str, str] = field(default_factory=dict)
+    unclear_remaps: set[str] = field(default_factory=set)
+    """What a program says and a computed remap gives another name; `*` where that is computed, too."""
     parameters: dict[str, LaunchValue] = field(default_factory=dict)
     file_parameters: set[str] = field(default_factory=set)
     """The names of the parameters that a file gives, and nothing behind it."""

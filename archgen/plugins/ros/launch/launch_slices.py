@@ -182,6 +182,7 @@ class SliceMaker:
                 self._run.add_note(node.word, message, node.span, fate="noted" if is_open else "not taken")
                 if is_open:
                     node.written[f"remaps.{own_name}"] = name
+                    node.unclear_remaps.add("*" if OPEN in own_name else own_name)
                 continue
             # ROS 2 takes the first rule for a name, however it is spelled; ROS 1 takes different ones, which `check` tells.
             full_name = expand_name(own_name, f"/{node.namespace.strip('/')}", node.name or "node", ros_1=False)

@@ -137,6 +137,7 @@ class NodeMaker:
             if isinstance(pair, UnknownValue) or not isinstance(pair, list | tuple) or len(pair) != 2:  # noqa: PLR2004
                 unknown = pair if isinstance(pair, UnknownValue) else UnknownValue(describe_launch_value(pair))
                 self._run.tell_computed(action, "a remap", unknown)
+                node.unclear_remaps.add("*")
                 continue
             self._add_remap(node, action, pair)
 
@@ -145,6 +146,7 @@ class NodeMaker:
         unknown = next((each for each in (own_name, name) if isinstance(each, UnknownValue)), None)
         if unknown is not None:
             self._run.tell_computed(action, "a remap", unknown)
+            node.unclear_remaps.add(own_name if isinstance(own_name, str) else "*")
             return
         assert isinstance(own_name, str)  # noqa: S101 - nothing unknown is left
         assert isinstance(name, str)  # noqa: S101 - as above

@@ -705,7 +705,11 @@ class ProgramWalk(RosCallReader):
         if made is not None:
             return made
         first = arguments[0] if arguments else None
-        if method in _RESOLVERS or (method == "bind" and isinstance(first, BoundFunction)):
+        if (
+            full_name.endswith(_POINTERS)
+            or method in _RESOLVERS
+            or (method == "bind" and isinstance(first, BoundFunction))
+        ):
             return first
         if isinstance(whole, TextStream) and method == "str":
             return join_texts(whole.parts)

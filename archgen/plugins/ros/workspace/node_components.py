@@ -150,7 +150,9 @@ class NodeWriter:
         if found.is_lifecycle and is_first:
             data.setdefault("kind", "lifecycle")
         for endpoint in found.endpoints:
-            if isinstance(namespace, UnknownText) and not show_value(endpoint.name).startswith("/"):
+            if _is_unclear(show_value(endpoint.name), known.node.unclear_remaps):
+                endpoint.name = UnknownText(f"a computed remap of {show_value(endpoint.name)}", known.node.span)
+            elif isinstance(namespace, UnknownText) and not show_value(endpoint.name).startswith("/"):
                 endpoint.name = JoinedText((namespace, "/", endpoint.name))
             self._write_endpoint(written, endpoint, is_ros_1=known.program is not None and known.program.is_ros_1)
         named_by = {
@@ -195,6 +197,12 @@ class NodeWriter:
             words = f"the name of what it {endpoint.use} is computed: {known_part}`{expression}`"
             self._account.add_note("name", words, at, fate="noted")
             self._account.count("endpoint without a name")
+
+
+def _is_unclear(name: str, unclear_remaps: set[str]) -> bool:
+    """Whether a computed remap may give a name another one, however it is spelled."""
+    last = name.rpartition("/")[2]
+    return any(own_name == "*" or own_name.rpartition("/")[2].strip("~") == last for own_name in unclear_remaps)
 
 
 def _write_use(text: str, endpoint: FoundEndpoint, data: Mapping[str, Any], *, is_ros_1: bool) -> Any:  # noqa: ANN401 - a name, or more

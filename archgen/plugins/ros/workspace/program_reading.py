@@ -50,6 +50,9 @@ class ProgramReader:
         if any(by_name.values()):
             walk = self._walk_node(node, by_name)
         if walk is None or not walk.nodes:
+            if walk is not None:
+                words = f"no node was found in the sources of `{node.executable or node.plugin}`: it is not known what it says"
+                self._account.add_note("program", words, node.span, fate="noted")
             return None
         main = next((each for each in walk.nodes if settle(each.name) == node.name), None)
         main = main or next((each for each in walk.nodes if each.endpoints), walk.nodes[0])

@@ -314,3 +314,17 @@ def test_nothing_outside_of_the_workspace_is_read(workspace: Path, run: Run) -> 
     )
     assert "there is no package.xml in it" in run("import", "workspace", "robot", "-o", "x").err
     assert "it is no folder" in run("import", "workspace", "secret.py", "-o", "x").err
+
+
+@pytest.mark.usefixtures("workspace")
+def test_a_computed_remap_leaves_the_name_unknown(run: Run) -> None:
+    """A name that a remap gives away, nobody knows to what, is not the one that the program says."""
+    launch = Path("src/my_bringup/launch/robot.launch.py")
+    launch.write_text(launch.read_text().replace('("odom", "/odom")', '("odom", open("/x").read())'))
+    assert run("import", "workspace", "src", "--distro", "humble", "-o", "robot").status == 0
+    text = Path("robot/robot.yaml").read_text()
+    assert (
+        "odom: nav_msgs/msg/Odometry  # name unknown: `a computed remap of odom`, my_bringup/launch/robot.launch.py:"
+        in text
+    )
+    assert "odom: {}" in text
