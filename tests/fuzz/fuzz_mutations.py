@@ -14,7 +14,7 @@ import re
 import warnings
 import zipfile
 import zlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import yaml
@@ -186,7 +186,7 @@ def _xml_text(text: str) -> str:
 
 def _mutate_yaml(data: bytes, words: Sequence[str], draw: Draw) -> bytes:
     tree = yaml.load(data, yaml.CSafeLoader)
-    places = list(_list_places(tree, 0))
+    places = list(_list_places(tree))
     if not places:
         return _mutate_lines(data, words, draw)
     _change_tree(places, words, draw)
@@ -207,7 +207,22 @@ def _change_tree(places: Sequence[tuple[Any, Any]], words: Sequence[str], draw: 
     elif way == 3 and isinstance(other_holder, dict) and isinstance(holder[key], dict):
         holder[key][other_key] = copy.deepcopy(other_holder[other_key])
     elif way == 4:
-        odd: tuple[Any, ...] = (None, [], {}, [holder[key]], {"x": holder[key]}, True, 0, -1, 1.5, 10**30, math.inf, "", [None], [[]])
+        odd: tuple[Any, ...] = (
+            None,
+            [],
+            {},
+            [holder[key]],
+            {"x": holder[key]},
+            True,
+            0,
+            -1,
+            1.5,
+            10**30,
+            math.inf,
+            "",
+            [None],
+            [[]],
+        )
         holder[key] = draw.choice(odd)
     elif way == 5 and isinstance(holder, list):
         holder.insert(draw.randrange(len(holder) + 1), copy.deepcopy(draw.choice(holder)))
@@ -221,11 +236,17 @@ def _mutate_key(key: object, words: Sequence[str], draw: Draw) -> Any:  # noqa: 
     return draw.choice((None, 1, True, 1.5)) if not draw.randrange(8) else mutate_text(str(key), words, draw)
 
 
-def _list_places(tree: Any, depth: int) -> list[tuple[Any, Any]]:  # noqa: ANN401 - data of YAML
-    if depth > 60 or not isinstance(tree, dict | list):
-        return []
-    keys: list[Any] = list(tree) if isinstance(tree, dict) else list(range(len(tree)))
-    return [(tree, key) for key in keys] + [place for key in keys for place in _list_places(tree[key], depth + 1)]
+def _list_places(tree: Any) -> Iterator[tuple[Any, Any]]:  # noqa: ANN401 - data of YAML
+    """Yield each mapping and list with each of its keys; what aliases say again is walked through once."""
+    waiting, seen = [tree], set()
+    while waiting:
+        held = waiting.pop()
+        if not isinstance(held, dict | list) or id(held) in seen:
+            continue
+        seen.add(id(held))
+        for key in list(held) if isinstance(held, dict) else range(len(held)):
+            yield held, key
+            waiting.append(held[key])
 
 
 _ODD_EXPRESSIONS = (
