@@ -8,12 +8,12 @@ from __future__ import annotations
 import os
 from collections import Counter
 from collections.abc import Hashable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 from archgen import git, pipeline, project
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity, settle_diagnostics
 from archgen.diagnostics.finding_identity import BaselineEntry, IdRenamer, identify_finding, match_findings
+from archgen.frozen import dataclass
 from archgen.pipeline import CheckedProject, VersionCache, index_all_rules
 from archgen.project import baseline_reading as reading
 from archgen.syntax import yaml_writer
@@ -116,17 +116,14 @@ def compare_findings(
     new_indexes = [
         index
         for index, earlier_index in enumerate(matched_indexes)
-        if earlier_index is None or _is_graver(checked_project.findings[index], earlier_project.findings[earlier_index])
+        if earlier_index is None
+        or checked_project.findings[index].effective_severity
+        > earlier_project.findings[earlier_index].effective_severity
     ]
     gone_indexes = set(range(len(earlier_keys))).difference(matched_indexes)
     return tuple(checked_project.findings[index] for index in new_indexes), tuple(
         earlier_project.findings[index] for index in sorted(gone_indexes)
     )
-
-
-def _is_graver(new_finding: Diagnostic, old_finding: Diagnostic) -> bool:
-    """Whether a finding is more severe than its match, for example because its rule was set to another severity."""
-    return new_finding.effective_severity > old_finding.effective_severity
 
 
 def _matching_keys(
