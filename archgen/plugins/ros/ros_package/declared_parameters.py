@@ -131,7 +131,11 @@ def _read_validation(name: str, validation: MappingNode, data: dict[str, Any], a
         else:
             shown = f"{rule}: {arguments}" if arguments else rule
             account.add_note(f"validation {rule}", f"`{name}`: `{shown}` cannot be said", node.span)
-    if _are_numbers(least, greatest) and least <= greatest and data["type"] in {"integer", "float", "integer[]", "float[]"}:
+    if (
+        _are_numbers(least, greatest)
+        and least <= greatest
+        and data["type"] in {"integer", "float", "integer[]", "float[]"}
+    ):
         data["range"] = [least, greatest]
     elif least is not None or greatest is not None:
         words = f"`{name}` is at {'least' if greatest is None else 'most'} {least if greatest is None else greatest}: a range has two ends"
