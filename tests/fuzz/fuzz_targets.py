@@ -283,6 +283,24 @@ def _run_adding(parts: Sequence[bytes], folder: Path) -> None:
     run_verb([word.format(a=names[0], b=names[1], c=names[2]) for word in words], folder)
 
 
+def _import_twice(name: str) -> Callable[[Sequence[bytes], Path], None]:
+    """Return what imports one version of a file into a project, and then brings it up to date by another one."""
+
+    def read(parts: Sequence[bytes], folder: Path) -> None:
+        (folder / "archgen.yaml").write_text("archgen: 1\nproject: {id: x}\nsources: ['*.yaml', '!*.launch.yaml']\n")
+        for part, options in zip(parts, ([], ["--merge"] if "reqif" not in name else []), strict=True):
+            (folder / name).write_bytes(part)
+            run_verb(["import", name, *options], folder)
+        run_verb(["check"], folder)
+
+    return read
+
+
+def _start_from_table(parts: Sequence[bytes], folder: Path) -> None:
+    (folder / "t.csv").write_bytes(parts[0])
+    run_verb(["init", "new", "--from", "t.csv", "--ci", "none", "--yes"], folder)
+
+
 def _run_merge(parts: Sequence[bytes], folder: Path) -> None:
     for name, part in zip(("base", "ours", "theirs"), parts, strict=True):
         (folder / name).write_bytes(part)
@@ -439,6 +457,11 @@ def list_targets() -> list[Target]:
         Target("orca", ("lines",), _read_import("orca", "a.def"), lambda: choose(lambda text: "{" in text or "=" in text, "tests/plugins/orca")),
         Target("ros1_dump", ("lines",), _read_import("ros1", "d.txt", distro="noetic"), lambda: choose(lambda text: "\n" in text, f"{_ROS}/running_graph")),
         Target("ros2_dump", ("lines",), _read_import("ros2", "d.txt"), lambda: [_NODE_LINES, *choose(lambda text: "\n" in text, f"{_ROS}/running_graph")]),
+        Target("again_launch", ("xml", "xml"), _import_twice("a.launch.xml"), lambda: _double(_wrap_launch(choose(_is_launch_xml, *_LAUNCH_SEEDS)))),
+        Target("again_aadl", ("lines", "lines"), _import_twice("a.aadl"), lambda: _double([*files("tests/**/*.aadl"), *choose(lambda text: "system" in text and "end" in text, "tests/plugins/aadl")])),
+        Target("again_xmi", ("xml", "xml"), _import_twice("a.xmi"), lambda: _double(_list_models())),
+        Target("again_reqif", ("xml", "xml"), _import_twice("a.reqif"), lambda: _double([(seeds.ROOT / "tests/plugins/reqif/doors.reqif").read_bytes()])),
+        Target("started", ("lines",), _start_from_table, lambda: [*files("tests/plugins/tables/partner_tables/*.csv"), *choose(lambda text: "\n" in text and ("," in text or ";" in text), "tests/plugins/tables")]),
         Target("slices", ("choice", "yaml"), _run_words(_READING_WORDS), lambda: seeds.cross_parts(seeds.number_choices(len(_READING_WORDS)), projects(), limit=2000), 40),
         Target("written", ("choice", "yaml"), _run_words(_WRITING_WORDS), lambda: seeds.cross_parts(seeds.number_choices(len(_WRITING_WORDS)), projects()), 20),
         Target("documents", ("choice", "yaml"), _run_words(_DOCUMENT_WORDS), lambda: seeds.cross_parts(seeds.number_choices(len(_DOCUMENT_WORDS)), projects()), 8),
@@ -450,6 +473,10 @@ def list_targets() -> list[Target]:
         Target("backends", ("yaml", "lines"), _read_backend, lambda: seeds.cross_parts(files("backends/*/backend.yaml", "archgen/plugins/*/backends/*/backend.yaml"), [b"{{ structure.project.id }}"]), 2),
         Target("repository", ("choice", "lines"), _read_repository, _list_repository_seeds, 4),
     ]  # fmt: skip
+
+
+def _double(texts: Sequence[bytes]) -> list[bytes]:
+    return [seeds.join_parts(text, text) for text in texts]
 
 
 def _read_office(parts: Sequence[bytes], folder: Path) -> None:
@@ -465,16 +492,9 @@ def _list_models() -> list[bytes]:
 
 
 def _list_packages() -> list[bytes]:
+    marks = (("<package",), ("setup(",), ("add_executable", "install(", "project("), ("ros__parameters", "type:"))
     texts = seeds.list_code_texts(f"{_ROS}/ros_package")
-    lists = [
-        [text.encode() for text in texts if marks(text)]
-        for marks in (
-            lambda t: "<package" in t,
-            lambda t: "setup(" in t,
-            lambda t: "(" in t and ("add_executable" in t or "install(" in t or "project(" in t),
-            lambda t: "ros__parameters" in t or "type:" in t,
-        )
-    ]
+    lists = [[text.encode() for text in texts if any(mark in text for mark in each)] for each in marks]
     return seeds.cross_parts(*(each or [b""] for each in lists))
 
 
@@ -496,6 +516,7 @@ def _list_recordings() -> list[bytes]:
     return [
         trace.encode(),
         bag.encode(),
+        *(b"\x89MCAP0\r\n", b"SQLite format 3\0", b"\xc1\x1f\xfc\xc1"),
         b"average rate: 10.0\n\tmin: 0.1s max: 0.2s std dev: 0.01s window: 10\n",
         *texts,
     ]

@@ -56,7 +56,7 @@ GUIDING_ROOMS = (
 PROCESSOR_SECONDS = 10
 MEMORY_BYTES = 1_000_000_000
 _MEMORY_FOLDER = "/dev/shm"  # noqa: S108 - whose folders below it are our own
-MAX_BYTES = 12_000
+MAX_BYTES = 20_000
 """An input is no larger: what takes long although it is small is what is looked for."""
 
 
