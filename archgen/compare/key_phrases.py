@@ -166,7 +166,7 @@ def _key_noun(key: str) -> str:
     if section in _PARTS_OF and name.rpartition(":")[2] in _PARTS_OF[section]:
         element_name, _, part = name.rpartition(":")
         return f"{_spell_out(part)} of the {_NAMED_SECTIONS[section]} `{shorten_text(element_name)}`"
-    if section in _NAMED_SECTIONS and name:
+    if section in _NAMED_SECTIONS and name and (section, name[:5]) != ("scheduling", "fair."):
         return f"{_NAMED_SECTIONS[section]} `{shorten_text(name)}`"
     return _spell_out(key.removeprefix("timing.").replace(".", " "))
 

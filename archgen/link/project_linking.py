@@ -17,11 +17,10 @@ from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.link import mapping_values
 from archgen.link.declare import element_declaration, section_declaration
+from archgen.link.declare.component_declaration import declare_component_types, declare_groups
 from archgen.link.declare.component_nodes import declare_component_nodes
-from archgen.link.declare.component_type_declaration import declare_component_types
 from archgen.link.declare.element_declaration import declare_elements, declare_sections
 from archgen.link.declare.frame_declaration import declare_frames
-from archgen.link.declare.group_declaration import declare_groups
 from archgen.link.declare.handed_parameters import HandedParameters
 from archgen.link.declare.node_declaration import NodeContext, declare_nodes, resolve_implements
 from archgen.link.declare.section_declaration import declare_variants

@@ -7,11 +7,10 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import field, replace
 from functools import cached_property
 
 from archgen.diagnostics.suggestions import NAMES_HELP, find_closest
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field, replace
 from archgen.model import flow_graph
 from archgen.model.architecture import Architecture
 from archgen.model.graph_search import find_reachable

@@ -69,7 +69,10 @@ def test_what_is_told(compared: Compared, name: str) -> None:
 
 
 def test_a_host_whose_cores_nobody_counted_has_no_share(compared: Compared) -> None:
-    before, after = (text.replace("front: {cores: 2}", "front: {}") for text in (HARVESTER, _edit("a rate is halved")))
+    before, after = (
+        text.replace("front: {cores: 2, scheduling: fixed_priority}", "front: {scheduling: fixed_priority}")
+        for text in (HARVESTER, _edit("a rate is halved"))
+    )
     assert after not in {before, _edit("a rate is halved")}
     comparison = compared(before, after)
     assert write_load_lines(comparison, name_partners(comparison)) == ()

@@ -17,7 +17,8 @@ from archgen.compare.normal_values import freeze_value, last_part, parameter_lea
 from archgen.frozen import replace
 from archgen.model.architecture import UseCase
 from archgen.model.component import PATTERN_GROUP
-from archgen.model.declared_timing import Timing
+from archgen.model.declared_timing import Timing, list_fair_figures
+from archgen.model.deployment import Host
 from archgen.model.message_types import ConceptualType, DataField
 from archgen.model.node import Node
 from archgen.model.quantity import Quantity
@@ -124,6 +125,12 @@ def _read_verifications(requirement: Requirement, context: ReadContext) -> froze
     )
 
 
+def _read_core_orders(host: Host, _context: ReadContext) -> Mapping[str, str]:
+    """Return the order in which each core takes what is ready, and the figures of a fair one."""
+    orders = {str(core): str(order) for core, order in host.core_scheduling.items()}
+    return orders | {f"fair.{name}": figure for name, figure in list_fair_figures(host.fair)}
+
+
 def _make_selector_reader(attribute: str) -> Reader:
     """Return a reader of a selector, with the ids of the second version; None where none is written."""
 
@@ -205,7 +212,7 @@ READERS: Mapping[tuple[str, str], Reader] = {
     },
     ("node", "start."): _find_start,
     ("node", "timing."): _find_untold_timing,
-    ("host", "scheduling."): lambda host, _: {str(core): order for core, order in host.core_scheduling.items()},
+    ("host", "scheduling."): _read_core_orders,
     # A link has the keys below `latency` itself, a policy those below `forbid`.
     ("link", "latency."): lambda link, _: link,
     ("start", "after"): lambda start, context: unordered_values(_common_ids(start.after, context)),

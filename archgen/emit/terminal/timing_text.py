@@ -20,6 +20,7 @@ from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import NO_MATCH_NOTE, is_unfound
 from archgen.timing.load.host_verdicts import name_host_verdict
+from archgen.timing.load.resource_loads import list_turn_notes
 from archgen.timing.system.thread_pools import find_joint_nodes
 
 
@@ -226,6 +227,9 @@ def _assumption_rows(analysis: Analysis) -> Iterator[TextRow]:
     if joint_count:
         subject = "node of several components" if joint_count == 1 else "nodes of several components"
         yield (f"{joint_count} {subject}: one thread{' each' if joint_count > 1 else ''}",)
+    said = {note for response in analysis.responses.values() for note in response.worst.assumptions}
+    fair_notes = [share.assumption for share in analysis.system.fair_shares.values()]
+    yield from ((note,) for note in (*fair_notes, *list_turn_notes(analysis.system).values()) if note in said)
 
 
 def _fault_lines(analysis: Analysis) -> Iterator[str]:

@@ -115,9 +115,9 @@ class _Propagation(StepUpdates):
             elif names and step not in self.inner_triggers:
                 models = self.models_of(step)
                 waits = find_core_waits(state.system, resource, models, names, self.budget_of[step])
-                state.storing_waits |= limit_responses(
-                    CoreResponses({}, {}, waits), self._limits_of(step)
-                ).storing_waits
+                waits = limit_responses(CoreResponses({}, {}, waits), self._limits_of(step)).storing_waits
+                responses = {name: state.responses[name] for name in resource.members}
+                state.storing_waits |= self._limit_to_fair(step, CoreResponses(responses, {}, waits), {}).storing_waits
             if queue is not None and queue.works_in_rounds:
                 for name in names:
                     wait = state.storing_waits[name]

@@ -32,7 +32,7 @@ def make_host_pages(lookup: Lookup, keep_drawn: FigureFilter) -> Iterator[Page]:
 
 def _host_page(lookup: Lookup, host: Host, keep_drawn: FigureFilter) -> Page:
     architecture = lookup.architecture
-    order = host.scheduling or timing_words.format_core_orders(host)
+    order = ", ".join(filter(None, (host.scheduling, timing_words.format_core_orders(host))))
     facts = [
         ("Cores", inline_text.count_to_inlines(host.cores)),
         ("Scheduling", inline_text.to_inlines(order) if order else ()),

@@ -22,7 +22,7 @@ PROJECT = """\
 project: {id: p, title: P}
 partners: {a: A, b: B, c: C}
 types: {Rows: std_msgs/msg/Int32}
-hosts: {pc: {cores: 1}}
+hosts: {pc: {cores: 1, scheduling: fixed_priority}}
 groups:
   sense: {owner: a, components: {eye: {outputs: {rows: {type: Rows, promise: {max_gap: 130 ms}}}}}}
   act: {owner: b, components: {base: {inputs: {rows: eye.rows}}}}

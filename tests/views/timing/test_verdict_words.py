@@ -25,7 +25,7 @@ nodes:
   a: {implements: a, host: pc, timing: {period: 100 ms, COSTS}}
   b: {implements: b, host: pc, timing: {COSTS}}
   c: {implements: c, host: pc, timing: {COSTS}}
-hosts: {pc: {title: Computer, CORES}}
+hosts: {pc: {title: Computer, CORES, scheduling: round_robin}}
 chains: {c: {through: [g.a, g.b, g.c], deadline: LIMIT}}
 """
 
