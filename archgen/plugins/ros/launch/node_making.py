@@ -230,7 +230,7 @@ class NodeMaker:
         if found is not None:
             self._keep_written(node, f"parameters.{name}", value)
             # In ROS 1 a `/` in a parameter's name is a level of its tree.
-            for part in reversed(name.strip("/").split("/") if self._run.context.is_ros_1 else [name]):
+            for part in reversed([each for each in name.split("/") if each] if self._run.context.is_ros_1 else [name]):
                 found = {part: found}
             overlay_parameters(node.parameters, found)
             node.parameter_commands.pop(name, None)
