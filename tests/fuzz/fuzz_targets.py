@@ -155,7 +155,7 @@ def _read_import(form: str, *names: str, distro: str = "jazzy") -> Callable[[Seq
     return read
 
 
-MODEL_RULES = frozenset({"circular-fields", "topic-type-conflict", "unknown-message", "wrong-parameter"})
+MODEL_RULES = frozenset({"circular-fields", "circular-types", "topic-type-conflict", "unknown-message", "wrong-parameter"})
 """Errors that an importer hands on: they are in what the model says, and are told as that."""
 
 

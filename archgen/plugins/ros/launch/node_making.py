@@ -162,8 +162,7 @@ class NodeMaker:
         delay = action.get("respawn_delay")
         delay_text = context.resolve(delay) if delay is not None else ""
         node.respawn_delay = delay_text if isinstance(delay_text, str) and node.respawn else ""
-        for name, value in context.scope.environment:
-            node.environment[name] = value
+        node.environment.update(context.scope.environment)
         given = action.get("environment")
         pairs = given.items() if isinstance(given, Mapping) else _list_pairs(self._run.choose_values(action, given))
         for name, value in pairs:
