@@ -26,13 +26,9 @@ _AGREEMENT_FORMATS = ("markdown", "html", "docx", "json")
 @click.option(
     "--between", "pair", nargs=2, metavar="PARTNER PARTNER", required=True, help="The ids of the two partners."
 )
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    callback=shared_options.take_dash,
-    help="The file to write; its ending (.docx, .md, .html, .json) says the format.  [default: Markdown to the terminal, else "
-    "archgen-out/interfaces/ in the project]",
+@shared_options.file_option(
+    "The file to write; its ending (.docx, .md, .html, .json) says the format.  [default: Markdown to the terminal, else "
+    "archgen-out/interfaces/ in the project]"
 )
 @click.option(
     "--format",
@@ -94,7 +90,7 @@ def command(  # noqa: PLR0913 - one for each option
     if signed:
         earlier_version = _read_earlier(signed, "--signed", checked_project, project)
     observations = measured_recordings.read_recorded_files(checked_project, recordings) if recordings else ()
-    try:
+    with command_support.explain_wrong_usage(agreement_documents.PartnersError):
         agreement = agreement_documents.make_project_agreement(
             checked_project,
             *pair,
@@ -104,8 +100,6 @@ def command(  # noqa: PLR0913 - one for each option
             signed_version=earlier_version if signed else None,
             observations=observations,
         )
-    except agreement_documents.PartnersError as error:
-        raise click.UsageError(make_visible(str(error))) from None
     output_options = OutputOptions(progress=command_support.make_progress_printer(), warn=command_support.print_warning)
     with command_support.explain_write_errors():
         if form in {"markdown", "json"} and output is None:

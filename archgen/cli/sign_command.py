@@ -58,7 +58,9 @@ def command(  # noqa: PLR0913 - one for each option
     form = command_support.choose_format(None, output, agreement_documents.FORMAT_BY_ENDING, "docx")
     checked_project = command_support.check_before_writing(project, keep_going=False)
     options = OutputOptions(progress=command_support.make_progress_printer(), warn=command_support.print_warning)
-    try:
+    with command_support.explain_wrong_usage(
+        agreement_documents.PartnersError, agreement_signing.SigningError, GitError, ValueError
+    ):
         day = agreement_documents.parse_issue_date(day) if day else datetime.now().astimezone().date().isoformat()
         agreement = agreement_documents.make_project_agreement(
             checked_project, first, second, issue_date=day, signers=dict(signers)
@@ -71,8 +73,6 @@ def command(  # noqa: PLR0913 - one for each option
             leaving_links.refuse_leaving_links(checked_project, target)
             agreement_documents.write_agreement(agreement, form, target, options)
             agreement_signing.record_signature(checked_project, prepared)
-    except (agreement_documents.PartnersError, agreement_signing.SigningError, GitError, ValueError) as error:
-        raise click.UsageError(make_visible(str(error))) from None
     command_support.print_written(target)
     command_support.print_written(checked_project.root / prepared.file)
     for line in _list_next_steps(prepared):

@@ -82,15 +82,11 @@ def command(  # noqa: PLR0913 - one for each option
 def _transform_or_exit(
     checked_project: CheckedProject, names: tuple[str, ...], trusted_revision: TrustedRevision | None
 ) -> CheckedProject:
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.passes import UnknownPassError
     from archgen.products import project_passes
 
-    with command_support.explain_write_errors():
-        try:
-            passes = project_passes.choose_passes(checked_project, names, trusted_revision)
-        except UnknownPassError as error:
-            raise click.UsageError(make_visible(str(error))) from None
+    with command_support.explain_write_errors(), command_support.explain_wrong_usage(UnknownPassError):
+        passes = project_passes.choose_passes(checked_project, names, trusted_revision)
     dropping = [each.name for each in passes.ordered if not each.keeps_variants]
     if checked_project.variants and dropping:
         variant_names = ", ".join(checked_project.variants)

@@ -12,6 +12,7 @@ from archgen.syntax.yaml_tree import MappingNode
 def make_comparison_input(checked_project: CheckedProject) -> ArchitectureVersion:
     """Return what a comparison looks at."""
     unread_files = dict.fromkeys(error.span.file for error in checked_project.reading_errors)
+    project_section = checked_project.merged_table.get("project")
     return ArchitectureVersion(
         architecture=checked_project.architecture,
         findings=checked_project.findings,
@@ -27,7 +28,10 @@ def make_comparison_input(checked_project: CheckedProject) -> ArchitectureVersio
         chapters={path: chapter.text for path, chapter in checked_project.chapters.texts.items()},
         chapter_order=checked_project.chapters.order,
         # Where a project does not write them, they come from the name of its folder: that is no change of the project.
-        unnamed_keys=frozenset({"id", "title"} - _written_project_keys(checked_project)),
+        unnamed_keys=frozenset(
+            {"id", "title"}
+            - ({entry.key for entry in project_section} if isinstance(project_section, MappingNode) else set())
+        ),
         analysis=checked_project.analysis,
         sound_files=frozenset(checked_project.yaml_files).difference(unread_files),
         unread_files=tuple(sorted(unread_files)),
@@ -36,9 +40,3 @@ def make_comparison_input(checked_project: CheckedProject) -> ArchitectureVersio
         waiting_rules=checked_project.waiting_rules,
         type_patterns=link_type_patterns(checked_project.merged_table, checked_project.architecture),
     )
-
-
-def _written_project_keys(checked_project: CheckedProject) -> set[str]:
-    """Return the keys that are written below `project`."""
-    project_section = checked_project.merged_table.get("project")
-    return {entry.key for entry in project_section} if isinstance(project_section, MappingNode) else set()

@@ -179,15 +179,15 @@ def write_figure(writer: DocxWriter, shape: Figure) -> Iterator[FlowPiece]:
     scalable_picture = ScalablePicture(height, least, draw_piece) if sheet is None and least < 1 else None
     yield draw_piece(1.0)
     if shape.numbered:
-        yield write_caption(writer, shape.anchor, _note_scale(shape.caption, scale), sheet)
+        yield write_caption(
+            writer,
+            shape.anchor,
+            f"{shape.caption} (reduced to {scale:.0%})" if scale * _TYPE_SIZE < _LEGIBLE_SIZE else shape.caption,
+            sheet,
+        )
     # Whoever reads the page must know what the picture lacks, not only whoever wrote it.
     if picture.warning:
         yield _write_note(writer, picture.warning, sheet)
-
-
-def _note_scale(caption: str, scale: float) -> str:
-    """Return a caption; one below a picture that is hard to read says by how much it was made smaller."""
-    return f"{caption} (reduced to {scale:.0%})" if scale * _TYPE_SIZE < _LEGIBLE_SIZE else caption
 
 
 def choose_sheet(writer: DocxWriter, width: float, height: float) -> tuple[PaperSheet | None, float]:

@@ -10,7 +10,6 @@ from archgen.diagnostics.safe_text import defuse_command, make_visible
 from archgen.diagnostics.source_span import SourceTexts
 from archgen.emit.terminal import findings_text
 from archgen.views.changes import comparison_document
-from archgen.views.changes.breaking_items import BreakingChange
 from archgen.views.changes.comparison_document import ComparisonDocument, FindingGroup, NamedVersion
 from archgen.views.changes.figure_lines import MINUS_SIGN, ChainRow, FigureLine
 
@@ -73,7 +72,10 @@ def _breaking_lines(document: ComparisonDocument, *, colour: bool) -> Iterator[s
     # One cause often breaks several changes: its reason is written once, then "as above".
     told_reasons = set[str]()
     for item in document.breaking_changes:
-        yield _change_line(item.change, _breaks_note(item, colour=colour), colour=colour)
+        partners = make_visible(", ".join(item.partners))
+        yield _change_line(
+            item.change, _paint_text(f"breaks {partners} ({item.categories}): ", "1;31", colour=colour), colour=colour
+        )
         reasons = dict.fromkeys(loss.reason for loss in item.losses).keys()
         yield from (make_visible(f"      {reason}") for reason in reasons if reason not in told_reasons)
         if not told_reasons.isdisjoint(reasons):
@@ -89,11 +91,6 @@ def _breaking_lines(document: ComparisonDocument, *, colour: bool) -> Iterator[s
 def _entry_lines(document: ComparisonDocument) -> Iterator[str]:
     for entries in document.missing_entries:
         yield from (make_visible(f"      {line}") for line in entries.splitlines())
-
-
-def _breaks_note(item: BreakingChange, *, colour: bool) -> str:
-    partners = make_visible(", ".join(item.partners))
-    return _paint_text(f"breaks {partners} ({item.categories}): ", "1;31", colour=colour)
 
 
 def _change_line(change: Edit, note: str = "", *, colour: bool) -> str:

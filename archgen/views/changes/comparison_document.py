@@ -175,12 +175,15 @@ def describe_comparison(
     finding_groups = tuple(_group_findings(comparison, reading_errors, repeated_findings.keys()))
     noise = FigureNoise(comparison)
     verdict = tuple(breaking_verdict.describe_verdict(comparison)) if comparison.only_breaking else ()
+    kind_counts = count_by_kind(edits)
+    count_phrases = [count_noun(len(edits), "change") + (f" ({kind_counts})" if kind_counts else "")]
+    count_phrases += [count_noun(len(group.findings), f"{group.kind} finding") for group in finding_groups]
     return ComparisonDocument(
         title=comparison.after.architecture.project.title,
         before=NamedVersion(old_name, reading_errors.before),
         after=NamedVersion(new_name, reading_errors.after),
         headline=_write_headline(comparison, edits, verdict, finding_groups, caveat),
-        counts=_count_differences(edits, finding_groups),
+        counts=", ".join(count_phrases),
         kind_counts=count_by_kind(edits),
         finding_counts=tuple(_count_findings(finding_groups)),
         caveat=caveat,
@@ -281,13 +284,6 @@ def _write_headline(
     counts = [count_noun(len(group.findings), f"{group.kind} finding") for group in finding_groups]
     counts += [count_noun(len(comparison.chains), "chain") + " with another bound"] if comparison.chains else []
     return f"No change of the architecture{caveat}" + (f", but {' and '.join(counts)}" if counts else "")
-
-
-def _count_differences(edits: Sequence[Edit], finding_groups: Sequence[FindingGroup]) -> str:
-    kind_counts = count_by_kind(edits)
-    count_phrases = [count_noun(len(edits), "change") + (f" ({kind_counts})" if kind_counts else "")]
-    count_phrases += [count_noun(len(group.findings), f"{group.kind} finding") for group in finding_groups]
-    return ", ".join(count_phrases)
 
 
 def _count_findings(finding_groups: Sequence[FindingGroup]) -> Iterator[str]:

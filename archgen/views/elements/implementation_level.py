@@ -63,6 +63,7 @@ def list_node_facts(lookup: Lookup, node: Node) -> list[Fact]:
     architecture = lookup.architecture
     kind = ", ".join(inline_text.NODE_KIND_WORDS[kind] for kind in node.kinds)
     components = (architecture.components[name] for name in node.implements)
+    words = describe_start(node)
     facts = [
         Fact(
             "implements", "Implements", inline_text.join_inlines((inline_text.component_link(c),) for c in components)
@@ -74,7 +75,7 @@ def list_node_facts(lookup: Lookup, node: Node) -> list[Fact]:
         Fact("", "Arguments", _to_code(shlex.join(node.arguments))),
         Fact("", "Language", inline_text.to_inlines(_LANGUAGE_TITLES[node.language]) if node.language else ()),
         Fact("", "Remaps", _remap_facts(lookup, node)),
-        Fact("", "Start", _start_facts(node)),
+        Fact("", "Start", (Text(words), Text(" ("), Text("the plan", ref="page:start_up"), Text(")")) if words else ()),
         *(
             Fact("", name.capitalize(), inline_text.to_inlines(text))
             for name, text in list_running_facts(lookup.endpoints_of.get(node.id, ()))
@@ -114,12 +115,6 @@ def _remap_facts(lookup: Lookup, node: Node) -> Inlines:
         (Text(own_name, code=True), Text(" is "), Text(name, code=True))
         for own_name, name in (port_names | others).items()
     )
-
-
-def _start_facts(node: Node) -> Inlines:
-    """Return what a node says of its start, with a link to the plan."""
-    words = describe_start(node)
-    return (Text(words), Text(" ("), Text("the plan", ref="page:start_up"), Text(")")) if words else ()
 
 
 def _program_parts(node: Node) -> Inlines:

@@ -57,7 +57,12 @@ def _draw_part(lookup: Lookup, graph_id: str, title: str, component_ids: Collect
         lookup, components, touching_flows, list(neighbour_ids)
     )
     if opened:
-        graph = _frame_opened(lookup, graph, opened, has_labels=is_small)
+        placed_boxes, placed_frames = place_in_frames(lookup, graph.boxes, opened, None)
+        # The group is said at the outermost frame, instead of at each box inside.
+        boxes = tuple(replace(box, lines=box.lines[1:]) if box.cluster else box for box in placed_boxes)
+        frames = tuple(frame if frame.parent else _name_group(lookup, frame) for frame in placed_frames)
+        arrows = graph.arrows if is_small else tuple(replace(arrow, label="") for arrow in graph.arrows)
+        graph = replace(graph, layout="framed", boxes=boxes, clusters=frames, arrows=arrows)
     summary = (
         f"{count_noun(len(components), 'component')}: {', '.join(component.title for component in components[:12])}"
     )
@@ -91,16 +96,6 @@ def _draw_small_part(
     ]
     arrows = merge_flows(touching_flows, lambda flow: (flow.tail, flow.head), labels=True)
     return Graph("", "", "flow", (*chosen_boxes, *neighbour_boxes), arrows, asked=len(touching_flows), kind="overview")
-
-
-def _frame_opened(lookup: Lookup, graph: Graph, opened: frozenset[str], *, has_labels: bool) -> Graph:
-    """Set what stands in open components into frames. Labels have room in small pictures only."""
-    placed_boxes, placed_frames = place_in_frames(lookup, graph.boxes, opened, None)
-    # The group is said at the outermost frame, instead of at each box inside.
-    boxes = tuple(replace(box, lines=box.lines[1:]) if box.cluster else box for box in placed_boxes)
-    frames = tuple(frame if frame.parent else _name_group(lookup, frame) for frame in placed_frames)
-    arrows = graph.arrows if has_labels else tuple(replace(arrow, label="") for arrow in graph.arrows)
-    return replace(graph, layout="framed", boxes=boxes, clusters=frames, arrows=arrows)
 
 
 def _name_group(lookup: Lookup, frame: Cluster) -> Cluster:
