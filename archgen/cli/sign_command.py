@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from archgen.cli import command_support, shared_options
-
-if TYPE_CHECKING:
-    from archgen.products.agreement_signing import PreparedSignature
 
 
 @click.command("sign")
@@ -75,13 +71,9 @@ def command(  # noqa: PLR0913 - one for each option
             agreement_signing.record_signature(checked_project, prepared)
     command_support.print_written(target)
     command_support.print_written(checked_project.root / prepared.file)
-    for line in _list_next_steps(prepared):
-        click.echo(make_visible(line), err=True)
-
-
-def _list_next_steps(prepared: PreparedSignature) -> list[str]:
     tag = prepared.signature.tag
     lines = [f"made the tag {tag}: commit {prepared.file}, and `git push origin {tag}`"]
     if prepared.missing_partners:
         lines.append(f"it binds nobody before `{prepared.missing_partners[0]}` has signed, too")
-    return lines
+    for line in lines:
+        click.echo(make_visible(line), err=True)

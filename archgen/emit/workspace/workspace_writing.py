@@ -25,7 +25,9 @@ with contextlib.suppress(ImportError):  # Windows has none
 def lock_workspace(workspace: Path) -> Iterator[None]:
     """Keep other runs of archgen out of a workspace. Raise OutputError where one is at work."""
     folder = workspace / RECORD_FOLDER
-    _refuse_link(folder)
+    if folder.is_symlink():
+        msg = f"{folder} is a link"
+        raise OutputError(msg, "take the link away: archgen writes there what it made")
     new_folders = [each for each in (workspace, *workspace.parents) if not each.exists()]
     folder.mkdir(parents=True, exist_ok=True)
     try:
@@ -134,12 +136,6 @@ def _put_record(record: RunRecord, workspace: Path, staging: Path) -> None:
     staging.mkdir(exist_ok=True)
     (staging / "record").write_bytes(data)
     os.replace(staging / "record", path)  # noqa: PTH105
-
-
-def _refuse_link(folder: Path) -> None:
-    if folder.is_symlink():
-        msg = f"{folder} is a link"
-        raise OutputError(msg, "take the link away: archgen writes there what it made")
 
 
 def _refuse_closed_folders(plan: WorkspacePlan, workspace: Path) -> None:
