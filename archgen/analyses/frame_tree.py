@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from itertools import islice
-from typing import NamedTuple
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import find_closest
+from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.component_nesting import list_described_outputs
 from archgen.model.coordinate_frames import Frame, walk_ancestors

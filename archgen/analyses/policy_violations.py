@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from typing import NamedTuple
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import Span
+from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture, Policy, SourceDemand
 from archgen.model.component import Connection, Input, Output
 from archgen.model.selector_evaluation import SelectorEvaluator

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from typing import NamedTuple
 
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.matched_ids import MatchedIds
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.finding_identity import identify_finding, match_findings
+from archgen.frozen import NamedTuple
 
 
 class JudgedFindings(NamedTuple):

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import NamedTuple
 
 from archgen.compare.change_sentences import describe_change
 from archgen.compare.comparison import Change, Comparison
@@ -14,6 +12,7 @@ from archgen.compare.kinds.component_type_kind import OWN_KEYS, PART_MARK
 from archgen.compare.normal_values import to_plain_data
 from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.common_wording import join_words
+from archgen.frozen import NamedTuple, dataclass, field, replace
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 

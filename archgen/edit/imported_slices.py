@@ -6,7 +6,6 @@ An update puts what the model says into what stands there. All else stays: what 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +21,7 @@ from archgen.edit.earlier_import import (
     read_earlier_import,
 )
 from archgen.edit.edit_proof import list_new_errors
+from archgen.frozen import dataclass, field
 from archgen.importers.foreign_import import ForeignImport
 from archgen.model import element_ids
 from archgen.pipeline import CheckedProject

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
 
-from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
+from archgen.frozen import dataclass, field
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.element_outline import ElementOutline
 from archgen.link.port_sources import PortSources
@@ -175,9 +174,7 @@ class InputWiring:
                 f"up to here references make more than {MAX_PAIRS:,} pairs of output and input; the rest is left out"
             )
             help_line = "name single outputs or components where whole groups are named"
-            self.resolver.diagnostics.append(
-                Diagnostic("too-large", message, place, help=help_line, element=component_id)
-            )
+            self.resolver.report("too-large", message, place, help_line=help_line, element=component_id)
 
     def _list_output_ids(self, target: ElementRef, reader_id: str) -> Iterator[str]:
         """Yield the outputs that a reference stands for: one, or all that carry messages except the reader's own."""

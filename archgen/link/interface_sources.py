@@ -10,11 +10,11 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from typing import NamedTuple
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import find_closest
+from archgen.frozen import NamedTuple
 from archgen.link.data_types.field_types import UNKNOWN_FIELD_TYPE, TypeMention
 from archgen.link.data_types.message_definitions import CONFLICTING_MESSAGE, TypeDefinition
 from archgen.link.shipped_interfaces import LazyInterfaces, list_answering_distros, load_shipped_interfaces

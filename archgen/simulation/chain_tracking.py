@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import pairwise
 
+from archgen.frozen import dataclass, field
 from archgen.simulation.chain_series import ChainSeries, ChainTrace, TimeRange, compute_quantiles, measure_chain
 from archgen.simulation.job_activation import list_samplings
 from archgen.simulation.simulation_plan import SimulationPlan

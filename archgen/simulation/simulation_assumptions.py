@@ -6,9 +6,9 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import pairwise
 
+from archgen.frozen import dataclass
 from archgen.simulation.simulation_result import SimulationResult
 from archgen.timing.analysis import Analysis
 from archgen.timing.figures.figure_wording import format_duration

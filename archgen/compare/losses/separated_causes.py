@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from itertools import chain
-from typing import Any, NamedTuple
+from typing import Any
 
 from archgen.compare.comparison import Change
 from archgen.compare.key_phrases import name_key
@@ -14,7 +14,7 @@ from archgen.compare.timing_pair import can_affect_timing
 from archgen.derivation import derive_low_level
 from archgen.diagnostics.common_wording import fit_lines, join_words
 from archgen.diagnostics.source_span import NO_SPAN
-from archgen.frozen import dataclass, replace
+from archgen.frozen import NamedTuple, dataclass, replace
 from archgen.model.architecture import Architecture, PortEdge
 from archgen.model.component import Component, Output
 from archgen.model.declared_timing import Timing

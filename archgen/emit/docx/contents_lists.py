@@ -7,13 +7,13 @@ computes the page of an entry that stands outside of one. So the outer field is 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 
 from archgen.emit.docx.docx_writer import ContentsEntry, DocxWriter
 from archgen.emit.docx.page_flow import FlowPiece
 from archgen.emit.docx.paper_sheets import PaperSheet
 from archgen.emit.docx.title_page import write_front_heading
 from archgen.emit.docx.word_xml import escape_text, format_field, format_paragraph, format_run, points_to_twips
+from archgen.frozen import dataclass, replace
 
 _MAX_LEVEL = 3
 """Levels of headings in the table of contents, if they fit a page or two."""

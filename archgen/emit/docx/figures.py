@@ -6,7 +6,6 @@ import re
 import struct
 import zlib
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
 from typing import Literal
 
 from docx.oxml.ns import nsdecls, qn
@@ -20,6 +19,7 @@ from archgen.emit.docx.docx_writer import DocxWriter
 from archgen.emit.docx.page_flow import FlowPiece, ScalablePicture
 from archgen.emit.docx.paper_sheets import PaperSheet
 from archgen.emit.docx.word_xml import clean_line, format_paragraph, format_run
+from archgen.frozen import dataclass, replace
 from archgen.views.shapes import Figure
 
 _SCREEN_DPI = 96.0

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field, replace
 from urllib.parse import unquote
 
 from markdown_it import MarkdownIt
@@ -31,6 +30,7 @@ from archgen.emit.docx.text_pieces import (
 )
 from archgen.emit.docx.word_xml import format_run
 from archgen.emit.term_mentions import MentionFinder, begin_text
+from archgen.frozen import dataclass, field, replace
 from archgen.views.shapes import Inlines, Markdown, Text
 
 

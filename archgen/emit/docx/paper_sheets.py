@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Collection
-from dataclasses import dataclass
 from typing import cast
 
 from docx.enum.section import WD_ORIENTATION, WD_SECTION
@@ -17,6 +16,7 @@ from docx.shared import Length, Twips
 from lxml import etree
 
 from archgen.emit.docx.word_xml import points_to_twips
+from archgen.frozen import dataclass
 
 _A4 = (595.3, 841.9)
 _MARGIN = 70.85  # 25 mm

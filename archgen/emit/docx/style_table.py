@@ -13,13 +13,13 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 
 from docx.oxml.ns import qn
 from lxml import etree
 
 from archgen.emit.docx.text_metrics import BOLD_FACTOR, TextFace, find_font_factor
 from archgen.emit.docx.word_xml import escape_text
+from archgen.frozen import dataclass, field
 
 HEADING_LEVELS = 9
 _PARAGRAPHS = (

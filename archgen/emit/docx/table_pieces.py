@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
 
 from archgen.emit.docx.captions import write_caption
 from archgen.emit.docx.column_widths import (
@@ -21,6 +20,7 @@ from archgen.emit.docx.paper_sheets import PaperSheet
 from archgen.emit.docx.text_metrics import TextFace, measure_word
 from archgen.emit.docx.text_pieces import MUTED_COLOUR, RunSetting, format_runs, join_text
 from archgen.emit.docx.word_xml import escape_text, format_paragraph, format_run, points_to_twips
+from archgen.frozen import dataclass, replace
 from archgen.views.shapes import Column, Facts, Inlines, Table
 
 _SPACER_HEIGHT = 8.0

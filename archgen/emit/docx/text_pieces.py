@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
 
 from archgen.emit.docx.docx_writer import ContentsEntry, DocxWriter
 from archgen.emit.docx.list_numbering import format_heading_number
@@ -20,6 +19,7 @@ from archgen.emit.docx.word_xml import (
     name_bookmark,
     name_label_bookmark,
 )
+from archgen.frozen import dataclass, replace
 from archgen.views.shapes import Bullets, Inlines, Paragraph, Text
 from archgen.views.short_figures import write_comparisons
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
 
 from archgen.emit.graphviz import palette
 from archgen.emit.graphviz.box_styles import LinkResolver
@@ -27,6 +26,7 @@ from archgen.emit.graphviz.dot_text import escape_label, wrap_text
 from archgen.emit.graphviz.drawn_legend import add_legend
 from archgen.emit.graphviz.placed_scene import Scene, ScenePart
 from archgen.emit.graphviz.styled_graph import measure_nodes
+from archgen.frozen import dataclass, replace
 from archgen.views.picture_shapes import BarSegment, Chart, ChartBar
 from archgen.views.short_figures import shorten_text
 

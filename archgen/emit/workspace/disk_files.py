@@ -6,11 +6,11 @@ import os
 import stat
 import unicodedata
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 from archgen.emit.file_tree import digest_named_file, list_files_below
 from archgen.emit.safe_names import explain_long_path, is_safe_path
+from archgen.frozen import dataclass
 
 _MAX_PART_BYTES = 200
 """What every file system takes as one name, with room for what other tools append."""

@@ -10,11 +10,11 @@ import io
 import re
 import zipfile
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Any
 
 from archgen.emit.own_file_marks import PROGRAM_NAME, PROGRAM_PART
+from archgen.frozen import dataclass, field
 from archgen.views.shapes import Facts, Inlines, Outline, Section, Table
 
 _MAX_NAME = 31

@@ -6,11 +6,10 @@ What a variant takes out with the components and nodes that it selects: what the
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
 
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import Span
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass
 from archgen.link import mapping_values
 from archgen.link.element_outline import ElementOutline
 from archgen.model.selector_evaluation import SelectorEvaluator

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
-from typing import NamedTuple
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass
 from archgen.timing.figures import figure_wording
 from archgen.timing.load.work_terms import FigureWorking, ThreadShare, WorkTerm
 from archgen.timing.rates.link_traffic import LinkWorking

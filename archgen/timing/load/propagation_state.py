@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
+from archgen.frozen import dataclass, field
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.event_streams import (
     EventStreams,

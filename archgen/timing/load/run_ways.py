@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
 
+from archgen.frozen import NamedTuple
 from archgen.timing.load.event_streams import MAX_STREAMS
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers
 from archgen.timing.load.level_cascades import EventOrigin

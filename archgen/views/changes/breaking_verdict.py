@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 from archgen.compare import Change, Comparison
 from archgen.compare.agreements import (
@@ -19,6 +18,7 @@ from archgen.compare.key_phrases import tick_names
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.suggestions import did_you_mean
+from archgen.frozen import NamedTuple
 from archgen.model.review_settings import (
     BREAK_CATEGORIES,
     AcceptedChange,

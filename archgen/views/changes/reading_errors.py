@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.frozen import NamedTuple
 
 
 class ReadingErrors(NamedTuple):

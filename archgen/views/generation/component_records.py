@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
 from archgen.diagnostics.source_span import Span
+from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.code_names import make_camel_name
 from archgen.model.component import Component, Input, Output

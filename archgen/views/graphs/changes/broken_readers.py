@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
 from archgen.compare import Comparison
 from archgen.compare.agreements import find_partner_id
+from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.views.changes.breaking_items import is_break_shown
 from archgen.views.changes.named_elements import name_each, name_partners

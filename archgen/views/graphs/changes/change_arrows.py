@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 from archgen.diagnostics.common_wording import fit_lines
+from archgen.frozen import dataclass
 from archgen.views.changes.change_wording import BREAK_SIGN, CHANGE_SIGNS
 from archgen.views.graphs.drawn_level import FlowStyle
 from archgen.views.picture_shapes import Arrow, ElementChange

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 
 from archgen.compare import Comparison
 from archgen.diagnostics.common_wording import fit_lines
+from archgen.frozen import dataclass, replace
 from archgen.model.component import Component
 from archgen.views.changes.change_wording import BREAK_SIGN, CHANGE_SIGNS
 from archgen.views.elements import element_names

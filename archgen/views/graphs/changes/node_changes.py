@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
 
 from archgen.compare import Change, Comparison
 from archgen.compare.matched_ids import MatchedIds
+from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, Topic
 from archgen.views.changes.change_wording import CHANGE_SIGNS, is_textual

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from typing import get_args
 
 from archgen.diagnostics.common_wording import fit_lines
+from archgen.frozen import dataclass, replace
 from archgen.views.changes.change_wording import CHANGE_SIGNS
 from archgen.views.inline_text import count_noun
 from archgen.views.picture_shapes import Arrow, Box, Cluster, ElementChange, Graph
