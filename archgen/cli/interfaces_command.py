@@ -76,7 +76,7 @@ def command(  # noqa: PLR0913 - one for each option
     Each topic, service and action with its version, its message, what is promised and what is only expected of it, chains,
     requirements, open points, and who serves and who reads it. `archgen interfaces --between certh sssa -o certh-sssa.docx`
     """
-    from archgen.products import agreement_documents, leaving_links
+    from archgen.products import agreement_documents, product_writing
     from archgen.products.output_options import OutputOptions
 
     if since and signed:
@@ -107,7 +107,7 @@ def command(  # noqa: PLR0913 - one for each option
             _exit_by_terms(checked_project, agreement, earlier_version if signed else None)
         endings = {"markdown": "md", "html": "html", "docx": "docx", "json": "json"}
         target = output or checked_project.output_folder / "interfaces" / f"{pair[0]}-{pair[1]}.{endings[form]}"
-        leaving_links.refuse_leaving_links(checked_project, target)
+        product_writing.refuse_leaving_links(checked_project, target)
         agreement_documents.write_agreement(agreement, form, target, output_options)
     command_support.print_written(
         target, f"{agreement.interface_count} interfaces" if agreement.interface_count != 1 else "1 interface"

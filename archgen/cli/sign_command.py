@@ -48,7 +48,7 @@ def command(  # noqa: PLR0913 - one for each option
 
     from archgen.diagnostics.safe_text import make_visible
     from archgen.git import GitError
-    from archgen.products import agreement_documents, agreement_signing, leaving_links
+    from archgen.products import agreement_documents, agreement_signing, product_writing
     from archgen.products.output_options import OutputOptions
 
     form = command_support.choose_format(None, output, agreement_documents.FORMAT_BY_ENDING, "docx")
@@ -66,7 +66,7 @@ def command(  # noqa: PLR0913 - one for each option
         )
         target = output or checked_project.output_folder / "interfaces" / f"{prepared.agreement.id}.{form}"
         with command_support.explain_write_errors():
-            leaving_links.refuse_leaving_links(checked_project, target)
+            product_writing.refuse_leaving_links(checked_project, target)
             agreement_documents.write_agreement(agreement, form, target, options)
             agreement_signing.record_signature(checked_project, prepared)
     command_support.print_written(target)

@@ -15,7 +15,7 @@ from archgen.compare.edits import Edit, list_edits
 from archgen.compare.element_sentences import is_read_by_others
 from archgen.compare.figure_noise import FigureNoise
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass
 from archgen.views.changes import breaking_verdict
 from archgen.views.changes.boundary_lines import write_boundary_lines
 from archgen.views.changes.breaking_items import (
@@ -36,9 +36,16 @@ from archgen.views.changes.figure_lines import (
     write_noise_line,
 )
 from archgen.views.changes.named_elements import name_each, name_elements, name_partners
-from archgen.views.changes.reading_errors import ReadingErrors
 from archgen.views.inline_text import count_noun
 from archgen.views.picture_shapes import Graph
+
+
+class ReadingErrors(NamedTuple):
+    """The errors of reading and linking either version: what they are about is missing in the comparison."""
+
+    before: tuple[Diagnostic, ...] = ()
+    after: tuple[Diagnostic, ...] = ()
+
 
 BREAKING_HEADING = "Breaking changes"
 BOUNDARY_HEADING = "Between partners"

@@ -7,8 +7,7 @@ from collections.abc import Iterable
 from archgen.model.coordinate_frames import Frame, index_child_frames
 from archgen.views.elements.frame_users import name_writer
 from archgen.views.graphs import element_boxes
-from archgen.views.graphs.graph_folding import MAX_BOXES
-from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.graphs.graph_folding import MAX_BOXES, add_legend_keys
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import Arrow, Box, Graph
