@@ -116,10 +116,8 @@ def _keep_variants(checked_project: CheckedProject, text: str) -> CheckedProject
     from archgen import pipeline
 
     names = shared_options.split_variants(text)
-    try:
+    with command_support.explain_wrong_usage(pipeline.UnknownVariantError):
         return pipeline.keep_variant_findings(checked_project, names)
-    except pipeline.UnknownVariantError as error:
-        raise click.UsageError(make_visible(str(error))) from None
 
 
 def _renew_editor_schema(checked_project: CheckedProject) -> None:

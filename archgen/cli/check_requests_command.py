@@ -83,11 +83,9 @@ def _merge_requests(requests: Sequence[OpenRequest], branch: str, project: Path 
 
     names = {request.ref: f"#{request.number}" for request in requests}
     merges = []
-    try:
+    with command_support.explain_wrong_usage(GitError, ProjectNotFoundError):
         for merge in preview_merges(project, "HEAD", [*names], find_joint_breaks, leaves_out_unmergeable=True):
             merges.append(merge)
             ours, theirs = (tuple(names[ref] for ref in side) for side in merge.sides)
             print_merge(branch, replace(merge, sides=(ours, theirs)))
-    except (GitError, ProjectNotFoundError) as error:
-        raise click.UsageError(make_visible(str(error))) from None
     return merges

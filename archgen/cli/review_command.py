@@ -157,10 +157,8 @@ def _find_merge_target(project: Path | None, base: str | None) -> str | None:
     from archgen.forge.reviewed_request import find_reviewed_request
     from archgen.products.reviewed_change import find_merge_target
 
-    try:
+    with command_support.explain_wrong_usage(git.GitError):
         return find_merge_target(project, base, find_reviewed_request()) if base else None
-    except git.GitError as error:
-        raise click.UsageError(make_visible(str(error))) from None
 
 
 def _compare_change(

@@ -11,11 +11,11 @@ from archgen.compare.comparison import ChainChange, Change, Comparison, LimitCha
 from archgen.compare.concerned_owners import find_concerned_owners
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
 from archgen.compare.losses.changed_definitions import (
+    find_changed_distro,
     find_deprecated_types,
     find_redefined_messages,
     find_retyped_outputs,
 )
-from archgen.compare.losses.changed_distro import find_changed_distro
 from archgen.compare.losses.changed_meanings import find_changed_frames, find_changed_meanings
 from archgen.compare.losses.changed_parameters import find_changed_parameters
 from archgen.compare.losses.cut_steps import find_cut_steps

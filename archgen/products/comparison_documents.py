@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING
 from archgen.compare import Comparison
 from archgen.diagnostics.common_wording import shorten_hash
 from archgen.products.compared_versions import WORKING_TREE_NAME, ProjectVersion
-from archgen.views.changes.comparison_document import ComparisonDocument, describe_comparison
-from archgen.views.changes.reading_errors import ReadingErrors
+from archgen.views.changes.comparison_document import ComparisonDocument, ReadingErrors, describe_comparison
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -42,18 +42,15 @@ def select_elements(
 
     Return the selection and the problems of the selector; errors among them make the selection unusable.
     """
-    return selector_evaluation.evaluate_selector(
-        selector_text, checked_project.architecture, _elements_by_rule(checked_project)
-    )
-
-
-def _elements_by_rule(checked_project: CheckedProject) -> Mapping[str, frozenset[str]]:
-    """Return the ids of elements with findings, by rule."""
     rule_elements: dict[str, set[str]] = {}
     for finding in checked_project.findings:
         if finding.element:
             rule_elements.setdefault(finding.rule, set()).add(finding.element)
-    return {rule: frozenset(elements) for rule, elements in rule_elements.items()}
+    return selector_evaluation.evaluate_selector(
+        selector_text,
+        checked_project.architecture,
+        {rule: frozenset(elements) for rule, elements in rule_elements.items()},
+    )
 
 
 def make_scoped_lookup(checked_project: CheckedProject, options: OutputOptions) -> Lookup:
@@ -126,6 +123,7 @@ def make_edition(
     revision: str,
 ) -> DocumentEdition:
     """Say what documents contain beside the architecture."""
+    found_rules = {finding.rule for finding in checked_project.findings}
     return DocumentEdition(
         revision=revision,
         level=level or "implementation",
@@ -135,7 +133,11 @@ def make_edition(
         drawings=drawings,
         statistics=statistics_tables.make_statistics_tables(checked_project.architecture),
         history=project_history,
-        rule_pages=_format_rule_pages(checked_project),
+        rule_pages={
+            rule.name: rule_pages.rule_page_to_markdown(rule).partition("\n")[2]
+            for rule in index_all_rules().values()
+            if rule.name in found_rules
+        },
         has_errors=checked_project.has_errors,
     )
 
@@ -171,16 +173,6 @@ def _find_date(checked_project: CheckedProject, options: OutputOptions) -> str:
     if options.revision not in {None, find_revision(checked_project.root, checked_project.input_files)}:
         return ""
     return find_revision_date(checked_project.root, checked_project.input_files)
-
-
-def _format_rule_pages(checked_project: CheckedProject) -> Mapping[str, str]:
-    """Return the pages of the rules that found something, by name, without the titles."""
-    found_rules = {finding.rule for finding in checked_project.findings}
-    return {
-        rule.name: rule_pages.rule_page_to_markdown(rule).partition("\n")[2]
-        for rule in index_all_rules().values()
-        if rule.name in found_rules
-    }
 
 
 def _shows_history(checked_project: CheckedProject, options: OutputOptions) -> bool:

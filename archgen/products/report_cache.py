@@ -68,7 +68,9 @@ def get_or_write_report(  # noqa: PLR0913 - all that a report depends on, and ho
         return data
 
     new_report = write_report(read_and_record)
-    files.store(report_key, _format_report(new_report, asked_digests))
+    document, warnings = new_report
+    header = json.dumps({"check": zlib.crc32(document), "warnings": warnings, "asked": asked_digests})
+    files.store(report_key, header.encode() + b"\n" + document)
     return new_report
 
 
@@ -108,9 +110,3 @@ def _read_report(data: bytes | None, chapter_files: ChapterFileReader) -> Report
     # Whatever the file holds instead, it is a miss.
     except (ValueError, KeyError, TypeError, AttributeError):
         return None
-
-
-def _format_report(new_report: ReportWithWarnings, asked_digests: Mapping[str, str | None]) -> bytes:
-    document, warnings = new_report
-    header = json.dumps({"check": zlib.crc32(document), "warnings": warnings, "asked": asked_digests})
-    return header.encode() + b"\n" + document

@@ -112,7 +112,7 @@ def list_changed_frames(content: AgreementContent) -> tuple[str, ...]:
 def _frame_row(content: AgreementContent, shared: SharedFrame, mark: Text | None) -> tuple[Inlines, ...]:
     architecture, frame = content.lookup.architecture, shared.frame
     rate = inline_text.to_inlines("static") if frame.static else inline_text.quantity_to_inlines(frame.rate)
-    ports = (_link_port(architecture, name) for name in shared.ports)
+    ports = (inline_text.port_id_link(architecture, name) for name in shared.ports)
     frames = (link_declared_frame(architecture, name) for name in shared.frames)
     return (
         (Text(frame.id, code=True),),
@@ -123,10 +123,6 @@ def _frame_row(content: AgreementContent, shared: SharedFrame, mark: Text | None
         inline_text.join_inlines((*ports, *frames)),
         (mark,) if mark else (),
     )
-
-
-def _link_port(architecture: Architecture, port_id: str) -> Inlines:
-    return inline_text.port_link(architecture, architecture.outputs.get(port_id) or architecture.inputs[port_id])
 
 
 def _mark_frames(content: AgreementContent) -> dict[str, Text]:

@@ -98,11 +98,6 @@ def _find_page(change: Change) -> str:
     return f"{change.element_kind}:{change.element_id}" if change.element_kind in _PAGE_KINDS and not is_gone else ""
 
 
-def _name_changes(page: Page) -> str:
-    """Return the name that the changes of a page have: its anchor, without the two partners of an interface."""
-    return page.anchor.rsplit(":", 2)[0] if page.kind == "interfaces" else page.anchor
-
-
 def _judge_changes(anchor: str, changes: Iterable[Change]) -> ElementChange:
     """Say how an element changed as a whole: what happens to its ports changes it."""
     own_kinds = {
@@ -120,7 +115,7 @@ def mark_page(page: Page, site_changes: SiteChanges) -> Page:
     section = page.section
     if page.kind in _LISTING_KINDS:
         section = _mark_lists(section, site_changes.kinds_by_page)
-    anchor = _name_changes(page)
+    anchor = page.anchor.rsplit(":", 2)[0] if page.kind == "interfaces" else page.anchor
     kind = site_changes.kinds_by_page.get(anchor)
     if kind is not None:
         table = _compare_versions(anchor, site_changes)

@@ -8,8 +8,7 @@ from archgen.bringup.plan_shapes import StartPlan, StartStep
 from archgen.bringup.start_plan import describes_start, make_start_plan
 from archgen.model.start_up import PHASES
 from archgen.views import start_phrases
-from archgen.views.graphs.graph_folding import MAX_BOXES
-from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.graphs.graph_folding import MAX_BOXES, add_legend_keys
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import Arrow, Box, Graph

@@ -138,7 +138,7 @@ def _mute_words(words: str) -> Inlines:
 START_COLUMNS = ("number", "id", "kind", "phase", "host", "command", "waits_for", "up_when", "state", "place")
 
 
-def list_start_rows(lookup: Lookup) -> Iterator[tuple[str, ...]]:
+def list_start_rows(lookup: Lookup) -> Iterator[tuple[object, ...]]:
     """Yield the shown steps of the start-up, with their numbers in the whole plan."""
     architecture = lookup.architecture
     for number, step in list_shown_steps(lookup, make_start_plan(architecture)):
