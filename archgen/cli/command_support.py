@@ -18,6 +18,8 @@ from archgen.diagnostics.diagnostic import Diagnostic, Severity, settle_diagnost
 if TYPE_CHECKING:
     from archgen.diagnostics.source_span import SourceTexts
     from archgen.edit.element_edit import FileEdit
+    from archgen.edit.measured_slice import MeasuredSlice
+    from archgen.edit.requirement_slice import RequirementSlice
     from archgen.model.architecture import Architecture
     from archgen.model.selector_evaluation import Selection
     from archgen.model.selector_parser import SelectorProblem
@@ -254,6 +256,21 @@ def write_output(document: str | bytes, output: Path | None) -> None:
         sys.stdout.buffer.write(document)
     else:
         sys.stdout.write(document)
+
+
+def write_slice(path: Path, made_slice: RequirementSlice | MeasuredSlice, advice: str, detail: str | None = "") -> None:
+    """Write a slice that was made of another file, and print that, unless `detail` is None. `advice` is for a refusal."""
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.emit.file_tree import OutputError, write_file
+
+    try:
+        write_file(path, made_slice.text.encode())
+    except OutputError as error:
+        raise click.ClickException(make_visible(f"{error.message}; nothing was changed; {advice}")) from None
+    if detail is not None:
+        print_written(path, detail)
+    if not made_slice.is_read:
+        print_warning(f"the project does not read it yet: add `{made_slice.file}` to `sources` in archgen.yaml")
 
 
 def print_written(path: Path, detail: str = "") -> None:

@@ -280,11 +280,8 @@ def write_agreement(
     """Write an agreement into a file."""
     options = options or OutputOptions()
     if agreement_format in {"markdown", "json"}:
-        file_tree.write_file(target, render_agreement_text(partner_agreement, agreement_format).encode())
+        document = render_agreement_text(partner_agreement, agreement_format).encode()
     else:
-        file_tree.write_file(
-            target,
-            render_agreement_html(partner_agreement, options)
-            if agreement_format == "html"
-            else render_agreement_docx(partner_agreement, options),
-        )
+        render = render_agreement_html if agreement_format == "html" else render_agreement_docx
+        document = render(partner_agreement, options)
+    file_tree.write_file(target, document)

@@ -10,7 +10,7 @@ from pathlib import Path
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.emit.backend_manifests import Backend
-from archgen.emit.file_tree import OutputError
+from archgen.emit.file_tree import OutputError, refuse_file
 from archgen.emit.workspace import workspace_writing
 from archgen.emit.workspace.disk_files import DiskReader, GeneratedFile, fold_file_path
 from archgen.emit.workspace.run_record import read_other_records, read_run_record
@@ -187,7 +187,7 @@ def _write_files(
     files: Sequence[GeneratedFile], backend: Backend, folder: Path, run: str, request: WorkspaceRequest
 ) -> WorkspacePlan:
     """Plan, and unless only a look is asked for, do what is planned."""
-    _refuse_unusable(folder)
+    refuse_file(folder)
     try:
         if request.only_look:
             return _plan_files(files, backend, folder, run, request)
@@ -198,12 +198,6 @@ def _write_files(
     except OSError as error:
         msg = f"cannot write {error.filename or folder}: {error.strerror or error}"
         raise OutputError(msg, "no file is half written; run this again when that is mended") from error
-
-
-def _refuse_unusable(folder: Path) -> None:
-    if folder.exists() and not folder.is_dir():
-        msg = f"{folder} is a file, not a folder"
-        raise OutputError(msg, "give another folder with `-o`")
 
 
 def _plan_files(
