@@ -31,11 +31,6 @@ _UNSAFE_IN_FILES = re.compile(r"[^A-Za-z0-9_.-]+")
 _MAX_FILE_NAME = 100
 
 
-def describes_start(architecture: Architecture) -> bool:
-    """Whether a project says anything about its start-up."""
-    return any(node.start is not None or node.command for node in architecture.nodes.values())
-
-
 def make_start_plan(architecture: Architecture) -> StartPlan:
     """Return the plan of all nodes and containers; it depends on nothing else, and on no order but that of the files."""
     start_waits = StartWaits(architecture)

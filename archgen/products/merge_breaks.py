@@ -14,7 +14,7 @@ from archgen.compare.review_facts import ReviewFacts
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.findings.comparison_rules import BREAKING_CHANGE
+from archgen.findings.rule_table import BREAKING_CHANGE
 from archgen.link.interface_sources import interface_name_of
 from archgen.merge.branch_merge import JointBreaks
 from archgen.pipeline import CheckedProject

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 from archgen.compose import ExpandedProject
 from archgen.compose.library_types import library_of_type
-from archgen.compose.type_table import is_abstract, list_generic_names
 from archgen.link import mapping_values
 from archgen.link.declare.handed_parameters import declare_parameters
 from archgen.link.promise_reading import read_deprecation
@@ -25,6 +24,10 @@ def declare_component_types(expansion: ExpandedProject, resolver: ReferenceResol
     Whose a library's types are, those know who check the library by itself.
     """
     types: dict[str, ComponentType] = {}
+    if not expansion.type_entries:
+        return types
+    from archgen.compose.type_table import is_abstract, list_generic_names
+
     for name, entry in expansion.type_entries.items():
         body, whole_body = mapping_values.get_body(entry), expansion.type_bodies[name]
         library = library_of_type(name)

@@ -4,21 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import field
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from archgen.compose.expanded_project import ComponentShell
 from archgen.frozen import NamedTuple, dataclass, replace
 from archgen.link import mapping_values
-from archgen.link.automatic_connections import join_ports
 from archgen.link.declare.handed_parameters import HandedParameters
 from archgen.link.declare.promise_declaration import PromisedOutputs
 from archgen.link.declare.timing_declaration import declare_timing
 from archgen.link.element_outline import ElementOutline
 from archgen.link.input_wiring import InputWiring
 from archgen.link.link_memory import LinkedLeaf, LinkMemory
-from archgen.link.open_shells import OpenShells
 from archgen.link.port_resolution import PortResolver
-from archgen.link.port_sources import PortSources
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.link.value_readers import read_element, read_values
 from archgen.model.architecture import PortEdge, list_leaf_ports
@@ -32,6 +29,9 @@ from archgen.model.component import (
 from archgen.model.message_types import ConceptualType
 from archgen.model.path_resolver import title_from_id
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
+
+if TYPE_CHECKING:
+    from archgen.link.open_shells import OpenShells
 
 _Port = TypeVar("_Port", Input, Output)
 
@@ -68,11 +68,17 @@ def declare_groups(
 
     Components that `memory` knows are taken over; it is for projects in which no component holds others.
     """
-    sources = None
+    sources = open_shells = None
     if outline.expansion:
+        # Imported here: in most projects no component holds others.
+        from archgen.link.automatic_connections import join_ports
+        from archgen.link.open_shells import OpenShells
+        from archgen.link.port_sources import PortSources
+
         sources = PortSources(outline, resolver, types)
         join_ports(outline, sources, resolver)
         sources.spread_media()
+        open_shells = OpenShells(outline, sources)
     wiring = InputWiring(outline, resolver, types, sources)
     group_declarer = _GroupDeclarer(
         outline,
@@ -83,7 +89,6 @@ def declare_groups(
         outside_readers=sources.list_given_outside() if sources else {},
         memory=None if sources else memory,
     )
-    open_shells = OpenShells(outline, sources) if sources else None
     groups = {name: group_declarer.declare_group(name, entry, open_shells) for name, entry in outline.groups.items()}
     components = {component.id: component for group in groups.values() for component in group.components.values()}
     shells = {shell.id: group_declarer.declare_shell(shell) for shell in outline.shells.values()}
