@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import fnmatch
 from collections.abc import Iterable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -89,6 +88,9 @@ def start_products(inputs: ProductInputs, products: Sequence[Product]) -> Starte
     shown_products = [product for product in products if product.picture_formats is not None]
     if not shown_products:
         return StartedProducts({product.name: product.start(inputs) for product in products}, DrawnPictures())
+    # Imported here: where nothing is drawn, it is half of what would be loaded of Python.
+    from concurrent.futures import ThreadPoolExecutor
+
     from archgen.emit import graphviz
 
     # Workers start before the views are made: both take long.
