@@ -5,17 +5,21 @@ from __future__ import annotations
 import gc
 import io
 import os
+import signal
 import sys
+from types import FrameType
 
 
 def main() -> None:
-    """Run the command line. Exit status: 0 no errors, 1 errors found, 2 wrong usage or a failure, 130 interrupted."""
+    """Run the command line. Exit status: 0 no errors, 1 errors found, 2 wrong usage or a failure, 130 and more stopped."""
     # All of it is inside: imports take most of the first tenth of a second, in which people press Ctrl-C, too.
     try:
+        for number in _list_ending_signals():
+            signal.signal(number, _stop)
         _run_verb()
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as stop:
         sys.stderr.write("archgen: stopped\n")
-        sys.exit(130)
+        sys.exit(stop.args[0] if stop.args else 128 + signal.SIGINT)
     except BrokenPipeError:
         # The reader of our output has closed it (`archgen list | head`): that is not a failure.
         _leave_quietly()
@@ -32,6 +36,16 @@ def main() -> None:
         error_text = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
         sys.stderr.write(f"archgen: failed: {error_text}\nThis is a mistake in archgen. ARCHGEN_DEBUG=1 shows where.\n")
         sys.exit(2)
+
+
+def _list_ending_signals() -> list[int]:
+    """Return the signals that end a process at once where nobody takes them: `kill`, and a terminal that is closed."""
+    return [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if signal.getsignal(getattr(signal, name, 0)) == 0]
+
+
+def _stop(number: int, _: FrameType | None) -> None:
+    """Stop as Ctrl-C does, so that what is half done is taken away."""
+    raise KeyboardInterrupt(128 + number)
 
 
 def _run_verb() -> None:
@@ -62,8 +76,8 @@ def _run_verb() -> None:
     except PluginRefusedError as error:
         sys.stderr.write(f"Error: {make_visible(str(error))}\n")
         sys.exit(2)
-    except click.Abort:
-        raise KeyboardInterrupt from None
+    except click.Abort as abort:
+        raise (abort.__cause__ if isinstance(abort.__cause__, KeyboardInterrupt) else KeyboardInterrupt) from None
 
 
 def _leave_quietly() -> None:

@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.common_wording import join_first, join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.rule_options import RuleOption, format_percentage
 from archgen.diagnostics.source_span import NO_SPAN, Span
@@ -19,7 +19,7 @@ from archgen.timing.chains.chain_bounds import LateChain, find_missed_shares, fi
 from archgen.timing.chains.read_ages import ReadAge, find_read_ages
 from archgen.timing.chains.use_case_times import WholeBound, WholeLimit, bound_wholes, list_limits
 from archgen.timing.figures import figure_wording
-from archgen.timing.figures.figure_wording import format_duration, join_first_names
+from archgen.timing.figures.figure_wording import format_duration
 from archgen.timing.figures.value_arithmetic import is_boundless, is_known_bound, is_unfound
 from archgen.timing.system.thread_pools import name_lane
 from archgen.timing.system.timing_system import Activity
@@ -128,7 +128,7 @@ def _report_slow_whole(
     shell_id: str, limit: WholeLimit, bound: WholeBound, duration: Fraction, margin: Fraction
 ) -> Diagnostic:
     known_phrase = "" if is_known_bound(bound.duration) else " and more, for not all of its figures are known"
-    way = join_first_names(tuple(f"`{name}`" for name in bound.through))
+    way = join_first(tuple(f"`{name}`" for name in bound.through))
     return Diagnostic(
         "slow-component",
         f"`{shell_id}` is to need at most {limit.duration} ({limit.name}), but the way through it takes up to {format_duration(duration)}{known_phrase}: {way}{_describe_margin(margin)}",

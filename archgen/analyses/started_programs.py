@@ -50,9 +50,9 @@ def silent_node(architecture: Architecture) -> Iterator[Diagnostic]:
         for writer in topic.writers:
             # What somebody brings into a state, he may bring further.
             if writer.runs == "inactive" and not (architecture.nodes[writer.node].start or NO_START).by_written:
-                silent[writer.node] += (
-                    (writer, each) for each in topic.readers if architecture.nodes[each.node].written
-                )
+                for reader in topic.readers:
+                    if architecture.nodes[reader.node].written:
+                        silent[writer.node].append((writer, reader))
     for node_id, ends in silent.items():
         writer, reader = ends[0]
         is_on_chain = any(not on_chains.isdisjoint((end.node, end.component, writer.port)) for writer, end in ends)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from archgen.checking.all_rules import index_all_rules
 from archgen.checking.checked_project import CheckedProject
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.common_wording import join_words, keep_first
 from archgen.diagnostics.diagnostic import Diagnostic, Severity, settle_diagnostics
 from archgen.diagnostics.source_span import Span
 from archgen.findings.rule_table import STALE_CODEOWNERS
@@ -49,9 +49,7 @@ def _judge_age(checked_project: CheckedProject, name: str, prefix: str, text: st
     missing_lines = [line for line in wanted_lines if line and line[0] != "#" and line not in present_lines]
     if not missing_lines:
         return None
-    told_lines = [f"`{line}`" for line in missing_lines[:_MAX_LINES]]
-    if len(missing_lines) > _MAX_LINES:
-        told_lines.append(f"{len(missing_lines) - _MAX_LINES} more")
+    told_lines = keep_first([f"`{line}`" for line in missing_lines], _MAX_LINES)
     return Diagnostic(
         STALE_CODEOWNERS.name,
         f"CODEOWNERS is out of date: it lacks {join_words(told_lines)}",

@@ -234,11 +234,7 @@ def write_edit(root: Path, edit: FileEdit, detail: str) -> None:
 
     target = (root / edit.file).resolve()
     with explain_write_errors():
-        # `write_file` puts a new file in place of the old one, which would lose its permissions.
-        mode = target.stat().st_mode if edit.old_content is not None else None
         file_tree.write_file(target, edit.new_content)
-        if mode is not None:
-            target.chmod(mode)
     print_written(root / edit.file, detail)
 
 

@@ -138,11 +138,11 @@ def _describe_flood(time: Fraction) -> str:
 
 
 def _require_chains(asked_ids: tuple[str, ...], chain_ids: tuple[str, ...]) -> None:
+    from archgen.diagnostics.common_wording import join_first
     from archgen.diagnostics.suggestions import did_you_mean
-    from archgen.timing.figures.figure_wording import join_first_names
 
     for name in asked_ids:
         if name not in chain_ids:
             guess = did_you_mean(name, chain_ids)
-            existing = f"the chains are {join_first_names(chain_ids)}" if chain_ids else "the project has no chains"
+            existing = f"the chains are {join_first(chain_ids)}" if chain_ids else "the project has no chains"
             raise click.UsageError(make_visible(f"there is no chain '{name}'; {guess or existing}"))

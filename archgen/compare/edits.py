@@ -17,7 +17,7 @@ from archgen.compare.left_out_files import find_left_out
 from archgen.compare.reshaped_components import find_reshapings
 from archgen.compare.reshaping import Reshaping
 from archgen.compare.type_edits import find_type_edits
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.common_wording import join_words, keep_first
 from archgen.frozen import dataclass
 from archgen.model.review_settings import BREAK_CATEGORIES, BreakCategory
 
@@ -157,15 +157,9 @@ def _other_numbers(changes: Iterable[Change]) -> Iterator[Edit]:
         renames = [change for change in changes if _is_rename(change, {kind}) and change.confidence >= SURE_CONFIDENCE]
         if len(renames) > 1:
             pairs = [f"`{change.old_id}` → `{change.element_id}`" for change in renames]
-            text = f"{len(renames)} {ELEMENT_KINDS[kind].kind_word}s got other ids: {_join_pairs(pairs)}"
+            text = f"{len(renames)} {ELEMENT_KINDS[kind].kind_word}s got other ids: {join_words(keep_first(pairs, _MAX_PAIRS))}"
             confidence = min(change.confidence for change in renames)
             yield Edit("renamed", kind, renames[0].element_id, text, tuple(renames), confidence)
-
-
-def _join_pairs(pairs: Sequence[str]) -> str:
-    """Join pairs of names for a sentence; the surplus is counted."""
-    surplus = len(pairs) - _MAX_PAIRS
-    return join_words(pairs if surplus <= 0 else [*pairs[:_MAX_PAIRS], f"{surplus} more"])
 
 
 def _is_rename(change: Change, kinds: Iterable[str]) -> bool:
@@ -211,7 +205,7 @@ def _other_namespaces(changes: Iterable[Change]) -> Iterator[Edit]:
             ]
             if followers:
                 pairs = [each.text.partition(": ")[2].partition("; ")[0].partition(" ")[2] for each in followers]
-                text = f"{change.text}; its names follow: {_join_pairs(pairs)}"
+                text = f"{change.text}; its names follow: {join_words(keep_first(pairs, _MAX_PAIRS))}"
                 yield Edit("changed", "node", change.element_id, text, (change, *followers))
 
 

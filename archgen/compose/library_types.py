@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlNode, list_entries
 
 _TYPE_KEYS = ("is", "same_as")
 
@@ -14,8 +14,7 @@ def list_type_entries(root: MappingNode) -> dict[str, MappingEntry]:
     own_types = root.get("component_types")
     entries = dict(own_types.entries) if isinstance(own_types, MappingNode) else {}
     for library in list_libraries(root):
-        library_types = library.value.get("component_types") if isinstance(library.value, MappingNode) else None
-        for entry in library_types if isinstance(library_types, MappingNode) else ():
+        for entry in list_entries(library.value, "component_types"):
             name = f"{library.key}.{entry.key}"
             entries[name] = MappingEntry(name, entry.key_span, _qualify_types(entry.value, library.key))
     return entries
@@ -41,7 +40,7 @@ def _qualify_keys(body: MappingNode, keys: tuple[str, ...], library: str) -> Map
         reference = body.get(key)
         if isinstance(reference, ScalarNode) and reference.value is not None:
             text = f"{library}.{reference.text.strip()}"
-            entries[key] = MappingEntry(key, entries[key].key_span, ScalarNode(text, text, reference.span))
+            entries[key] = entries[key].with_value(ScalarNode(text, text, reference.span))
     return body.with_entries(entries)
 
 
@@ -52,12 +51,10 @@ def _qualify_types(body: YamlNode, library: str) -> YamlNode:
     entries = dict(_qualify_keys(body, _TYPE_KEYS, library).entries)
     deprecated = body.get("deprecated")
     if isinstance(deprecated, MappingNode):
-        entries["deprecated"] = MappingEntry(
-            "deprecated", entries["deprecated"].key_span, _qualify_keys(deprecated, ("use",), library)
-        )
+        entries["deprecated"] = entries["deprecated"].with_value(_qualify_keys(deprecated, ("use",), library))
     components = body.get("components")
     if isinstance(components, MappingNode):
         parts = {part.key: part.with_value(_qualify_types(part.value, library)) for part in components}
         parts_node = components.with_entries(parts)
-        entries["components"] = MappingEntry("components", entries["components"].key_span, parts_node)
+        entries["components"] = entries["components"].with_value(parts_node)
     return body.with_entries(entries)

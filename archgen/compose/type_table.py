@@ -12,7 +12,15 @@ from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.frozen import dataclass, field
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
+from archgen.syntax.yaml_tree import (
+    MappingEntry,
+    MappingNode,
+    ScalarNode,
+    SequenceNode,
+    YamlNode,
+    find_value,
+    list_entries,
+)
 
 MAX_BASES = 60
 """So many types a type may be made from, one of the other."""
@@ -78,8 +86,7 @@ class TypeTable:
     def ask_replacement(self, name: str) -> None:
         """Report what replaces a deprecated type where there is no such type; one of a library counts as used."""
         body = self.entries[name].value
-        deprecated = body.get("deprecated") if isinstance(body, MappingNode) else None
-        reference = deprecated.get("use") if isinstance(deprecated, MappingNode) else None
+        reference = find_value(body, "deprecated", "use")
         if not isinstance(reference, ScalarNode) or reference.value is None:
             return
         library = library_of_type(reference.text)
@@ -105,8 +112,8 @@ class TypeTable:
         missing_ports = [
             port.key
             for side in ("inputs", "outputs")
-            for port in _list_entries(old_body.get(side))
-            if port.key not in {entry.key for entry in _list_entries(new_body.get(side))}
+            for port in list_entries(old_body, side)
+            if port.key not in {entry.key for entry in list_entries(new_body, side)}
         ]
         if missing_ports:
             names = join_words([f"`{port}`" for port in missing_ports])
@@ -131,7 +138,7 @@ class TypeTable:
             return None
         body = entry.value if isinstance(entry.value, MappingNode) else MappingNode({}, entry.key_span)
         bindings = dict(zip(list_generic_names(entry), expression.arguments, strict=True))
-        own_body = bind_type_body(_drop_type_keys(body), bindings) if bindings else _drop_type_keys(body)
+        own_body = bind_type_body(body.without(*_TYPE_KEYS), bindings) if bindings else body.without(*_TYPE_KEYS)
         base_reference = own_body.get("is")
         # The base is laid under the body: from here on nothing is left to be made from.
         own_body.entries.pop("is", None)
@@ -154,7 +161,7 @@ class TypeTable:
 
     def _list_derived(self, name: str) -> Iterator[str]:
         for entry in self.entries.values():
-            reference = entry.value.get("is") if isinstance(entry.value, MappingNode) else None
+            reference = find_value(entry.value, "is")
             base = parse_type_expression(reference.text) if isinstance(reference, ScalarNode) else None
             if base and base.name == name and not is_abstract(entry):
                 yield entry.key
@@ -203,19 +210,15 @@ def _diagnose_in_library(reference: ScalarNode, library: str, library_names: lis
 
 def list_generic_names(entry: MappingEntry) -> tuple[str, ...]:
     """Return the names of a type that stand for conceptual types; none where it is not generic."""
-    names = entry.value.get("generic") if isinstance(entry.value, MappingNode) else None
+    names = find_value(entry.value, "generic")
     items = names.items if isinstance(names, SequenceNode) else []
     return tuple(dict.fromkeys(item.text for item in items if isinstance(item, ScalarNode)))
 
 
 def is_abstract(entry: MappingEntry) -> bool:
     """Whether there is no instance of a type."""
-    flag = entry.value.get("abstract") if isinstance(entry.value, MappingNode) else None
+    flag = find_value(entry.value, "abstract")
     return isinstance(flag, ScalarNode) and flag.value is True
-
-
-def _list_entries(node: YamlNode | None) -> list[MappingEntry]:
-    return list(node) if isinstance(node, MappingNode) else []
 
 
 def diagnose_circle(entry: MappingEntry, names: list[str], verb: str) -> Diagnostic:
@@ -264,10 +267,6 @@ def _diagnose_abstract(
         help=help_line,
         element=element_id,
     )
-
-
-def _drop_type_keys(body: MappingNode) -> MappingNode:
-    return MappingNode({e.key: e for e in body if e.key not in _TYPE_KEYS}, body.span)
 
 
 def bind_type_body(node: MappingNode, bindings: Mapping[str, str], *, has_ids: bool = False) -> MappingNode:

@@ -12,7 +12,7 @@ from archgen.compose.instance_overlay import InstanceOverlay, lay_mapping, lay_n
 from archgen.compose.library_types import list_type_entries
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.language.language_tables import SECTION_KINDS
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode, find_value
 
 if TYPE_CHECKING:
     from archgen.compose.type_table import TypeTable
@@ -66,7 +66,7 @@ class _ChangeLayer:
         for entry in types:
             library_id, dot, type_id = entry.key.partition(".")
             library = bodies.get(library_id)
-            library_types = _get_mapping(library.value, "component_types") if dot and library else None
+            library_types = find_value(library.value, "component_types") if dot and library else None
             if library is None or not isinstance(library_types, MappingNode) or type_id not in library_types.entries:
                 continue
             del own_types[entry.key]
@@ -129,16 +129,12 @@ class _ChangeLayer:
         return group
 
 
-def _get_mapping(node: YamlNode, key: str) -> YamlNode | None:
-    return node.get(key) if isinstance(node, MappingNode) else None
-
-
 def _replace_key(entry: MappingEntry, key: str, value: MappingNode) -> MappingEntry:
     """Return an entry with another value at a key that its mapping has."""
     mapping = entry.value
     if not isinstance(mapping, MappingNode):
         return entry
-    inner = MappingEntry(key, mapping.entries[key].key_span, value)
+    inner = mapping.entries[key].with_value(value)
     return entry.with_value(MappingNode({**mapping.entries, key: inner}, mapping.span))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from archgen.derivation.writing_endpoints import NodePart, filter_uses
+from archgen.derivation.port_endpoints import NodePart, filter_uses
 from archgen.frozen import dataclass, field
 from archgen.model.architecture import Architecture, PortEdge
 from archgen.model.component import Input, Output

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import errno
 import os
-import shutil
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
-from archgen.emit.file_tree import OutputError
+from archgen.emit.file_tree import OutputError, open_staging_folder
 
 MARKER = "archgen.yaml"
 """The file that makes a folder a project."""
@@ -25,16 +23,13 @@ def write_new_files(files: Mapping[Path, bytes], top: Path) -> None:
     created_paths: list[Path] = []
     try:
         staging_parent = next(folder for folder in (top, *top.parents) if folder.is_dir())
-        staging_folder = Path(tempfile.mkdtemp(prefix=".archgen-", dir=staging_parent))
-        try:
+        with open_staging_folder(staging_parent) as staging_folder:
             for number, (folder, members) in enumerate(_group_by_new_folder(files)):
                 staged_top = staging_folder / str(number)
                 if folder is None:
                     _place_loose_files(members, staged_top, top, created_paths)
                 else:
                     _place_new_folder(folder, members, staged_top, top, created_paths)
-        finally:
-            shutil.rmtree(staging_folder, ignore_errors=True)
     except OSError as error:
         _undo_creation(created_paths)
         msg = f"cannot write {error.filename2 or error.filename or top}: {error.strerror or error}"

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 from archgen.analyses import NO_LONGER_LOOKED_FOR
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.common_wording import join_words, keep_first
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import Span
 from archgen.model.architecture import Architecture
@@ -82,9 +82,7 @@ def _join_findings(same: Sequence[Diagnostic], architecture: Architecture, type_
     first, further = instances[0], instances[1:]
     text = f"in the instance `{first.id}`"
     if further:
-        names = [f"`{each.id}`" for each in further[:_MAX_NAMED]]
-        rest = [f"{len(further) - _MAX_NAMED} more"] if len(further) > _MAX_NAMED else []
-        text += f", and in {join_words([*names, *rest])}"
+        text += f", and in {join_words(keep_first([f'`{each.id}`' for each in further], _MAX_NAMED))}"
     return replace(same[0], labels=(*same[0].labels, Label(first.at, text)))
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
-from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass, field
 from archgen.link import mapping_values, sanity_checks
@@ -178,9 +177,7 @@ class InputWiring:
                 f"up to here references make more than {MAX_PAIRS:,} pairs of output and input; the rest is left out"
             )
             help_line = "name single outputs or components where whole groups are named"
-            self.resolver.diagnostics.append(
-                Diagnostic("too-large", message, place, help=help_line, element=component_id)
-            )
+            self.resolver.report("too-large", message, place, help_line=help_line, element=component_id)
 
     def _list_output_ids(self, target: ElementRef, reader_id: str) -> Iterator[str]:
         """Yield the outputs that a reference stands for: one, or all that carry messages except the reader's own."""

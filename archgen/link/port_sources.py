@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.frozen import NamedTuple, replace
 from archgen.link import mapping_values
@@ -95,14 +94,12 @@ class PortSources:
             if target is not None and target.kind in {"component", "group"}:
                 yield PortSource(target, reference.text, reference.span)
             elif target is not None:
-                self._resolver.diagnostics.append(
-                    Diagnostic(
-                        "unknown-reference",
-                        f"`from` of an instance names components: `{reference.text}` is an output",
-                        reference.span,
-                        help="write the output at the input that reads it",
-                        element=component_id,
-                    )
+                self._resolver.report(
+                    "unknown-reference",
+                    f"`from` of an instance names components: `{reference.text}` is an output",
+                    reference.span,
+                    help_line="write the output at the input that reads it",
+                    element=component_id,
                 )
 
     def outputs_behind(self, target: ElementRef, reader_id: str) -> tuple[str, ...]:

@@ -192,7 +192,7 @@ def link_type_patterns(merged_table: MappingNode, architecture: Architecture) ->
     patterns = _link_expansion(expansion, architecture)
     components = {**patterns.components, **patterns.shells}
     return TypePatterns(
-        {_drop_group(component_id): component for component_id, component in components.items()},
+        {component_id.removeprefix(f"{PATTERN_GROUP}."): component for component_id, component in components.items()},
         {node.implements[0]: node for node in patterns.nodes.values() if len(node.implements) == 1},
     )
 
@@ -218,7 +218,3 @@ def _link_expansion(expansion: ExpandedProject, architecture: Architecture) -> A
         interfaces=architecture.interfaces,
     )
     return patterns
-
-
-def _drop_group(component_id: str) -> str:
-    return component_id.removeprefix(f"{PATTERN_GROUP}.")

@@ -75,6 +75,19 @@ class ReferenceResolver:
         extra_depth = max((path.count(".") for path in self.spans.get("component", ())), default=1) - 1
         self.guesser = PathGuesser(self.names, extra_depth)
 
+    def report(  # noqa: PLR0913 - what a diagnostic has
+        self,
+        rule: str,
+        message: str,
+        span: Span,
+        *,
+        labels: tuple[Label, ...] = (),
+        help_line: str | None = None,
+        element: str | None = None,
+    ) -> None:
+        """Add a diagnostic."""
+        self.diagnostics.append(Diagnostic(rule, message, span, labels=labels, help=help_line, element=element))
+
     def resolve_reference(  # noqa: PLR0913 - the last two by name
         self,
         reference: ScalarNode,
@@ -286,15 +299,13 @@ class ReferenceResolver:
     def _warn_hidden(
         self, reference: ScalarNode, visible: ElementRef, hidden: Sequence[ElementRef], element_id: str
     ) -> None:
-        self.diagnostics.append(
-            Diagnostic(
-                "hidden-reference",
-                f"`{reference.text}` is the {visible.kind} `{visible.id}`, which hides the {hidden[0].kind} `{hidden[0].id}`",
-                reference.span,
-                labels=tuple(Label(self._span_of(element), "hidden") for element in hidden),
-                help=f"write `{hidden[0].id}` if that is meant",
-                element=element_id,
-            )
+        self.report(
+            "hidden-reference",
+            f"`{reference.text}` is the {visible.kind} `{visible.id}`, which hides the {hidden[0].kind} `{hidden[0].id}`",
+            reference.span,
+            labels=tuple(Label(self._span_of(element), "hidden") for element in hidden),
+            help_line=f"write `{hidden[0].id}` if that is meant",
+            element=element_id,
         )
 
     def _span_of(self, element: ElementRef) -> Span:

@@ -97,14 +97,10 @@ def _matches_any(pattern: str, texts: Iterable[str | None]) -> bool:
     return any(text is not None and matches_wildcard(pattern, text) for text in texts)
 
 
-def _port_media(component: Component) -> Iterable[str]:
-    return (word for port in component.ports for word in list_medium_words(port))
-
-
 _COMPONENT_KEYS: Mapping[str, Callable[[Architecture, Component], Iterable[str | None]]] = {
     "owner": lambda _, component: component.owners,
     "status": lambda architecture, component: (find_component_status(architecture, component),),
-    "medium": lambda _, component: _port_media(component),
+    "medium": lambda _, component: (word for port in component.ports for word in list_medium_words(port)),
     "role": lambda _, component: (component.role,),
     "behaviour": lambda _, component: (component.timing.behaviour if component.timing else None,),
 }

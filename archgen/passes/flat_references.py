@@ -16,7 +16,15 @@ from archgen.model.path_resolver import ElementRef
 from archgen.passes.flat_sources import FlatSteps
 from archgen.passes.linked_tree import LinkedTree
 from archgen.passes.selector_rewriting import list_selected, rewrite_selectors
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
+from archgen.syntax.yaml_tree import (
+    MappingEntry,
+    MappingNode,
+    ScalarNode,
+    SequenceNode,
+    YamlNode,
+    change_at,
+    list_entries,
+)
 from archgen.timing.analysis import Analysis
 from archgen.timing.run_analysis import AnalysisMemory
 
@@ -56,7 +64,11 @@ class FlatReferences:
             if name in sections:
                 rewritten[name] = rewrite_selectors(sections[name], self._rename_word)
         if "policies" in rewritten:
-            rewritten["policies"] = self._rewrite_accepted(rewritten["policies"])
+            # Exceptions name the inputs of leaves.
+            policies = rewritten["policies"]
+            rewritten["policies"] = policies.with_value(
+                change_at(policies.value, ("*", "accepted"), self._rewrite_accepted)
+            )
         return rewritten
 
     def rewrite_start(self, body: MappingNode, own_leaves: Collection[str]) -> MappingNode:
@@ -74,7 +86,7 @@ class FlatReferences:
             items = [ScalarNode(name, name, span) for name, span in named.items()]
             if items:
                 value = SequenceNode(list(items), entries[key].value.span) if has_several else items[0]
-                entries[key] = MappingEntry(key, entries[key].key_span, value)
+                entries[key] = entries[key].with_value(value)
         written = body.entries["start"]
         rewritten = MappingEntry("start", written.key_span, MappingNode(entries, start.span))
         return MappingNode({**body.entries, "start": rewritten}, body.span)
@@ -89,23 +101,12 @@ class FlatReferences:
         others = [each for each in leaves if each not in own_leaves]
         return [self.flat_ids[each] for each in others or leaves or inside if each in self.flat_ids]
 
-    def _rewrite_accepted(self, section: MappingEntry) -> MappingEntry:
-        """Return policies whose exceptions name the inputs of leaves."""
-        policies: dict[str, MappingEntry] = {}
-        for policy in mapping_values.get_body(section):
-            policies[policy.key] = policy
-            body = mapping_values.get_body(policy)
-            accepted = body.get("accepted")
-            if isinstance(accepted, MappingNode):
-                inputs: dict[str, MappingEntry] = {}
-                for each in accepted:
-                    for name in self._name_inputs(each.key):
-                        inputs.setdefault(name, MappingEntry(name, each.key_span, each.value))
-                written = body.entries["accepted"]
-                rewritten = MappingEntry("accepted", written.key_span, MappingNode(inputs, accepted.span))
-                value = MappingNode({**body.entries, "accepted": rewritten}, body.span)
-                policies[policy.key] = MappingEntry(policy.key, policy.key_span, value)
-        return MappingEntry(section.key, section.key_span, MappingNode(policies, section.value.span))
+    def _rewrite_accepted(self, accepted: YamlNode) -> YamlNode:
+        inputs: dict[str, MappingEntry] = {}
+        for each in list_entries(accepted):
+            for name in self._name_inputs(each.key):
+                inputs.setdefault(name, MappingEntry(name, each.key_span, each.value))
+        return MappingNode(inputs, accepted.span) if isinstance(accepted, MappingNode) else accepted
 
     def _name_inputs(self, text: str) -> list[str]:
         target = self.linked.resolver.names.resolve_path(text, ("input",)).unique_element
@@ -125,10 +126,10 @@ class FlatReferences:
                 worst_leaves = self._list_worst_leaves(element.key) if is_chain else ()
                 kinds = _WAYPOINT_KINDS if is_chain else _DEVICE_KINDS
                 value = self._rewrite_value(inner[key].value, kinds, worst_leaves)
-                inner[key] = MappingEntry(key, inner[key].key_span, value)
+                inner[key] = inner[key].with_value(value)
             value_node = MappingNode(inner, body.span) if inner else element.value
-            entries[element.key] = MappingEntry(element.key, element.key_span, value_node)
-        return MappingEntry(section.key, section.key_span, MappingNode(entries, section.value.span))
+            entries[element.key] = element.with_value(value_node)
+        return section.with_entries(entries)
 
     def _rewrite_value(self, node: YamlNode, kinds: tuple[str, ...], worst_leaves: tuple[str, ...]) -> YamlNode:
         items = node.items if isinstance(node, SequenceNode) else [node]
@@ -251,7 +252,7 @@ class FlatFrames:
             frame = self._architecture.frames.get(name)
             is_own = frame is not None and frame.component == leaf_id and frame.by_written
             entries[written.key] = self._rewrite_frame(written, frame) if is_own else written
-        return MappingEntry(section.key, section.key_span, MappingNode(entries, section.value.span))
+        return section.with_entries(entries)
 
     def _rewrite_frame(self, entry: MappingEntry, frame: Frame | None) -> MappingEntry:
         if frame is None or frame.by is None:
@@ -263,7 +264,7 @@ class FlatFrames:
         writer = self._name_writer(frame)
         if writer != frame.by or "by" not in entries:
             entries["by"] = _write_text("by", writer, entries.get("by") or entry)
-        return MappingEntry(entry.key, entry.key_span, MappingNode(entries, body.span))
+        return entry.with_value(MappingNode(entries, body.span))
 
     def _name_writer(self, frame: Frame) -> str:
         """Return who writes a frame: of a composed component its only node, else its first leaf."""

@@ -16,7 +16,14 @@ from archgen.frozen import replace
 from archgen.language.language_tables import SECTION_KINDS
 from archgen.model.made_elements import ElementPlace, MadeElement
 from archgen.passes.project_tree import list_paths
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
+from archgen.syntax.yaml_tree import (
+    MappingEntry,
+    MappingNode,
+    ScalarNode,
+    SequenceNode,
+    YamlNode,
+    list_entries,
+)
 
 _COMMENT = re.compile(r"# archgen: (?:made\[([a-z0-9_., ]{1,2000})\] )?from ([^#\r\n]{1,300})")
 _UNMADE_SECTIONS = frozenset({"libraries", "properties", "variants"})
@@ -98,8 +105,7 @@ def _list_elements(root: MappingNode) -> Iterator[tuple[TreePath, Span]]:
 
 
 def _list_components(holder: MappingEntry, path: TreePath) -> Iterator[tuple[TreePath, Span]]:
-    components = holder.value.get("components") if isinstance(holder.value, MappingNode) else None
-    for part in components if isinstance(components, MappingNode) else ():
+    for part in list_entries(holder.value, "components"):
         inner_path = (*path, "components", part.key)
         yield inner_path, part.key_span
         yield from _list_components(part, inner_path)

@@ -115,17 +115,14 @@ def compare_findings(
     new_indexes = [
         index
         for index, earlier_index in enumerate(matched_indexes)
-        if earlier_index is None or _is_graver(checked_project.findings[index], earlier_project.findings[earlier_index])
+        if earlier_index is None
+        or checked_project.findings[index].effective_severity
+        > earlier_project.findings[earlier_index].effective_severity
     ]
     gone_indexes = set(range(len(earlier_keys))).difference(matched_indexes)
     return tuple(checked_project.findings[index] for index in new_indexes), tuple(
         earlier_project.findings[index] for index in sorted(gone_indexes)
     )
-
-
-def _is_graver(new_finding: Diagnostic, old_finding: Diagnostic) -> bool:
-    """Whether a finding is more severe than its match, for example because its rule was set to another severity."""
-    return new_finding.effective_severity > old_finding.effective_severity
 
 
 def _matching_keys(

@@ -95,7 +95,8 @@ def read_versions(
     if dots:
         after = read_version(right, path, version_cache)
         if dots == "...":
-            return read_at_base(_find_fork(left, right, path), path, version_cache, after), after
+            base = git.find_common_commit(project.find_tracked_project(path).objects.repository, left, right)
+            return read_at_base(base, path, version_cache, after), after
         return read_earlier_version(left, path, version_cache, after), after
     if first is not None:
         after = read_version(second, path, version_cache)
@@ -103,7 +104,8 @@ def read_versions(
     # The newer version first here: it names the main line that the older one is found by.
     after = read_version(second, path, version_cache)
     main_line = after.checked_project.architecture.review.main
-    return read_at_base(_find_base(path, main_line), path, version_cache, after), after
+    base = git.find_branch_base(project.find_tracked_project(path).objects.repository, main_line)
+    return read_at_base(base, path, version_cache, after), after
 
 
 def split_range(version_text: str) -> tuple[str, str, str]:
@@ -136,10 +138,6 @@ def read_version(
             if not os.path.lexists(version_text):
                 raise
     return ProjectVersion(version_text, pipeline.check_project(Path(version_text), version_cache))
-
-
-def _find_base(path: Path | None, main_line: str | None) -> git.BaseCommit:
-    return git.find_branch_base(project.find_tracked_project(path).objects.repository, main_line)
 
 
 def read_at_base(
@@ -175,11 +173,6 @@ def _check_moved(
         project.find_tracked_project(path), revision, later.checked_project.architecture.project.id, later.commit
     )
     return pipeline.check_tracked_project(moved_project, revision, version_cache)
-
-
-def _find_fork(left: str, right: str, path: Path | None) -> git.BaseCommit:
-    """Find the commit where two lines of history parted."""
-    return git.find_common_commit(project.find_tracked_project(path).objects.repository, left, right)
 
 
 def _is_path(version_text: str) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 from archgen.compare import Change, Comparison
@@ -56,7 +55,9 @@ def add_variant_breaks(comparison: Comparison, variant_comparisons: dict[str, Co
         idle_acceptances=tuple(
             entry for entry in comparison.idle_acceptances if all(entry in idle for idle in idle_everywhere)
         ),
-        concerned_owners=tuple(sorted({*comparison.concerned_owners, *_list_partners(holders)})),
+        concerned_owners=tuple(
+            sorted({*comparison.concerned_owners, *(partner_break.partner for _, partner_break in holders)})
+        ),
     )
 
 
@@ -68,10 +69,6 @@ def _identify_change(change: Change) -> _ChangeIdentity:
 def _identify_loss(partner_break: PartnerBreak) -> tuple[str, str]:
     # Reasons may differ in figures and in who else is hit: a partner loses the same once.
     return partner_break.partner, partner_break.category
-
-
-def _list_partners(holders: dict[tuple[_ChangeIdentity, PartnerBreak], list[str]]) -> Iterator[str]:
-    return (partner_break.partner for _, partner_break in holders)
 
 
 def _add_losses(change: Change, in_variant: Change, losses: tuple[tuple[PartnerBreak, tuple[str, ...]], ...]) -> Change:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from archgen.diagnostics.diagnostic import Diagnostic, diagnose_repetition
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.frozen import NamedTuple
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, list_entries
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -68,19 +68,15 @@ class _Holder(NamedTuple):
 
 def _list_holders(root: MappingNode) -> Iterator[_Holder]:
     """Yield all that may hold components, outer ones first. What is replaced on the way is followed."""
-    waiting = deque((entry.key, entry.value, False) for entry in _list_entries(root.get("component_types")))
-    waiting.extend((entry.key, entry.value, True) for entry in _list_entries(root.get("groups")))
+    waiting = deque((entry.key, entry.value, False) for entry in list_entries(root, "component_types"))
+    waiting.extend((entry.key, entry.value, True) for entry in list_entries(root, "groups"))
     while waiting:
         holder_id, body, is_group = waiting.popleft()
         if isinstance(body, MappingNode):
             yield _Holder(holder_id, body, is_group)
             # Listed only now: who got this holder has replaced its lists meanwhile.
-            parts = _list_entries(body.get("components"))
+            parts = list_entries(body, "components")
             waiting.extend((f"{holder_id}.{entry.key}", entry.value, False) for entry in parts)
-
-
-def _list_entries(node: YamlNode | None) -> list[MappingEntry]:
-    return list(node) if isinstance(node, MappingNode) else []
 
 
 def _expand_components(holder: MappingNode, diagnostics: list[Diagnostic]) -> None:
@@ -175,9 +171,8 @@ def _find_inner(components: MappingNode, outer_id: str, entry: MappingEntry) -> 
 def _move_targets(holder: MappingNode, diagnostics: list[Diagnostic]) -> None:
     """Write the `to` of each output as `from` of the inputs that it names, which stand beside it."""
     components = holder.get("components")
-    for component in _list_entries(components):
-        outputs = component.value.get("outputs") if isinstance(component.value, MappingNode) else None
-        for output in _list_entries(outputs):
+    for component in list_entries(components):
+        for output in list_entries(component.value, "outputs"):
             # Taken out of the output: from here on there is one way to write a connection.
             target_entry = output.value.entries.pop("to", None) if isinstance(output.value, MappingNode) else None
             if target_entry is not None and isinstance(components, MappingNode):

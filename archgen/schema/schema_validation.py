@@ -19,7 +19,7 @@ from archgen.diagnostics.source_span import NO_SPAN
 from archgen.language.language_tables import SECTION_KINDS
 from archgen.schema.language_schema import load_schema
 from archgen.schema.parameter_forms import DECLARATION_KEYS
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, find_value, list_entries
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -252,8 +252,7 @@ def find_swallowed_components(document: YamlDocument) -> Iterator[Diagnostic]:
 
     A group that has components besides is left alone: its description may well show how a project is written.
     """
-    groups = document.root.get("groups")
-    for group in groups if isinstance(groups, MappingNode) else ():
+    for group in list_entries(document.root, "groups"):
         body = group.value
         if isinstance(body, MappingNode) and "components" not in body.entries and "description" in body.entries:
             yield from _check_description(body.entries["description"], group.key)
@@ -279,10 +278,10 @@ _HOLDING_KEYS = frozenset({"components", "is", "same_as"})
 
 def mend_exchanged_ports(document: YamlDocument) -> Iterator[Diagnostic]:
     """Report components whose outputs are references and whose inputs are types, and exchange the two in the tree."""
-    for group in _list_entries(document.root.get("groups")):
-        for component in _list_entries(_get_child(group.value, "components")):
+    for group in list_entries(document.root, "groups"):
+        for component in list_entries(group.value, "components"):
             body = component.value
-            inputs, outputs = _get_child(body, "inputs"), _get_child(body, "outputs")
+            inputs, outputs = find_value(body, "inputs"), find_value(body, "outputs")
             # What holds components passes on what they send: its outputs are references, and its inputs may be types.
             is_leaf = isinstance(body, MappingNode) and _HOLDING_KEYS.isdisjoint(body.entries)
             if isinstance(body, MappingNode) and is_leaf and _are_references(outputs) and _are_types(inputs):
@@ -306,7 +305,7 @@ def _diagnose_exchange(component: MappingNode, component_id: str) -> Diagnostic:
 def _are_references(ports: YamlNode | None) -> bool:
     """Whether every port says where something comes from, and at least one by a dotted path."""
     has_dotted_path = False
-    for port in _list_entries(ports):
+    for port in list_entries(ports):
         for text in _list_texts(port.value, "from"):
             # Nearly always true of the first output: it has a type, and nothing else is looked at.
             if _TYPE_SIGN.search(text):
@@ -317,9 +316,9 @@ def _are_references(ports: YamlNode | None) -> bool:
 
 def _are_types(ports: YamlNode | None) -> bool:
     """Whether every port says of what type it is, and at least one by a text that no reference can be."""
-    types = [text for port in _list_entries(ports) for text in _list_texts(port.value, "type")]
+    types = [text for port in list_entries(ports) for text in _list_texts(port.value, "type")]
     names_source = any(
-        "from" in port.value.entries for port in _list_entries(ports) if isinstance(port.value, MappingNode)
+        "from" in port.value.entries for port in list_entries(ports) if isinstance(port.value, MappingNode)
     )
     return not names_source and any(map(_TYPE_SIGN.search, types)) and not any(map(_DOTTED_PATH.match, types))
 
@@ -329,11 +328,3 @@ def _list_texts(port: YamlNode, key: str) -> list[str]:
     node = port.get(key) if isinstance(port, MappingNode) else port
     items = node.items if isinstance(node, SequenceNode) else [node]
     return [item.text for item in items if isinstance(item, ScalarNode) and item.value is not None]
-
-
-def _get_child(node: YamlNode, key: str) -> YamlNode | None:
-    return node.get(key) if isinstance(node, MappingNode) else None
-
-
-def _list_entries(node: YamlNode | None) -> list[MappingEntry]:
-    return list(node) if isinstance(node, MappingNode) else []

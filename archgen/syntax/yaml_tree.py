@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass
@@ -53,6 +53,10 @@ class MappingEntry:
         """Return the key, where it is written, with another value."""
         return MappingEntry(self.key, self.key_span, value)
 
+    def with_entries(self, entries: dict[str, MappingEntry]) -> MappingEntry:
+        """Return the key, where it is written, with a mapping of other entries in the place of its value."""
+        return self.with_value(MappingNode(entries, self.value.span))
+
 
 @dataclass(slots=True)
 class MappingNode:
@@ -71,6 +75,10 @@ class MappingNode:
     def with_entries(self, entries: dict[str, MappingEntry]) -> MappingNode:
         """Return the mapping, where it is written, with other entries."""
         return MappingNode(entries, self.span, self.declares)
+
+    def without(self, *keys: str) -> MappingNode:
+        """Return the mapping without some keys."""
+        return MappingNode({key: entry for key, entry in self.entries.items() if key not in keys}, self.span)
 
     def __iter__(self) -> Iterator[MappingEntry]:
         """Iterate over the entries (not the keys), in order."""
@@ -109,6 +117,35 @@ def list_spans(node: YamlNode) -> Iterator[Span]:
             yield from list_spans(item)
     else:
         yield node.span
+
+
+def find_value(node: YamlNode | None, *path: str) -> YamlNode | None:
+    """Return what stands in a tree at a path of keys, None where it leads nowhere."""
+    for key in path:
+        if not isinstance(node, MappingNode):
+            return None
+        node = node.get(key)
+    return node
+
+
+def list_entries(node: YamlNode | None, *path: str) -> tuple[MappingEntry, ...]:
+    """Return the entries of the mapping that stands in a tree at a path of keys; of anything else none."""
+    found = find_value(node, *path)
+    return tuple(found) if isinstance(found, MappingNode) else ()
+
+
+def change_at(node: YamlNode, path: Sequence[str], change: Callable[[YamlNode], YamlNode]) -> YamlNode:
+    """Return a tree with what stands at a path of keys changed; `*` stands for each key. The tree itself is not changed."""
+    if not path:
+        return change(node)
+    if not isinstance(node, MappingNode):
+        return node
+    changed = {
+        entry.key: entry.with_value(value)
+        for entry in node
+        if path[0] in {"*", entry.key} and (value := change_at(entry.value, path[1:], change)) is not entry.value
+    }
+    return node.with_entries({**node.entries, **changed}) if changed else node
 
 
 def node_to_data(node: YamlNode) -> object:

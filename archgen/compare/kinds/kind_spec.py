@@ -42,10 +42,6 @@ def _no_components(_element: object, _context: ReadContext) -> tuple[str, ...]:
     return ()
 
 
-def _always(_element: object) -> bool:
-    return True
-
-
 @dataclass(frozen=True, slots=True)
 class KindSpec:
     """One kind of element. `elements` lists those of a version by id; None: they are found with other elements."""
@@ -76,7 +72,7 @@ class KindSpec:
     """Returns the common id of the partner."""
     components: Callable[[Any, ReadContext], tuple[str, ...]] = _no_components
     """Returns the common ids of the components behind an element."""
-    is_declared: Callable[[Any], bool] = _always
+    is_declared: Callable[[Any], bool] = lambda _: True
     """False for what exists without a declaration (a type that is only used)."""
     like: str = ""
     """The described kind whose keys it has, if not its own."""

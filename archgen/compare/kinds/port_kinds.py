@@ -14,10 +14,6 @@ from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Input, Output
 
 
-def _port_owner(port: Input | Output, context: ReadContext) -> str | None:
-    return context.common_id("partner", context.architecture.components[port.component].owner)
-
-
 def _port_parent(port: Input | Output, context: ReadContext) -> tuple[str, str]:
     return ("component", context.matched_ids.common_id("component", port.component))
 
@@ -43,7 +39,7 @@ def _make_port_kind(
         parent_kind="component",
         stays_in_parent=True,
         parent=_port_parent,
-        owner=_port_owner,
+        owner=lambda port, context: context.common_id("partner", context.architecture.components[port.component].owner),
         components=lambda port, context: (_port_parent(port, context)[1],),
     )
 

@@ -45,14 +45,6 @@ def _read_agreements(_project: ProjectInfo, context: ReadContext) -> Mapping[str
     return values
 
 
-def _read_parameters(_project: ProjectInfo, context: ReadContext) -> Mapping[str, object]:
-    return {value.name: freeze_value(value.value) for value in context.architecture.ros_parameters}
-
-
-def _read_environment(_project: ProjectInfo, context: ReadContext) -> Mapping[str, object]:
-    return {each.name: each.value for each in context.architecture.ros_environment}
-
-
 def _read_declared_properties(_project: ProjectInfo, context: ReadContext) -> Mapping[str, object]:
     """Return what is declared of properties: that there is one by its id, what is said of it by `id:key`."""
     values: dict[str, object] = {}
@@ -70,10 +62,6 @@ def _read_declared_properties(_project: ProjectInfo, context: ReadContext) -> Ma
         }
         values |= {f"{name}:{key}": freeze_value(value) for key, value in facets.items() if value is not None}
     return values
-
-
-def _read_glossary(_project: ProjectInfo, context: ReadContext) -> Mapping[str, object]:
-    return {each.term: normalize_text(each.text) for each in context.architecture.glossary.values()}
 
 
 def _read_site(_project: ProjectInfo, context: ReadContext) -> Mapping[str, object]:
@@ -100,16 +88,25 @@ def _group_accepted(review: ReviewSettings) -> Mapping[str, list[str]]:
 # Sections, and parts of sections, that belong to no other element.
 _SETTING_KEYS = (
     KeySpec("distro", lambda _, context: context.architecture.distro, noun="ROS distribution"),
-    KeySpec("environment.", _read_environment),
+    KeySpec(
+        "environment.", lambda _, context: {each.name: each.value for each in context.architecture.ros_environment}
+    ),
     KeySpec("shared_topics", lambda _, context: unordered_values(context.architecture.shared_topics)),
-    KeySpec("parameters.", _read_parameters),
+    KeySpec(
+        "parameters.",
+        lambda _, context: {value.name: freeze_value(value.value) for value in context.architecture.ros_parameters},
+    ),
     KeySpec("layout", lambda _, context: context.architecture.layout.direction, Effect.TEXT),
     KeySpec("chapters", lambda _, context: context.version.chapter_order),
     KeySpec("review.", _read_review),
     KeySpec("agreements.", _read_agreements, noun="agreement"),
     KeySpec("site.", _read_site, Effect.TEXT),
     KeySpec("properties.", _read_declared_properties),
-    KeySpec("glossary.", _read_glossary, Effect.TEXT),
+    KeySpec(
+        "glossary.",
+        lambda _, context: {each.term: normalize_text(each.text) for each in context.architecture.glossary.values()},
+        Effect.TEXT,
+    ),
     KeySpec("rules.", lambda _, context: context.version.rule_settings),
 )
 PROJECT = KindSpec(

@@ -22,8 +22,8 @@ from archgen.compare.kinds.kind_spec import (
     value_feature,
 )
 from archgen.compare.normal_values import unordered_values
+from archgen.derivation.port_endpoints import flow_of_use
 from archgen.derivation.wire.remap_rules import NodeNames
-from archgen.derivation.writing_endpoints import flow_of_use
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.frozen import NamedTuple
 from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField
@@ -232,10 +232,6 @@ def _resolve_topics(port: NodePort, context: ReadContext) -> frozenset[str]:
     return unordered_values(wire.name or topic for wire, topic in wires)
 
 
-def _read_conditions(port: NodePort, _context: ReadContext) -> Mapping[str, object]:
-    return {name: format_parameter(wanted) or "no value" for name, wanted in port.use.when.items()}
-
-
 PORT = KindSpec(
     "port",
     "Nodes",
@@ -244,7 +240,12 @@ PORT = KindSpec(
         KeySpec("topic", _resolve_topics),
         KeySpec("own_name", lambda port, _: port.use.own_name, Effect.SYSTEM, noun="name in the program"),
         KeySpec("named_by", lambda port, _: port.use.named_by, Effect.SYSTEM, noun="parameter with its name"),
-        KeySpec("when.", _read_conditions, Effect.SYSTEM, noun="condition"),
+        KeySpec(
+            "when.",
+            lambda port, _: {name: format_parameter(wanted) or "no value" for name, wanted in port.use.when.items()},
+            Effect.SYSTEM,
+            noun="condition",
+        ),
         KeySpec("message", lambda port, _: port.use.message, worsening=Worsening.ALWAYS, verb="is"),
         KeySpec("qos.", _read_qos, worsening=Worsening.ALWAYS, noun="QoS"),
     ),

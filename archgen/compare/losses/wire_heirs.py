@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from archgen.compare.matched_ids import MatchedIds
-from archgen.compare.version_pair import ComparedElement, VersionPair
+from archgen.compare.version_pair import VersionPair
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint
 
@@ -39,7 +39,7 @@ def find_wire_heirs(
         candidates = [
             each.id
             for each in new_outputs
-            if _is_same_output(old_elements["output", name], each)
+            if all(old_elements["output", name].values.get(key) == each.values.get(key) for key in ("type", "medium"))
             and _continues_wire(name, wire, each.id, wires_after.get(each.id, frozenset()))
         ]
         if len(candidates) == 1:
@@ -63,11 +63,6 @@ def _describe_endpoint(endpoint: Endpoint) -> tuple[object, ...]:
     durations = [each and each.value for each in (qos.deadline, qos.lifespan, qos.lease_duration)]
     kept_qos = (qos.reliability, qos.durability, qos.history, qos.depth, qos.liveliness)
     return endpoint.label, endpoint.flow, endpoint.message, *kept_qos, *durations
-
-
-def _is_same_output(old_output: ComparedElement, new_output: ComparedElement) -> bool:
-    """Whether both carry the same type, into the same world."""
-    return all(old_output.values.get(key) == new_output.values.get(key) for key in ("type", "medium"))
 
 
 def _continues_wire(old_id: str, old_wire: Wire, new_id: str, new_wire: Wire) -> bool:

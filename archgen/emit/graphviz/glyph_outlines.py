@@ -22,11 +22,12 @@ _UNIT = 100
 def shorten_glyphs(svg: bytes) -> bytes:
     """Return an svg whose letters are outlined in steps, without those that no text has."""
     used_ids = set(_USE.findall(svg))
-    return _SYMBOL.sub(lambda found: _PATH.sub(_write_path, found[0]) if found[1] in used_ids else b"", svg)
-
-
-def _write_path(found: re.Match[bytes]) -> bytes:
-    return b' d="%s"' % shorten_path(found[1])
+    return _SYMBOL.sub(
+        lambda found: (
+            _PATH.sub(lambda found: b' d="%s"' % shorten_path(found[1]), found[0]) if found[1] in used_ids else b""
+        ),
+        svg,
+    )
 
 
 @lru_cache(4096)

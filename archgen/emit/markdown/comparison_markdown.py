@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from archgen.compare.edits import Edit
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.common_wording import join_words, keep_first
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.emit.markdown.comment_sentences import (
     ElementNames,
@@ -86,9 +86,7 @@ def _heading_line(document: ComparisonDocument) -> str:
 
 
 def _join_partners(partners: Sequence[str]) -> str:
-    shown_names = [write_sentence(name) for name in partners[:_SHOWN_PARTNERS]]
-    surplus = len(partners) - _SHOWN_PARTNERS
-    return join_words([*shown_names, *([f"{surplus} more"] if surplus > 0 else [])])
+    return join_words(keep_first([write_sentence(name) for name in partners], _SHOWN_PARTNERS))
 
 
 def _count_line(document: ComparisonDocument) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
 
+from archgen.diagnostics.common_wording import join_first
 from archgen.diagnostics.text_columns import TextRow, format_section
 from archgen.emit.terminal import chain_gaps, chain_remedies, timing_legend
 from archgen.emit.terminal.chain_gaps import describe_gaps
@@ -123,7 +124,7 @@ def _describe_unproven(load: HostLoad) -> str:
     """Say of a host that can do its work which of its elements are not proven to be done in time."""
     if load.verdict != "undecided" or not load.unproven:
         return ""
-    return f"the cores can do it; not proven to be done in time: {figure_wording.join_first_names(load.unproven)}"
+    return f"the cores can do it; not proven to be done in time: {join_first(load.unproven)}"
 
 
 def _format_bounds(load: HostLoad) -> str:
@@ -219,7 +220,7 @@ def _assumption_rows(analysis: Analysis) -> Iterator[TextRow]:
         )
     measured_ids = tuple(activity.id for activity in analysis.system.activities.values() if activity.wcet_measured)
     if measured_ids:
-        names = figure_wording.join_first_names(measured_ids)
+        names = join_first(measured_ids)
         yield (f"the execution time of {names} is the longest that was seen, and not proven",)
     joint_count = len(find_joint_nodes(analysis.system))
     if joint_count:
@@ -233,12 +234,12 @@ def _fault_lines(analysis: Analysis) -> Iterator[str]:
     for ring in analysis.deadlocked:
         yield f"deadlock: each waits for the other in {' > '.join(ring)}"
     if analysis.diverged:
-        yield f"no bound was found for {figure_wording.join_first_names(analysis.diverged)}"
+        yield f"no bound was found for {join_first(analysis.diverged)}"
 
 
 def format_missing(value: TimingValue) -> str:
     """Return which elements' figures a value lacks."""
-    return f"unknown: {figure_wording.join_first_names(value.missing)}" if value.missing and not value.complete else ""
+    return f"unknown: {join_first(value.missing)}" if value.missing and not value.complete else ""
 
 
 def format_figure(value: TimingValue | None, write: Callable[[Fraction], str] = figure_wording.format_duration) -> str:

@@ -276,14 +276,12 @@ def _resolve_component(
     if len(matching) == 1:
         return matching[0]
     if matching:
-        resolver.diagnostics.append(
-            Diagnostic(
-                "ambiguous-reference",
-                f"`{reference.text}` can mean {' or '.join(f'`{name}`' for name in matching)}",
-                reference.span,
-                help=f"write `{matching[0]}`, for instance",
-                element=node_id,
-            )
+        resolver.report(
+            "ambiguous-reference",
+            f"`{reference.text}` can mean {' or '.join(f'`{name}`' for name in matching)}",
+            reference.span,
+            help_line=f"write `{matching[0]}`, for instance",
+            element=node_id,
         )
     elif is_complete and not resolver.is_lost(reference.text):
         length = reference.text.count(".") + 1

@@ -100,7 +100,7 @@ class ElementRemover:
             for group in mapping_values.get_body(section)
             if group.key not in self.removed.groups
         }
-        return section.with_value(MappingNode(groups, section.value.span))
+        return section.with_entries(groups)
 
     def _prune_group(self, group: MappingEntry) -> MappingEntry:
         body = mapping_values.get_body(group)
@@ -163,10 +163,10 @@ class ElementRemover:
             is_same = len(entries) == len(mapping_values.get_body(port).entries) and all(
                 entries[key] is each for key, each in mapping_values.get_body(port).entries.items()
             )
-            kept[port.key] = port if is_same else port.with_value(MappingNode(entries, port.value.span))
+            kept[port.key] = port if is_same else port.with_entries(entries)
         if all(kept[port.key] is port for port in mapping_values.get_body(ports)):
             return ports
-        return ports.with_value(MappingNode(kept, ports.value.span))
+        return ports.with_entries(kept)
 
     def _prune_sources(
         self, entries: dict[str, MappingEntry], find_target: Callable[[ScalarNode], ElementRef | None]
@@ -308,7 +308,7 @@ class ElementRemover:
                 connects = body.entries["connects"]
                 shorter = connects.with_value(SequenceNode([*staying], connects.value.span))
                 kept[link.key] = link.with_value(body.with_entries({**body.entries, "connects": shorter}))
-        return section.with_value(MappingNode(kept, section.value.span))
+        return section.with_entries(kept)
 
 
 def _keep_entries(entries: dict[str, MappingEntry], key: str, is_kept: Callable[[MappingEntry], bool]) -> None:

@@ -195,7 +195,7 @@ class ChangeTargets:
             kept = {e.key: e for e in section.value if self._is_sound(kind, known, e)}
         else:
             return section
-        return section.with_value(MappingNode(kept, section.value.span))
+        return section.with_entries(kept)
 
     def _is_sound(self, kind: str, known_body: MappingNode, entry: MappingEntry) -> bool:
         body = mapping_values.get_body(entry)

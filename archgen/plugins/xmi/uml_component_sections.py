@@ -165,7 +165,7 @@ class ComponentSections:
             return body | make_hints(facts.element)
         if (
             get_kind(facts.element) == "Component"
-            and not _is_exported(facts)
+            and not get_id(facts.element).startswith(OWN_PREFIX)
             and facts.base is None
             and not features.list_sections()
         ):
@@ -271,7 +271,3 @@ def _keep_values(features: ClassFeatures) -> dict[str, object]:
 
 def _leave_out_empty(**sections: dict[str, object]) -> dict[str, object]:
     return {key: value for key, value in sections.items() if value}
-
-
-def _is_exported(facts: ClassFacts) -> bool:
-    return get_id(facts.element).startswith(OWN_PREFIX)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from archgen.diagnostics.common_wording import join_first
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node
 from archgen.model.port_media import is_physical
 from archgen.model.runtime_facts import count_node_threads, find_container_threads, find_library, find_usual_order
 from archgen.timing.analysis import Reason
-from archgen.timing.figures.figure_wording import join_first_names
 from archgen.timing.figures.tick_unit import choose_tick_unit
 from archgen.timing.system import message_sizes
 from archgen.timing.system.activity_builder import (
@@ -112,7 +112,7 @@ def _note_languages(architecture: Architecture) -> Iterator[Reason]:
     nodes = [each for each in architecture.nodes.values() if not each.container and count_node_threads(each) > 1]
     unsaid = tuple(each.id for each in nodes if each.language is None and (each.reentrant or len(each.implements) > 1))
     if unsaid:
-        names, at = join_first_names(unsaid), architecture.nodes[unsaid[0]].at
+        names, at = join_first(unsaid), architecture.nodes[unsaid[0]].at
         yield Reason(
             "no `language` is written for {0}: all threads compute at once, as in C++ and not in Python", at, (names,)
         )

@@ -14,7 +14,7 @@ from archgen.views.agreement.promise_rows import QOS_OFFERED, RATE, PromiseRow, 
 from archgen.views.element_references import message_link
 from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Column, Inlines, Status, Table, Text, drop_empty_columns
+from archgen.views.shapes import Column, Inlines, Status, Table, Text, drop_empty_columns, make_columns
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,15 +80,15 @@ def interface_link(terms: InterfaceTerms) -> Text:
 def make_given_table(lookup: Lookup, anchor: str, caption: str, interfaces: Sequence[InterfaceTerms]) -> Table:
     """List what one partner gives another: what is promised of it, what is derived, and what is still open."""
     rows = tuple(_given_row(lookup, terms) for terms in interfaces)
-    columns = (
-        Column("What flows", 1.7),
-        Column("Message, topic", 1.6),
-        Column("Promised", 0.8, "right"),
-        Column("Derived", 0.8, "right"),
-        Column("QoS promised", 0.9),
-        Column("Size", 0.6, "right"),
-        Column("Traffic", 0.7, "right"),
-        Column("Still open", 0.9),
+    columns = make_columns(
+        ("What flows", 1.7),
+        ("Message, topic", 1.6),
+        ("Promised", 0.8, "right"),
+        ("Derived", 0.8, "right"),
+        ("QoS promised", 0.9),
+        ("Size", 0.6, "right"),
+        ("Traffic", 0.7, "right"),
+        ("Still open", 0.9),
     )
     return drop_empty_columns(Table(anchor, caption, columns, rows))
 

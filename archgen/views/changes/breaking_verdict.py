@@ -6,7 +6,7 @@ import json
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from archgen.compare import Change, Comparison, PartnerBreak
+from archgen.compare import Change, Comparison
 from archgen.compare.agreements import (
     AgreementJudge,
     AgreementTarget,
@@ -94,7 +94,9 @@ def _find_refused_targets(comparison: Comparison) -> Mapping[str, Sequence[Agree
     for change in comparison.changes if comparison.is_judged else ():
         if not _is_acceptable(change):
             continue
-        refused_breaks = [each for each in change.breaks if each.agreement is None and _is_refused(each, comparison)]
+        refused_breaks = [
+            each for each in change.breaks if each.agreement is None and comparison.severity_of(each) is Severity.ERROR
+        ]
         for partner in dict.fromkeys(each.partner for each in refused_breaks):
             own_breaks = [each for each in refused_breaks if each.partner == partner]
             targets.setdefault(partner, {}).update(dict.fromkeys(list_agreement_targets(change, own_breaks)))
@@ -137,10 +139,6 @@ def write_policy(comparison: Comparison) -> str:
         return "`review.breaking: error`"
     refusing = [category for category in BREAK_CATEGORIES if policy.severity_of(category) is Severity.ERROR]
     return f"`review.breaking: {{{', '.join(f'{category}: error' for category in refusing)}}}`"
-
-
-def _is_refused(partner_break: PartnerBreak, comparison: Comparison) -> bool:
-    return comparison.severity_of(partner_break) is Severity.ERROR
 
 
 def describe_agreements(change: Change, comparison: Comparison) -> Iterator[str]:

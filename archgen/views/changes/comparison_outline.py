@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from archgen.compare.edits import Edit, EditKind
+from archgen.compare.edits import EditKind
 from archgen.views import inline_text
 from archgen.views.changes import comparison_document
 from archgen.views.changes.breaking_items import BreakingChange
@@ -113,15 +113,18 @@ def _change_section(document: ComparisonDocument) -> Section | None:
         Section(
             f"changes:{change_group.group_id or change_group.title}",
             (change_group.title or change_group.group_id) + (f" ({change_group.owner})" if change_group.owner else ""),
-            (Bullets(tuple(_change_runs(change, document) for change in change_group.changes)),),
+            (
+                Bullets(
+                    tuple(
+                        (*_sign_runs(change.kind), *_titled_runs(change.text, document))
+                        for change in change_group.changes
+                    )
+                ),
+            ),
         )
         for change_group in document.change_groups
     )
     return Section("changes:all", document.changes_heading, sections=sections) if sections else None
-
-
-def _change_runs(change: Edit, document: ComparisonDocument) -> Inlines:
-    return (*_sign_runs(change.kind), *_titled_runs(change.text, document))
 
 
 def _titled_runs(text: str, document: ComparisonDocument) -> Inlines:

@@ -88,13 +88,12 @@ def _list_flow_rows(architecture: Architecture, inputs: Numbers, outputs: Number
             if output in outputs and architecture.outputs[output].component == producer
         )
         if numbers and connection.input in inputs:
-            style = flow_style(architecture, _first_output(architecture, connection.outputs, producer))
+            style = flow_style(
+                architecture,
+                next(name for name in connection.outputs if architecture.outputs[name].component == producer),
+            )
             row = (_STYLES.index(style), inputs[connection.input], numbers)
             yield (*row, flow.medium) if flow.medium else row
-
-
-def _first_output(architecture: Architecture, output_ids: tuple[str, ...], producer: str) -> str:
-    return next(name for name in output_ids if architecture.outputs[name].component == producer)
 
 
 def _list_extra_steps(

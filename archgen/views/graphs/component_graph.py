@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Literal
 
+from archgen.diagnostics.common_wording import fit_lines
 from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.component_nesting import find_component
 from archgen.model.port_media import is_physical
@@ -126,9 +127,8 @@ def _draw_connection(lookup: Lookup, component: Component, port: Input, connecti
     side = _port_side(lookup, port)
     if connection.kind == "group":
         group_box = element_boxes.group_box(lookup, connection.target)
-        shown_types = types if len(types) <= _MAX_GROUP_TYPES else types[: _MAX_GROUP_TYPES - 1]
-        more = [f"and {len(types) - len(shown_types)} more"] if len(types) > len(shown_types) else []
-        box = replace(group_box, emphasis="neighbour", side=side, lines=("whole group", *shown_types, *more))
+        lines = ("whole group", *fit_lines(types, _MAX_GROUP_TYPES))
+        box = replace(group_box, emphasis="neighbour", side=side, lines=lines)
         label = "* all of these" if types else "*"
     else:
         producer = find_component(architecture, _component_of_target(lookup, connection))

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from typing import Literal
 
+from archgen.diagnostics.common_wording import fit_lines
 from archgen.frozen import dataclass
 from archgen.model import component_nesting
 from archgen.model.architecture import Architecture
@@ -142,11 +143,7 @@ def _bundle_label(bundle: list[ComponentFlow]) -> str:
 
 def join_type_names(names: Sequence[str]) -> str:
     """Return names of types, each on a line; of more than three the rest is counted."""
-    return (
-        "\n".join(names)
-        if len(names) <= _MAX_TYPE_LINES
-        else "\n".join([*names[:2], f"and {len(names) - 2} more types"])
-    )
+    return "\n".join(fit_lines(names, _MAX_TYPE_LINES, "and {} more types"))
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
 
+from archgen.diagnostics.common_wording import fit_lines
 from archgen.frozen import dataclass, replace
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.port_media import ROS, key_of_carrier, label_of_medium
@@ -133,15 +134,10 @@ def _draw_topics(
             yield replace(element_boxes.topic_box(topic, own_endpoints), id=f"topic {name}")
     for star in dict.fromkeys(star_of_topic.values()):
         names = [name for name, stands in star_of_topic.items() if stands == star]
-        shown_lines = (
-            names
-            if len(names) <= _MAX_LISTED_TOPICS
-            else [*names[: _MAX_LISTED_TOPICS - 1], f"and {len(names) - _MAX_LISTED_TOPICS + 1} more"]
-        )
         yield Box(
             f"topic {star}",
             f"* all topics of {star[2:]}",
-            tuple(shown_lines),
+            tuple(fit_lines(names, _MAX_LISTED_TOPICS)),
             style="topic",
             ref=f"node:{star[2:]}",
             tooltip="\n".join(names),

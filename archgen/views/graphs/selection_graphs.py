@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 
+from archgen.diagnostics.common_wording import fit_lines
 from archgen.model.architecture import View
 from archgen.model.component import Component
 from archgen.model.component_nesting import find_component
@@ -24,7 +25,7 @@ from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph
 
 _SMALL_PICTURE = (26, 45)
 """The most boxes and arrows of a small picture."""
-_TITLES_PER_BOX = 3
+_LINES_PER_BOX = 4
 
 
 def draw_functional_part(
@@ -162,15 +163,8 @@ def _colour_outer_arrow(lookup: Lookup, arrow: Arrow) -> Arrow:
 def _neighbour_group_box(lookup: Lookup, group: str, member_ids: Sequence[str]) -> Box:
     """Return the neighbours in one group as one grey box."""
     titles = [find_component(lookup.architecture, each).title for each in member_ids]
-    shown_titles = (
-        titles
-        if len(titles) <= _TITLES_PER_BOX + 1
-        else [*titles[:_TITLES_PER_BOX], f"and {len(titles) - _TITLES_PER_BOX} more"]
-    )
-    group_box = element_boxes.group_box(lookup, group)
-    return replace(
-        group_box, id=f"around {group}", emphasis="neighbour", lines=tuple(shown_titles), tooltip="\n".join(titles)
-    )
+    group_box, lines = element_boxes.group_box(lookup, group), tuple(fit_lines(titles, _LINES_PER_BOX))
+    return replace(group_box, id=f"around {group}", emphasis="neighbour", lines=lines, tooltip="\n".join(titles))
 
 
 def draw_implementation_part(lookup: Lookup, graph_id: str, title: str, node_ids: Collection[str]) -> Graph:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Literal
 
+from archgen.diagnostics.common_wording import fit_lines
 from archgen.frozen import replace
 from archgen.timing.system.timing_system import Arc
 from archgen.views.graphs import element_boxes
@@ -31,8 +32,8 @@ from archgen.views.timing import value_format
 from archgen.views.timing.timing_lookup import TimingLookup
 
 _MAX_ARCS = 45
-_MAX_NAMED = 3
-"""This many neighbours are named in a grey box."""
+_MAX_LINES = 4
+"""A grey box has no more lines than this with names of neighbours."""
 
 
 def draw_timing_graphs(
@@ -115,16 +116,11 @@ def _draw_selected_nodes(graph_data: TimingGraphData, node_ids: Collection[str])
 
 def _frame_of_neighbours(lookup: Lookup, frame: str, activity_ids: Sequence[str]) -> Box:
     """Return the neighbours in one frame as a grey box that names them."""
-    shown_ids = (
-        activity_ids
-        if len(activity_ids) <= _MAX_NAMED + 1
-        else [*activity_ids[:_MAX_NAMED], f"and {len(activity_ids) - _MAX_NAMED} more"]
-    )
     cluster = draw_home_frame(lookup, frame)
     return Box(
         f"around {frame}",
         cluster.title,
-        tuple(shown_ids),
+        tuple(fit_lines(activity_ids, _MAX_LINES)),
         style="group",
         emphasis="neighbour",
         ref=cluster.ref,

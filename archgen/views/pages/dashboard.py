@@ -25,6 +25,7 @@ from archgen.views.shapes import (
     Paragraph,
     Table,
     Text,
+    make_columns,
 )
 from archgen.views.tables import finding_tables, requirement_tables, statistics_tables
 from archgen.views.tables.statistics_tables import PROGRESS_STEPS
@@ -140,13 +141,13 @@ def _chain_card(lookup: Lookup) -> DashboardCard | None:
         for result in lookup.timing.chains[:_MAX_CHAINS]
         if result.id in lookup.architecture.chains
     )
-    columns = (
-        Column("Chain", 2.4),
-        Column("Of the deadline"),
-        Column("At the latest", 1, "right"),
-        Column("Deadline", 1, "right"),
-        Column("Margin", 1, "right"),
-        Column("Verdict"),
+    columns = make_columns(
+        ("Chain", 2.4),
+        "Of the deadline",
+        ("At the latest", 1, "right"),
+        ("Deadline", 1, "right"),
+        ("Margin", 1, "right"),
+        "Verdict",
     )
     table = Table("table:worst_chains", "Chains of effect, worst first", columns, rows)
     link = Text(f"All {len(lookup.timing.chains)}", ref="page:chains")

@@ -22,7 +22,6 @@ from archgen.views.pages.context_pages import HOME_CRUMB, FigureFilter, make_nod
 from archgen.views.pages.matrix_pages import make_partner_matrix
 from archgen.views.shapes import (
     Block,
-    Column,
     Dashboard,
     DashboardCard,
     Facts,
@@ -35,6 +34,7 @@ from archgen.views.shapes import (
     Table,
     Text,
     drop_empty_columns,
+    make_columns,
 )
 
 MAX_INTERFACE_PAGES = 2_000
@@ -85,13 +85,13 @@ def _overview_page(lookup: Lookup, exchanges: Sequence[PartnerExchange]) -> Page
         )
         for exchange in ranked
     )
-    columns = (
-        Column("Between", 2),
-        Column("The first gives", 0.8, "right"),
-        Column("The second gives", 0.8, "right"),
-        Column("Rates promised", 0.8, "right"),
-        Column("QoS promised", 0.8, "right"),
-        Column("Open points", 0.7, "right"),
+    columns = make_columns(
+        ("Between", 2),
+        ("The first gives", 0.8, "right"),
+        ("The second gives", 0.8, "right"),
+        ("Rates promised", 0.8, "right"),
+        ("QoS promised", 0.8, "right"),
+        ("Open points", 0.7, "right"),
     )
     table = Table("table:pairs", "Pairs of partners, most open points first", columns, rows)
     count = inline_text.count_noun(sum(len(exchange.interfaces) for exchange in exchanges), "interface")
@@ -283,11 +283,8 @@ def _exchange_table(lookup: Lookup, partner: Partner, exchanges: Sequence[Partne
         )
         for exchange in sorted(exchanges, key=lambda exchange: -exchange.open_count)
     )
-    columns = (
-        Column("With", 1.4),
-        Column("Gives", 0.7, "right"),
-        Column("Takes", 0.7, "right"),
-        Column("Open points", 0.8, "right"),
+    columns = make_columns(
+        ("With", 1.4), ("Gives", 0.7, "right"), ("Takes", 0.7, "right"), ("Open points", 0.8, "right")
     )
     return Table(f"table:exchanges/{partner.id}", f"What {partner.title} gives and takes", columns, rows)
 

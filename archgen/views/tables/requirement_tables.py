@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable, Iterator
 from archgen.model.requirement import Requirement, TreeRow, add_above, walk_tree
 from archgen.views import inline_text, requirement_servers
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Column, Inlines, Table, Text, drop_empty_columns
+from archgen.views.shapes import Column, Inlines, Table, Text, drop_empty_columns, make_columns
 
 _INDENT = "\u2003"
 _MAX_INDENT = 6
@@ -18,13 +18,8 @@ def make_requirement_table(lookup: Lookup, selected_requirements: Iterable[Requi
     """List requirements with what serves and verifies them: as a tree where some are part of others."""
     selected = {requirement.id: requirement for requirement in selected_requirements}
     rows = tuple(_make_row(lookup, selected[row.id], row) for row in _order_rows(lookup, selected))
-    columns = (
-        Column("Id", 0.5),
-        Column("Requirement", 1.8),
-        Column("Use cases", 1.0),
-        Column("Served by", 1.8),
-        Column("Verified by", 1.4),
-        Column("State", 0.7),
+    columns = make_columns(
+        ("Id", 0.5), ("Requirement", 1.8), ("Use cases", 1.0), ("Served by", 1.8), ("Verified by", 1.4), ("State", 0.7)
     )
     if not rows:
         return None

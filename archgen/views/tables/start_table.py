@@ -10,7 +10,7 @@ from archgen.bringup.start_plan import make_start_plan
 from archgen.model.start_up import PHASES
 from archgen.views import inline_text, start_phrases
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Block, Bullets, Column, Inlines, Paragraph, Table, Text
+from archgen.views.shapes import Block, Bullets, Inlines, Paragraph, Table, Text, make_columns
 
 _LEAD = (
     "The steps of the start-up in an order in which they can be started one by one. A phase begins when all of the one before is "
@@ -18,13 +18,7 @@ _LEAD = (
 )
 _MAX_WAITS = 8
 """So many steps are named for which one step waits, those that are needed most first; the rest is counted."""
-_COLUMNS = (
-    Column("Step", 0.4, "right"),
-    Column("What starts", 1.4),
-    Column("How", 2.2),
-    Column("Waits for", 2),
-    Column("Up when", 1.4),
-)
+_COLUMNS = make_columns(("Step", 0.4, "right"), ("What starts", 1.4), ("How", 2.2), ("Waits for", 2), ("Up when", 1.4))
 
 
 def make_start_blocks(lookup: Lookup) -> list[Block]:

@@ -192,10 +192,8 @@ def _legend_keys(result: ChainResult) -> Iterator[str]:
     for kind in _TERM_KINDS:
         if any(getattr(term, kind).value for term in result.terms):
             yield kind
-    if any(_has_unknown_part(term) for term in result.terms) or not result.bound.complete:
+    if (
+        any(any(value.value is None for value in (term.sampling, term.response, term.link)) for term in result.terms)
+        or not result.bound.complete
+    ):
         yield "unknown"
-
-
-def _has_unknown_part(term: ChainTerm) -> bool:
-    """Whether any part of a step is unknown."""
-    return any(value.value is None for value in (term.sampling, term.response, term.link))

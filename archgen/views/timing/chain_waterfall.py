@@ -66,7 +66,10 @@ def make_waterfall(lookup: Lookup, timing_lookup: TimingLookup, result: ChainRes
         return None
     advice = advise_on_chain(timing_lookup.analysis, result)
     lead = advice.lateness if advice else chain_charts.describe_chain_verdict(result, timing_lookup)
-    total, deadline = _sum_known(result.terms), result.deadline.value if result.deadline else None
+    total, deadline = (
+        sum_fractions(map(chain_charts.sum_known_parts, result.terms)),
+        result.deadline.value if result.deadline else None,
+    )
     axis = _make_axis(result.terms, total)
     step_limit = axis.find_share(deadline) if deadline is not None and deadline <= total else None
     whole = max(total, deadline or Fraction(0)) or Fraction(1)
@@ -95,10 +98,6 @@ def _describe_cut(axis: _CutAxis) -> str:
         if start
         else f"The first {length} are drawn short."
     )
-
-
-def _sum_known(terms: Sequence[ChainTerm]) -> Fraction:
-    return sum_fractions(map(chain_charts.sum_known_parts, terms))
 
 
 def _format_time(time: Fraction) -> str:

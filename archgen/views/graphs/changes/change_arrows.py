@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from archgen.diagnostics.common_wording import fit_lines
 from archgen.frozen import dataclass
 from archgen.views.changes.change_wording import BREAK_SIGN, CHANGE_SIGNS
 from archgen.views.graphs.drawn_level import FlowStyle
@@ -63,7 +64,4 @@ def _draw_bundle(key: ArrowKey, bundle: Sequence[ConnectionLine]) -> Arrow:
 
 def _bundle_label(bundle: Sequence[ConnectionLine], sign: str) -> str:
     labels = list(dict.fromkeys(line.label for line in bundle if line.label))
-    shown_labels = (
-        labels if len(labels) <= _MAX_LABELS else [*labels[: _MAX_LABELS - 1], f"{len(labels) - _MAX_LABELS + 1} more"]
-    )
-    return "\n".join(f"{sign} {name}" for name in shown_labels)
+    return "\n".join(f"{sign} {name}" for name in fit_lines(labels, _MAX_LABELS, "{} more"))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from archgen.compare import Comparison
+from archgen.diagnostics.common_wording import fit_lines
 from archgen.frozen import dataclass, replace
 from archgen.model.component import Component
 from archgen.views.changes.change_wording import BREAK_SIGN, CHANGE_SIGNS
@@ -75,14 +76,7 @@ def _find_loose_ports(comparison: Comparison, lines: Sequence[ConnectionLine]) -
             if change.kind == "removed":
                 component = comparison.matched_ids.common_id("component", component)
             ports.setdefault(component, []).append(f"{CHANGE_SIGNS[change.kind]} {change.element_kind} {name}")
-    return {name: _shorten_list(words) for name, words in ports.items()}
-
-
-def _shorten_list(words: Sequence[str]) -> tuple[str, ...]:
-    """Return a few lines; the last one counts those that are left out."""
-    if len(words) <= _MAX_LINES:
-        return tuple(words)
-    return (*words[: _MAX_LINES - 1], f"{len(words) - _MAX_LINES + 1} more ports")
+    return {name: tuple(fit_lines(words, _MAX_LINES, "{} more ports")) for name, words in ports.items()}
 
 
 def draw_component_changes(comparison: Comparison, budget: PictureBudget) -> Graph | None:
