@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from heapq import heapify, heappop, heappush
 
 from archgen.bringup.plan_shapes import FIRM_NEED, AwaitedStep, DroppedWait, StartPlan, StartStep, StepKind, Wait
@@ -21,6 +20,7 @@ from archgen.bringup.start_commands import (
 from archgen.bringup.wait_circles import StartWaits, group_by_waiting, keep_acyclic, name_container
 from archgen.derivation.wire.remap_rules import NodeNames
 from archgen.derivation.wire.running_state import find_environment
+from archgen.frozen import replace
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Container
 from archgen.model.node import Node

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.asked_limits import compare_limits
 from archgen.compare.boundary_changes import find_boundary_changes
@@ -20,6 +18,7 @@ from archgen.compare.timing_changes import add_chain_causes, compare_chains, fin
 from archgen.compare.timing_pair import analyse_timing_pair
 from archgen.compare.type_edits import trace_origins
 from archgen.diagnostics.diagnostic import Severity
+from archgen.frozen import replace
 from archgen.model.review_settings import AcceptedChange
 
 

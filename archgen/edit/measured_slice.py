@@ -8,7 +8,6 @@ Sort measured execution times: which of them a slice may hold, and which of them
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import field, replace
 from fractions import Fraction
 from typing import Any
 
@@ -18,7 +17,7 @@ from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.edit.edit_proof import list_new_errors, list_written_nodes, load_with_text
 from archgen.emit.own_file_marks import MEASURED_HEADER
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field, replace
 from archgen.model.declared_timing import Timing
 from archgen.model.node import Node
 from archgen.model.quantity import parse_quantity

@@ -6,12 +6,11 @@ Read the values of overrides, and say what is wrong with them.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.suggestions import did_you_mean
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.declared_timing import EXECUTOR_ORDERS, HOST_ORDERS, RESOURCE_ORDERS
 from archgen.model.deployment import Container, Host

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import field
 from typing import Literal
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.model import port_media
 from archgen.model.agreed_terms import Agreement
 from archgen.model.component import Component, ComponentType, Connection, DiagramLayout, Group, Input, Output

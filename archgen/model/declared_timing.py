@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
 from fractions import Fraction
 from typing import Literal
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.model.quantity import Quantity
 
 ActivityBehaviour = Literal["periodic", "event", "on_demand", "once"]

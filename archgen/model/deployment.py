@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.model.declared_timing import SchedulingOrder
 from archgen.model.element_annotations import NO_ANNOTATIONS, ElementAnnotations
 from archgen.model.quantity import Quantity

@@ -9,7 +9,6 @@ import contextlib
 import json
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,6 +16,7 @@ from archgen.cache.file_store import FileStore, digest_bytes, digest_text
 from archgen.cache.program_stamp import stamp_program
 from archgen.emit import file_tree
 from archgen.emit.file_tree import OutputError
+from archgen.frozen import replace
 from archgen.pipeline import CheckedProject
 from archgen.products import project_views, report_cache
 from archgen.products.product_inputs import Product, ProductInputs

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import field
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from archgen.emit.file_tree import FileTree
 from archgen.emit.picture import Picture
-from archgen.frozen import dataclass, replace
+from archgen.frozen import dataclass, field, replace
 from archgen.pipeline import CheckedProject
 from archgen.products import project_views
 from archgen.products.output_options import OutputOptions

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import fnmatch
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from archgen.emit import file_tree
 from archgen.emit.picture import Picture
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.pipeline import CheckedProject
 from archgen.products import report_cache
 from archgen.products.leaving_links import refuse_leaving_links

@@ -9,11 +9,10 @@ import re
 from bisect import bisect_left
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import field
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import SourceTexts, Span
-from archgen.frozen import dataclass, replace
+from archgen.frozen import dataclass, field, replace
 from archgen.model.agreed_terms import is_signature_file
 from archgen.model.review_settings import is_agreement_file
 from archgen.project.project_search import PROJECT_FILE

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import field
 from typing import TypeVar
 
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.frozen import dataclass, replace
+from archgen.frozen import dataclass, field, replace
 from archgen.model.architecture import Architecture, Chain
 from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.component_nesting import find_component, list_members, list_surrounding, list_written_connections

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import fields
 from typing import TypeVar
 
 from archgen.compare.architecture_version import ArchitectureVersion
@@ -25,7 +24,7 @@ from archgen.compare.normal_values import unordered_values
 from archgen.derivation.port_endpoints import flow_of_use
 from archgen.derivation.wire.remap_rules import NodeNames
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.frozen import NamedTuple
+from archgen.frozen import NamedTuple, fields
 from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Node, PortUse, Qos

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
 
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_sorted_names
 from archgen.compare.losses.composed_places import find_component_renames, needs_other_id
 from archgen.compare.version_pair import ElementKey
-from archgen.frozen import NamedTuple
+from archgen.frozen import NamedTuple, replace
 from archgen.model.component import Connection
 
 _UNMADE_NOTE = "; `autoconnect` joined them, and does no more"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import field
 from functools import cache
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -14,7 +13,7 @@ from archgen.emit.safe_names import make_safe_path
 from archgen.emit.site.html_text import escape_html, web_address
 from archgen.emit.site.page_links import CurrentPage
 from archgen.emit.term_mentions import MentionFinder, begin_text
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.views.shapes import Markdown
 
 if TYPE_CHECKING:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from archgen.compose import ExpandedProject
 from archgen.compose.library_types import library_of_type
+from archgen.frozen import replace
 from archgen.link import mapping_values
 from archgen.link.declare.handed_parameters import declare_parameters
 from archgen.link.promise_reading import read_deprecation

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
 from typing import TYPE_CHECKING, TypeVar
 
 from archgen.compose.expanded_project import ComponentShell
-from archgen.frozen import NamedTuple, dataclass, replace
+from archgen.frozen import NamedTuple, dataclass, field, replace
 from archgen.link import mapping_values
 from archgen.link.declare.handed_parameters import HandedParameters
 from archgen.link.declare.promise_declaration import PromisedOutputs

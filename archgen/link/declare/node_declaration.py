@@ -7,11 +7,10 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.declare.component_nodes import ImplementingNodes
 from archgen.link.declare.start_declaration import declare_start, read_command

@@ -7,14 +7,13 @@ that replace deprecated ones.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from itertools import chain
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import first_written_span
 from archgen.diagnostics.suggestions import find_closest
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.link import mapping_values
 from archgen.link.data_types.field_reading import TypeReading, read_type_content
 from archgen.link.data_types.field_types import (

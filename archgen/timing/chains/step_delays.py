@@ -8,11 +8,10 @@ Hard Real-time Distributed Automotive Systems", DAC 2007: T_i + R_i for each ele
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field, replace
 from fractions import Fraction
 
 from archgen.diagnostics.source_span import Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field, replace
 from archgen.timing.analysis import Analysis, RunResponse
 from archgen.timing.chains.trigger_arrivals import TriggerArrivals
 from archgen.timing.figures import figure_wording

@@ -13,9 +13,8 @@ activation no longer than the longest use of each other thread, and its own.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
 
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.busy_windows import SearchBudget

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from archgen.frozen import replace
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.load.inner_core import InnerCore, prepare_inner_core

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache
 
-from archgen.frozen import NamedTuple, dataclass
+from archgen.frozen import NamedTuple, dataclass, replace
 from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, sum_ratios, unite_causes
 from archgen.timing.load.busy_windows import ActivityWork, WorstActivation

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
 from fractions import Fraction
 
-from archgen.frozen import NamedTuple, dataclass
+from archgen.frozen import NamedTuple, dataclass, replace
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
 from archgen.timing.load.event_streams import EventStream, EventStreams, max_arrivals

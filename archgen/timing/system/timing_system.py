@@ -7,12 +7,11 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
-from dataclasses import field
 from fractions import Fraction
 from typing import Literal
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.model.declared_timing import ActivityBehaviour, SchedulingOrder
 from archgen.model.node import FlowKind
 from archgen.model.runtime_facts import RCLCPP, ClientLibrary

@@ -7,11 +7,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import field
 
 from archgen.compare.comparison import ChangeKind
 from archgen.compare.matched_ids import MatchedIds
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.model.agreed_terms import RULES
 from archgen.views.agreement.interface_record import InterfaceKey, InterfaceRecord
 from archgen.views.agreement.plain_terms import PlainTerm

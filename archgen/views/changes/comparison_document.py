@@ -8,14 +8,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import field
 
 from archgen.compare import Change, Comparison
 from archgen.compare.edits import Edit, list_edits
 from archgen.compare.element_sentences import is_read_by_others
 from archgen.compare.figure_noise import FigureNoise
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.views.changes import breaking_verdict
 from archgen.views.changes.boundary_lines import write_boundary_lines
 from archgen.views.changes.breaking_items import (

@@ -14,8 +14,8 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 
+from archgen.frozen import replace
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun
 from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph

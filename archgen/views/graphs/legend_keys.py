@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import get_args
 
+from archgen.frozen import replace
 from archgen.views.picture_shapes import Arrow, Box, ElementChange, Graph, PeriodStep
 
 _BADGE_KEYS = ("badge:error", "badge:warning", "badge:note", "badge:inside")

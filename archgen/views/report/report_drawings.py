@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import replace
 
+from archgen.frozen import replace
 from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import Arrow, Box, Drawing, Graph, SequenceChart
