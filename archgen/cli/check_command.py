@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import sys
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
@@ -13,6 +12,7 @@ import click
 from archgen.cli import command_support, finding_documents, shared_options
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.safe_text import make_visible
+from archgen.frozen import replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

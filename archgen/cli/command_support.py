@@ -52,12 +52,15 @@ def stand_or_exit(checked_project: CheckedProject, names: Sequence[str]) -> Chec
 
 def find_trusted_revision(project: Path | None, revision: str | None) -> TrustedRevision | None:
     """Read what a revision says about the project's own backends; None if none is given: then all may run."""
+    if not revision:
+        return None
     from archgen import git
     from archgen.products import trusted_backends
 
     if not revision:
         return None
     with explain_wrong_usage(git.GitError):
+    try:
         return trusted_backends.read_trusted_revision(project, revision)
 
 

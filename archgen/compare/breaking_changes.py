@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 
 from archgen.compare.agreements import AgreementJudge, names_change
 from archgen.compare.comparison import ChainChange, Change, Comparison, LimitChange, PartnerBreak
@@ -41,6 +40,7 @@ from archgen.compare.losses.weakened_outputs import find_weakened_outputs, find_
 from archgen.compare.losses.weakened_words import find_weakened_words
 from archgen.compare.timing_pair import TimingPair
 from archgen.diagnostics.diagnostic import Severity
+from archgen.frozen import replace
 from archgen.model.review_settings import AcceptedChange, BreakPolicy, ReviewSettings
 
 _LOSS_FINDERS = (

@@ -22,7 +22,7 @@ from archgen.compare.timing_pair import analyse_timing_pair
 from archgen.compare.type_edits import trace_origins
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.finding_identity import identify_finding, match_findings
-from archgen.frozen import NamedTuple
+from archgen.frozen import NamedTuple, replace
 from archgen.model.review_settings import AcceptedChange
 
 

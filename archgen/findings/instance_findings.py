@@ -5,12 +5,12 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
 
 from archgen.analyses import NO_LONGER_LOOKED_FOR
 from archgen.diagnostics.common_wording import join_words, keep_first
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import Span
+from archgen.frozen import replace
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 

@@ -88,6 +88,8 @@ def start_products(inputs: ProductInputs, products: Sequence[Product]) -> Starte
     shown_products = [product for product in products if product.picture_formats is not None]
     if not shown_products:
         return StartedProducts({product.name: product.start(inputs) for product in products}, DrawnPictures())
+    # Imported here: where nothing is drawn, it is half of what would be loaded of Python.
+
     from archgen.emit import graphviz
 
     # Workers start before the views are made: both take long.

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from itertools import combinations
+from typing import TYPE_CHECKING
 
 from archgen import git
 from archgen.diagnostics.common_wording import shorten_hash
-from archgen.findings import rule_pages
 from archgen.frozen import dataclass, replace
 from archgen.git.project_revision import find_revision, find_revision_date
-from archgen.git.tag_list import list_tags_below
-from archgen.history import count_history
 from archgen.model import selector_evaluation
-from archgen.model.partner_interfaces import PartnerPair
 from archgen.model.project_history import History
 from archgen.model.selector_evaluation import Selection
 from archgen.model.selector_parser import SelectorProblem
@@ -21,15 +18,14 @@ from archgen.model.source_repository import SourceRepository
 from archgen.pipeline import CheckedProject, index_all_rules
 from archgen.products import report_cache
 from archgen.products.output_options import OutputOptions
-from archgen.project import ProjectNotFoundError
-from archgen.views import drawing_set
-from archgen.views.agreement.signature_record import SignedTag
-from archgen.views.lookup import DocumentScope, Lookup, add_timing, make_lookup
-from archgen.views.pages.report_outline import DetailLevel, DocumentEdition
-from archgen.views.pages.variant_chapter import VariantDifference
-from archgen.views.picture_shapes import Drawing
-from archgen.views.tables import statistics_tables
-from archgen.views.timing.timing_lookup import add_late_runs, complete_with_chains
+
+if TYPE_CHECKING:
+    from archgen.model.partner_interfaces import PartnerPair
+    from archgen.views.agreement.signature_record import SignedTag
+    from archgen.views.lookup import Lookup
+    from archgen.views.pages.report_outline import DetailLevel, DocumentEdition
+    from archgen.views.pages.variant_chapter import VariantDifference
+    from archgen.views.picture_shapes import Drawing
 
 _SHORT_HASH_LENGTH = 10
 """Digits of a commit's hash that are printed: enough to be unique in a repository of this size."""
@@ -55,6 +51,8 @@ def select_elements(
 
 def make_scoped_lookup(checked_project: CheckedProject, options: OutputOptions) -> Lookup:
     """Build the look-ups for the selected part of a project."""
+    from archgen.views.lookup import DocumentScope, make_lookup
+
     scope = (
         DocumentScope(options.selection.components, options.selection.nodes, options.selector_text)
         if options.selection
@@ -79,6 +77,11 @@ def make_views(
 
     There is no drawing of the `undrawn_kinds`.
     """
+    from archgen.views import drawing_set
+    from archgen.views.lookup import add_timing
+    from archgen.views.tables import statistics_tables
+    from archgen.views.timing.timing_lookup import add_late_runs, complete_with_chains
+
     timing_lookup = add_late_runs(complete_with_chains(checked_project.analysis, checked_project.architecture))
     lookup = replace(
         add_timing(make_scoped_lookup(checked_project, options), timing_lookup),
@@ -124,6 +127,9 @@ def make_edition(
 ) -> DocumentEdition:
     """Say what documents contain beside the architecture."""
     found_rules = {finding.rule for finding in checked_project.findings}
+    from archgen.views.pages.report_outline import DocumentEdition
+    from archgen.views.tables import statistics_tables
+
     return DocumentEdition(
         revision=revision,
         level=level or "implementation",
@@ -155,6 +161,9 @@ def locate_repository(checked_project: CheckedProject) -> SourceRepository | Non
 
 def list_signed_tags(checked_project: CheckedProject) -> Mapping[PartnerPair, tuple[SignedTag, ...]]:
     """Return the tags that record signatures of two partners, newest first, by pairs in the order of their declaration."""
+    from archgen.git.tag_list import list_tags_below
+    from archgen.views.agreement.signature_record import SignedTag
+
     partners = checked_project.architecture.partners
     pairs = {f"{first}-{second}": (first, second) for first, second in combinations(partners, 2)}
     pairs |= {f"{second}-{first}": (first, second) for first, second in pairs.values()}
@@ -175,6 +184,18 @@ def _find_date(checked_project: CheckedProject, options: OutputOptions) -> str:
     return find_revision_date(checked_project.root, checked_project.input_files)
 
 
+def _format_rule_pages(checked_project: CheckedProject) -> Mapping[str, str]:
+    """Return the pages of the rules that found something, by name, without the titles."""
+    from archgen.findings import rule_pages
+
+    found_rules = {finding.rule for finding in checked_project.findings}
+    return {
+        rule.name: rule_pages.rule_page_to_markdown(rule).partition("\n")[2]
+        for rule in index_all_rules().values()
+        if rule.name in found_rules
+    }
+
+
 def _shows_history(checked_project: CheckedProject, options: OutputOptions) -> bool:
     """Whether documents show the history: not if it is not wanted, nor for a part, nor for a project from a commit."""
     return options.show_history and options.selection is None and not checked_project.loaded_project.files.commit
@@ -182,6 +203,9 @@ def _shows_history(checked_project: CheckedProject, options: OutputOptions) -> b
 
 def read_history(checked_project: CheckedProject, options: OutputOptions) -> History:
     """Return how the project grew, month by month; empty where documents do not show it, and outside of a repository."""
+    from archgen.history import count_history
+    from archgen.project import ProjectNotFoundError
+
     if not _shows_history(checked_project, options):
         return History()
     try:

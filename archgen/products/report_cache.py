@@ -13,11 +13,14 @@ import os
 import zlib
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from archgen.cache.file_store import FileStore, digest_bytes
 from archgen.cache.program_stamp import stamp_writers
-from archgen.emit.picture import Picture
-from archgen.views.shapes import Outline
+
+if TYPE_CHECKING:
+    from archgen.emit.picture import Picture
+    from archgen.views.shapes import Outline
 
 ReportWithWarnings = tuple[bytes, tuple[str, ...]]
 """A report and the warnings of its writer."""

@@ -32,6 +32,7 @@ from archgen.emit.graphviz.placed_scene import Scene
 from archgen.emit.graphviz.png_writer import render_png
 from archgen.emit.graphviz.styled_graph import StyledGraph, style_graph
 from archgen.emit.picture import Picture
+from archgen.frozen import replace
 from archgen.views.picture_shapes import Chart, Drawing, Graph, SequenceChart
 
 _LAYOUT_FUNCTIONS = {

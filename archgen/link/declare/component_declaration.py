@@ -6,7 +6,7 @@ Declare groups and components as model objects.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from archgen.compose import ExpandedProject
 from archgen.compose.expanded_project import ComponentShell
@@ -14,16 +14,13 @@ from archgen.compose.library_types import library_of_type
 from archgen.compose.type_table import is_abstract, list_generic_names
 from archgen.frozen import NamedTuple, dataclass, field, replace
 from archgen.link import mapping_values
-from archgen.link.automatic_connections import join_ports
 from archgen.link.declare.handed_parameters import HandedParameters, declare_parameters
 from archgen.link.declare.promise_declaration import PromisedOutputs
 from archgen.link.declare.timing_declaration import declare_timing
 from archgen.link.element_outline import ElementOutline
 from archgen.link.input_wiring import InputWiring
 from archgen.link.link_memory import LinkedLeaf, LinkMemory
-from archgen.link.open_shells import OpenShells
 from archgen.link.port_resolution import PortResolver
-from archgen.link.port_sources import PortSources
 from archgen.link.promise_reading import read_deprecation
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.link.value_readers import read_element, read_operations, read_values
@@ -114,6 +111,9 @@ def _read_frames(body: MappingNode) -> Iterator[Frame]:
         yield Frame(**read_element("frame", Frame, entry, frame), rate=rate)
 
 
+if TYPE_CHECKING:
+    from archgen.link.open_shells import OpenShells
+
 _Port = TypeVar("_Port", Input, Output)
 
 
@@ -149,11 +149,17 @@ def declare_groups(
 
     Components that `memory` knows are taken over; it is for projects in which no component holds others.
     """
-    sources = None
+    sources = open_shells = None
     if outline.expansion:
+        # Imported here: in most projects no component holds others.
+        from archgen.link.automatic_connections import join_ports
+        from archgen.link.open_shells import OpenShells
+        from archgen.link.port_sources import PortSources
+
         sources = PortSources(outline, resolver, types)
         join_ports(outline, sources, resolver)
         sources.spread_media()
+        open_shells = OpenShells(outline, sources)
     wiring = InputWiring(outline, resolver, types, sources)
     group_declarer = _GroupDeclarer(
         outline,
@@ -164,7 +170,6 @@ def declare_groups(
         outside_readers=sources.list_given_outside() if sources else {},
         memory=None if sources else memory,
     )
-    open_shells = OpenShells(outline, sources) if sources else None
     groups = {name: group_declarer.declare_group(name, entry, open_shells) for name, entry in outline.groups.items()}
     components = {component.id: component for group in groups.values() for component in group.components.values()}
     shells = {shell.id: group_declarer.declare_shell(shell) for shell in outline.shells.values()}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 
 from archgen.bringup.plan_shapes import StartStep
-from archgen.bringup.start_plan import describes_start, make_start_plan
+from archgen.bringup.start_plan import make_start_plan
 from archgen.model.agreed_terms import GENERAL_TERMS, find_agreement
 from archgen.model.architecture import Architecture
 from archgen.model.setting_sharing import SharedFrame, find_shared_frames
@@ -183,7 +183,7 @@ _START_LEAD = (
 
 def list_start_steps(architecture: Architecture) -> dict[str, StartStep]:
     """Return the steps by id; none where the project does not describe its start-up."""
-    return {step.id: step for step in make_start_plan(architecture).steps} if describes_start(architecture) else {}
+    return {step.id: step for step in make_start_plan(architecture).steps} if architecture.describes_start() else {}
 
 
 def write_start_section(content: AgreementContent) -> Iterator[Section]:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 
 from archgen.compare.edits import EditKind
+from archgen.frozen import replace
 from archgen.views import inline_text
 from archgen.views.changes import comparison_document
 from archgen.views.changes.breaking_items import BreakingChange

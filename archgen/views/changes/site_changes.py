@@ -5,12 +5,12 @@ both versions of what changed side by side.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, get_args
 
 from archgen.compare import Change, Comparison
 from archgen.compare.text_meaning import find_differences
+from archgen.frozen import dataclass, replace
 from archgen.views import inline_text
 from archgen.views.changes.change_wording import CHANGE_SIGNS, choose_mark, text_runs
 from archgen.views.changes.comparison_document import ComparisonDocument

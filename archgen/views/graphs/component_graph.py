@@ -9,10 +9,10 @@ lists its types, with an asterisk on its arrow. Partners outside of the architec
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import Literal
 
 from archgen.diagnostics.common_wording import fit_lines
+from archgen.frozen import replace
 from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.component_nesting import find_component
 from archgen.model.port_media import is_physical

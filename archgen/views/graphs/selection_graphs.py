@@ -6,9 +6,9 @@ A small part is one flow with a label at each arrow. A large one has frames, and
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import replace
 
 from archgen.diagnostics.common_wording import fit_lines
+from archgen.frozen import replace
 from archgen.model.architecture import View
 from archgen.model.component import Component
 from archgen.model.component_nesting import find_component
