@@ -126,10 +126,11 @@ def make_edition(
     revision: str,
 ) -> DocumentEdition:
     """Say what documents contain beside the architecture."""
-    found_rules = {finding.rule for finding in checked_project.findings}
+    from archgen.findings import rule_pages
     from archgen.views.pages.report_outline import DocumentEdition
     from archgen.views.tables import statistics_tables
 
+    found_rules = {finding.rule for finding in checked_project.findings}
     return DocumentEdition(
         revision=revision,
         level=level or "implementation",

@@ -1,7 +1,4 @@
-"""Declare component types: what they are called, what they are made from, their ports and their settings.
-
-Declare groups and components as model objects.
-"""
+"""Declare groups and components as model objects, and component types with their ports and settings."""
 
 from __future__ import annotations
 
@@ -11,7 +8,6 @@ from typing import TYPE_CHECKING, TypeVar
 from archgen.compose import ExpandedProject
 from archgen.compose.expanded_project import ComponentShell
 from archgen.compose.library_types import library_of_type
-from archgen.compose.type_table import is_abstract, list_generic_names
 from archgen.frozen import NamedTuple, dataclass, field, replace
 from archgen.link import mapping_values
 from archgen.link.declare.handed_parameters import HandedParameters, declare_parameters
@@ -39,6 +35,9 @@ from archgen.model.path_resolver import title_from_id
 from archgen.model.promise import Deprecation
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
+if TYPE_CHECKING:
+    from archgen.link.open_shells import OpenShells
+
 
 def declare_component_types(expansion: ExpandedProject, resolver: ReferenceResolver) -> dict[str, ComponentType]:
     """Return the component types of a project, by id. Owners of its own types that are no partners are reported.
@@ -46,6 +45,10 @@ def declare_component_types(expansion: ExpandedProject, resolver: ReferenceResol
     Whose a library's types are, those know who check the library by itself.
     """
     types: dict[str, ComponentType] = {}
+    if not expansion.type_entries:
+        return types
+    from archgen.compose.type_table import is_abstract, list_generic_names
+
     for name, entry in expansion.type_entries.items():
         body, whole_body = mapping_values.get_body(entry), expansion.type_bodies[name]
         library = library_of_type(name)
@@ -110,9 +113,6 @@ def _read_frames(body: MappingNode) -> Iterator[Frame]:
         rate = mapping_values.get_quantity(frame, "rate", "frequency")
         yield Frame(**read_element("frame", Frame, entry, frame), rate=rate)
 
-
-if TYPE_CHECKING:
-    from archgen.link.open_shells import OpenShells
 
 _Port = TypeVar("_Port", Input, Output)
 
