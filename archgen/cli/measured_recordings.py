@@ -86,11 +86,8 @@ def _read_recordings(
     from archgen.installed_plugins import load_reader
 
     read_measured = load_reader("recordings")
-    with command_support.explain_write_errors():
-        try:
-            recordings: ReadRecordings = read_measured(paths, architecture, analysis, chains)
-        except RecordingRefusedError as error:
-            raise click.UsageError(make_visible(str(error))) from None
+    with command_support.explain_write_errors(), command_support.explain_wrong_usage(RecordingRefusedError):
+        recordings: ReadRecordings = read_measured(paths, architecture, analysis, chains)
     return recordings
 
 

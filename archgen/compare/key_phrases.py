@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from archgen.compare.comparison import Change
 from archgen.compare.field_changes import compare_field_lines
 from archgen.compare.kinds import ELEMENT_KINDS, find_key
-from archgen.compare.kinds.promise_keys import NO_DAY
+from archgen.compare.kinds.component_keys import NO_DAY
 from archgen.compare.text_meaning import cut_text, describe_text_difference
 from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.common_wording import fit_lines, join_words, keep_first
@@ -166,7 +166,7 @@ def _key_noun(key: str) -> str:
     if section in _PARTS_OF and name.rpartition(":")[2] in _PARTS_OF[section]:
         element_name, _, part = name.rpartition(":")
         return f"{_spell_out(part)} of the {_NAMED_SECTIONS[section]} `{shorten_text(element_name)}`"
-    if section in _NAMED_SECTIONS and name:
+    if section in _NAMED_SECTIONS and name and (section, name[:5]) != ("scheduling", "fair."):
         return f"{_NAMED_SECTIONS[section]} `{shorten_text(name)}`"
     return _spell_out(key.removeprefix("timing.").replace(".", " "))
 

@@ -105,16 +105,10 @@ class TypeTable:
     def may_replace(self, replaced: ScalarNode, replacing: ScalarNode, component_id: str) -> bool:
         """Whether a type may stand in the place of another: it has all of its ports. Reports why not."""
         old, new = parse_type_expression(replaced.text), self.find_type(replacing, component_id)
-        old_body = self.get_body(old) if old and old.name in self.entries else None
-        new_body = self.get_body(new) if new else None
-        if old is None or old_body is None or new_body is None:
-            return old_body is None
-        missing_ports = [
-            port.key
-            for side in ("inputs", "outputs")
-            for port in list_entries(old_body, side)
-            if port.key not in {entry.key for entry in list_entries(new_body, side)}
-        ]
+        if old is None or old.name not in self.entries or new is None:
+            return old is None or old.name not in self.entries
+        own_ports = self._list_ports(new)
+        missing_ports = [name for side, name in self._list_ports(old) if (side, name) not in own_ports]
         if missing_ports:
             names = join_words([f"`{port}`" for port in missing_ports])
             self.diagnostics.append(
@@ -128,6 +122,17 @@ class TypeTable:
                 )
             )
         return not missing_ports
+
+    def _list_ports(self, expression: TypeExpression) -> list[tuple[str, str]]:
+        """Return the ports of a type and of what it is made from, each with its side: its body may be in the making just now."""
+        bodies: dict[str, YamlNode | None] = {}
+        base: TypeExpression | None = expression
+        while base and base.name in self.entries and base.name not in bodies:
+            bodies[base.name] = self.entries[base.name].value
+            reference = find_value(bodies[base.name], "is")
+            base = parse_type_expression(reference.text) if isinstance(reference, ScalarNode) else None
+        sides = [(side, body) for side in ("inputs", "outputs") for body in reversed(bodies.values())]
+        return list(dict.fromkeys((side, port.key) for side, body in sides for port in list_entries(body, side)))
 
     def _make_body(self, expression: TypeExpression) -> MappingNode | None:
         entry = self.entries[expression.name]

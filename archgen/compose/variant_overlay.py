@@ -6,13 +6,16 @@ Neither tree is changed, and what only one of them has is shared: the variants o
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from archgen.compose.instance_overlay import InstanceOverlay, lay_mapping, lay_node
 from archgen.compose.library_types import list_type_entries
-from archgen.compose.type_table import TypeTable
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.schema.schema_wording import SECTIONS_BY_ID
+from archgen.language.language_tables import SECTION_KINDS
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode, find_value
+
+if TYPE_CHECKING:
+    from archgen.compose.type_table import TypeTable
 
 _JOINED_LISTS = ("requirements", "tags")
 """Lists that are added to, as by instances."""
@@ -40,6 +43,8 @@ class _ChangeLayer:
 
     def _may_replace(self, replaced: ScalarNode, replacing: ScalarNode, component_id: str) -> bool:
         if self._types is None:
+            from archgen.compose.type_table import TypeTable
+
             root = MappingNode(self._entries, self._span)
             self._types = TypeTable(list_type_entries(root), self._diagnostics, self._incomplete_libraries)
         return self._types.may_replace(replaced, replacing, component_id)
@@ -78,7 +83,7 @@ class _ChangeLayer:
             return section
         if section.key == "ros":
             value = lay_node(below.value, section.value)  # its parameters are data, too
-        elif section.key not in SECTIONS_BY_ID:
+        elif section.key not in SECTION_KINDS:
             value = lay_mapping(below.value, section.value)
         else:
             elements = dict(below.value.entries)

@@ -7,11 +7,10 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import field, replace
 
 from archgen.derivation import ros_names
 from archgen.derivation.wire.remap_rules import NodeNames, WireName
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field, replace
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Input, Output
 from archgen.model.message_types import flow_of

@@ -1,4 +1,7 @@
-"""Resolve references: which element a dotted path means, and what to report if it means none, or several."""
+"""Resolve references: which element a dotted path means, and what to report if it means none, or several.
+
+Say that a reference names nothing, and what it may have meant.
+"""
 
 from __future__ import annotations
 
@@ -13,9 +16,41 @@ from archgen.frozen import NamedTuple, dataclass, field, replace
 from archgen.language.language_tables import PLAIN_SECTIONS
 from archgen.link import mapping_values
 from archgen.link.path_guesses import PathGuesser, list_possible_kinds
-from archgen.link.unknown_references import diagnose_unknown_reference
 from archgen.model.path_resolver import NO_MATCH, ElementRef, PathIndex, PathMatch, PathResolver
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
+
+_MAX_LISTED = 6
+"""So many names are listed where no name resembles an unknown one."""
+
+
+def diagnose_unknown_reference(  # noqa: PLR0913 - what it says
+    reference: ScalarNode,
+    kind_phrase: str,
+    guess: str | None,
+    declared_span: Span,
+    element_id: str,
+    *,
+    known_names: Sequence[str] = (),
+    asked_name: AskedName | None = None,
+) -> Diagnostic:
+    """Report that there is no such element, with what may have been meant, or all that there are if they are few."""
+    return Diagnostic(
+        "unknown-reference",
+        f"no {kind_phrase} named `{reference.text}`",
+        reference.span,
+        labels=(Label(declared_span, "declared here"),) if guess and declared_span != NO_SPAN else (),
+        help=f"did you mean `{guess}`?" if guess else list_known_names(known_names),
+        element=element_id,
+        asked_name=None if guess else asked_name,
+    )
+
+
+def list_known_names(names: Sequence[str]) -> str | None:
+    """Return a help line with all names that could be meant, if there are few; else None."""
+    if not 0 < len(names) <= _MAX_LISTED:
+        return None
+    return f"there {'are' if len(names) > 1 else 'is'} {join_words([f'`{name}`' for name in names], 'and')}"
+
 
 SECTIONS_OF_PLAIN_NAMES = {kind.replace("_", " "): section for kind, section in PLAIN_SECTIONS.items()}
 """The sections that declare what is named by its id alone, by the word of their kind."""

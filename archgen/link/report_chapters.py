@@ -14,13 +14,12 @@ import binascii
 import posixpath
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import field
 from urllib.parse import quote, unquote
 
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.diagnostics.suggestions import did_you_mean
-from archgen.frozen import NamedTuple, dataclass
+from archgen.frozen import NamedTuple, dataclass, field
 from archgen.link import mapping_values
 from archgen.link.value_readers import read_values
 from archgen.model.document_chapters import GENERATED_CHAPTERS, Chapter

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from datetime import date
 from pathlib import Path
 from typing import Literal
@@ -11,6 +10,7 @@ from typing import Literal
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.emit import file_tree
 from archgen.emit.picture import Picture
+from archgen.frozen import replace
 from archgen.git.project_revision import find_revision, find_revision_date
 from archgen.link.timing_overrides import apply_overrides
 from archgen.model.agreed_terms import Signature, find_agreement

@@ -17,9 +17,9 @@ from archgen.emit.workspace.run_record import read_other_records, read_run_recor
 from archgen.emit.workspace.workspace_plan import UserChoices, WorkspacePlan, plan_workspace
 from archgen.pipeline import CheckedProject
 from archgen.products.backend_choice import choose_backends, raise_problems
-from archgen.products.generation_contexts import make_generation_context
-from archgen.products.leaving_links import refuse_leaving_links
+from archgen.products.backend_products import make_generation_context
 from archgen.products.output_options import OutputOptions
+from archgen.products.product_writing import refuse_leaving_links
 from archgen.products.trusted_backends import refuse_untrusted_pass
 from archgen.views.generation import find_view_maker, make_generation_views
 from archgen.views.generation.architecture_needs import find_unmet_needs

@@ -6,14 +6,13 @@ The settings of a loaded project as a variant has them: rules, distribution, and
 from __future__ import annotations
 
 import re
-from dataclasses import field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Severity, name_rule
 from archgen.diagnostics.rule_options import WrittenOption
 from archgen.diagnostics.source_span import SourceTexts, Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field, replace
 from archgen.project.library_reading import (
     SHIPPED_ID,
     SHIPPED_PATH,

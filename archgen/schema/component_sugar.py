@@ -15,7 +15,7 @@ from archgen.frozen import NamedTuple
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, list_entries
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from archgen.syntax.yaml_tree import YamlDocument, YamlNode
 
@@ -83,7 +83,7 @@ def _expand_components(holder: MappingNode, diagnostics: list[Diagnostic]) -> No
     for side in _PORT_SIDES:
         ports = holder.entries.get(side)
         if ports is not None and isinstance(ports.value, SequenceNode):
-            ports.value = _make_ports(ports.value, diagnostics)
+            ports.value = _name_items(ports.value, "type", name_port_after, diagnostics)
     components = holder.entries.get("components")
     if components is None:
         return
@@ -93,25 +93,20 @@ def _expand_components(holder: MappingNode, diagnostics: list[Diagnostic]) -> No
         components.value = _nest_dotted_ids(components.value, diagnostics)
 
 
-def _make_ports(listed: SequenceNode, diagnostics: list[Diagnostic]) -> MappingNode:
-    """Return ports of the listed types: `[Laser pose]` is `{laser_pose: {type: Laser pose}}`."""
-    ports = MappingNode({}, listed.span)
+def _name_items(
+    listed: SequenceNode, key: str, name_item: Callable[[str], str], diagnostics: list[Diagnostic]
+) -> MappingNode:
+    """Return elements of the listed types: `[Laser pose]` is `{laser_pose: {type: Laser pose}}`, `[lidar]` is `{lidar: {is: lidar}}`."""
+    elements = MappingNode({}, listed.span)
     for item in listed.items:
         if isinstance(item, ScalarNode):
-            body = MappingNode({"type": MappingEntry("type", item.span, item)}, item.span)
-            _add_entry(ports, MappingEntry(name_port_after(item.text), item.span, body), diagnostics)
-    return ports
+            body = MappingNode({key: MappingEntry(key, item.span, item)}, item.span)
+            _add_entry(elements, MappingEntry(name_item(item.text), item.span, body), diagnostics)
+    return elements
 
 
 def _make_instances(listed: SequenceNode, diagnostics: list[Diagnostic]) -> MappingNode:
-    """Return instances of the listed component types: `[lidar]` is `{lidar: {is: lidar}}`."""
-    components = MappingNode({}, listed.span)
-    for item in listed.items:
-        if isinstance(item, ScalarNode):
-            body = MappingNode({"is": MappingEntry("is", item.span, item)}, item.span)
-            name = item.text.split("<", 1)[0].rpartition(".")[2]
-            _add_entry(components, MappingEntry(name, item.span, body), diagnostics)
-    return components
+    return _name_items(listed, "is", lambda text: text.split("<", 1)[0].rpartition(".")[2], diagnostics)
 
 
 def _add_entry(mapping: MappingNode, entry: MappingEntry, diagnostics: list[Diagnostic]) -> None:

@@ -7,11 +7,10 @@ becomes `{}`. Normalising twice changes nothing.
 from __future__ import annotations
 
 import unicodedata
-from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, diagnose_repetition
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field, replace
 from archgen.language.key_paths import SLICE
 from archgen.language.language_tables import DATA_PARTS, ENTRIES, KEYS, LISTED_PARTS, SHORT_KEYS
 from archgen.model.generic_names import write_generic_name

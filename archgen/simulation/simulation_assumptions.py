@@ -12,6 +12,7 @@ from archgen.frozen import dataclass
 from archgen.simulation.simulation_result import SimulationResult
 from archgen.timing.analysis import Analysis
 from archgen.timing.figures.figure_wording import format_duration
+from archgen.timing.system.fair_hosts import PREEMPTIVE_ORDERS
 from archgen.timing.system.timing_system import Activity, TimingSystem, is_selective_arc
 
 NOT_SIMULATED = (
@@ -64,6 +65,8 @@ def list_random_choices(system: TimingSystem) -> tuple[str, ...]:
         for key, executor in executors.items()
     )
     used_resources = {key for activity in activities for key in activity.uses}
+    open_hosts = {activity.host for activity in activities if activity.host} - system.fair_shares.keys()
+    open_hosts |= {host for (host, _), order in system.core_orders.items() if order in PREEMPTIVE_ORDERS - {"fair"}}
     choices = (
         (
             any(activity.period for activity in activities),
@@ -84,7 +87,7 @@ def list_random_choices(system: TimingSystem) -> tuple[str, ...]:
         (any(activity.conditional for activity in activities), "when a conditional output is published"),
         (any(activity.every > 1 for activity in activities), "where `every` begins to count"),
         (
-            any(activity.host and activity.priority is None for activity in activities),
+            any(activity.host in open_hosts and activity.priority is None for activity in activities),
             "who comes first among those without a priority (in three of eight runs one comes after all others)",
         ),
         (is_order_open, "the order in which an executor takes its callbacks"),
@@ -137,6 +140,12 @@ def list_default_figures(system: TimingSystem) -> tuple[DefaultFigure, ...]:
             ),
         ),
         DefaultFigure("host", "a core of its own", tuple(activity.id for activity in working if activity.host is None)),
+        DefaultFigure(
+            "scheduling", "fair", tuple(host for host in system.fair_shares if host not in system.host_orders)
+        ),
+        DefaultFigure(
+            "scheduling", "fifo", tuple(each.id for each in system.resources.values() if each.is_order_assumed)
+        ),
         DefaultFigure("cores", "1", tuple(sorted(host for host in hosts_without_cores if host))),
         DefaultFigure(
             "calls",

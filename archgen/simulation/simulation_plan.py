@@ -159,6 +159,8 @@ class Processor:
     host: str | None
     cores: int
     order: SchedulingOrder | None = None
+    turn: Fraction | None = None
+    """How long a thread runs before one that was served less (ns), where cores are shared fairly."""
 
 
 @dataclass(frozen=True, slots=True)

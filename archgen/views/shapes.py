@@ -9,10 +9,9 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import field
 from typing import Any, Literal
 
-from archgen.frozen import NamedTuple, dataclass, replace
+from archgen.frozen import NamedTuple, dataclass, field, replace
 from archgen.views.matrix_shapes import Matrix
 
 Record = Mapping[str, Any]

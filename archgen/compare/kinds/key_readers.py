@@ -11,13 +11,14 @@ from fractions import Fraction
 from typing import Any
 
 from archgen.bringup.start_plan import resolve_conditions
-from archgen.compare.kinds import component_keys, promise_keys
+from archgen.compare.kinds import component_keys
 from archgen.compare.kinds.key_spec import ReadContext, Reader
 from archgen.compare.normal_values import freeze_value, last_part, parameter_leaves, unordered_values
 from archgen.frozen import replace
 from archgen.model.architecture import UseCase
 from archgen.model.component import PATTERN_GROUP
-from archgen.model.declared_timing import Timing
+from archgen.model.declared_timing import Timing, list_fair_figures
+from archgen.model.deployment import Host
 from archgen.model.message_types import ConceptualType, DataField
 from archgen.model.node import Node
 from archgen.model.quantity import Quantity
@@ -124,6 +125,12 @@ def _read_verifications(requirement: Requirement, context: ReadContext) -> froze
     )
 
 
+def _read_core_orders(host: Host, _context: ReadContext) -> Mapping[str, str]:
+    """Return the order in which each core takes what is ready, and the figures of a fair one."""
+    orders = {str(core): str(order) for core, order in host.core_scheduling.items()}
+    return orders | {f"fair.{name}": figure for name, figure in list_fair_figures(host.fair)}
+
+
 def _make_selector_reader(attribute: str) -> Reader:
     """Return a reader of a selector, with the ids of the second version; None where none is written."""
 
@@ -186,14 +193,14 @@ READERS: Mapping[tuple[str, str], Reader] = {
     ("component", "operations."): component_keys.read_operations,
     ("component", "timing."): component_keys.find_node_timing,
     ("component_type", "is"): component_keys.read_base,
-    ("component_type", "deprecated."): promise_keys.find_component_type_deprecation,
+    ("component_type", "deprecated."): component_keys.find_component_type_deprecation,
     ("input", "medium"): component_keys.read_medium,
     ("output", "medium"): component_keys.read_medium,
-    ("output", "deprecated."): promise_keys.find_output_deprecation,
+    ("output", "deprecated."): component_keys.find_output_deprecation,
     ("type", "fields."): _read_fields,
-    ("type", "deprecated."): promise_keys.find_type_deprecation,
+    ("type", "deprecated."): component_keys.find_type_deprecation,
     ("frame", "by"): lambda frame, context: context.common_id(frame.by_kind, frame.by),
-    ("promise", "range"): promise_keys.read_range,
+    ("promise", "range"): component_keys.read_range,
     ("node", "name"): lambda node, _: None if node.name == node.id else node.name,
     ("node", "command"): lambda node, _: " ".join(map(shlex.quote, node.command)) or None,
     ("node", "arguments"): lambda node, _: " ".join(map(shlex.quote, node.arguments)) or None,
@@ -205,7 +212,7 @@ READERS: Mapping[tuple[str, str], Reader] = {
     },
     ("node", "start."): _find_start,
     ("node", "timing."): _find_untold_timing,
-    ("host", "scheduling."): lambda host, _: {str(core): order for core, order in host.core_scheduling.items()},
+    ("host", "scheduling."): _read_core_orders,
     # A link has the keys below `latency` itself, a policy those below `forbid`.
     ("link", "latency."): lambda link, _: link,
     ("start", "after"): lambda start, context: unordered_values(_common_ids(start.after, context)),

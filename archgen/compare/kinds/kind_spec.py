@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import field
 from operator import attrgetter
 from typing import Any
 
@@ -13,7 +12,7 @@ from archgen.compare.element_relations import ElementRelations
 from archgen.compare.kinds.described_keys import derive_keys
 from archgen.compare.kinds.key_spec import Effect, KeySpec, ReadContext
 from archgen.compare.version_pair import ElementKey
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.language.comparison_tables import KIND_EFFECTS
 from archgen.model.component import Component, list_component_ports
 from archgen.model.path_resolver import title_from_id

@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import fields
 from typing import TypeVar
 
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.element_likeness import letter_pairs
 from archgen.compare.element_relations import ElementRelations, project_messages
-from archgen.compare.kinds.element_owners import CO_OWNERS, find_type_owner, read_owner
 from archgen.compare.kinds.key_readers import is_own_type
-from archgen.compare.kinds.key_spec import Effect, KeySpec, ReadContext, Worsening
+from archgen.compare.kinds.key_spec import (
+    CO_OWNERS,
+    Effect,
+    KeySpec,
+    ReadContext,
+    Worsening,
+    find_type_owner,
+    read_owner,
+)
 from archgen.compare.kinds.kind_spec import (
     NAME_FEATURES,
     FeatureSpec,
@@ -25,7 +31,7 @@ from archgen.compare.normal_values import unordered_values
 from archgen.derivation.port_endpoints import flow_of_use
 from archgen.derivation.wire.remap_rules import NodeNames
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.frozen import NamedTuple
+from archgen.frozen import NamedTuple, fields
 from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Node, PortUse, Qos

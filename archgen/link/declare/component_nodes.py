@@ -9,7 +9,7 @@ from archgen.compose.instance_overlay import lay_node
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.frozen import NamedTuple
 from archgen.link import mapping_values
-from archgen.link.declare.group_declaration import DeclaredGroups
+from archgen.link.declare.component_declaration import DeclaredGroups
 from archgen.link.declare.handed_parameters import HandedParameters
 from archgen.link.declare.start_declaration import diagnose_idle_start, inherit_start, resolve_start
 from archgen.link.element_outline import ElementOutline

@@ -17,7 +17,7 @@ from archgen.diagnostics.diagnostic import Diagnostic, Label, diagnose_repetitio
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.language.language_tables import KEYS, OFFERS, SECTION_KINDS
 from archgen.link import mapping_values, sanity_checks
-from archgen.link.declare.deadline_declaration import read_deadline
+from archgen.link.declare.timing_declaration import read_deadline
 from archgen.link.reference_resolution import SECTIONS_OF_PLAIN_NAMES, ReferenceResolver
 from archgen.link.value_readers import find_type, find_value_reader, list_held_keys, read_element, store_value
 from archgen.model.architecture import GlossaryTerm, Partner

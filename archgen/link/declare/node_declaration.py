@@ -7,11 +7,10 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.declare.component_nodes import ImplementingNodes
 from archgen.link.declare.start_declaration import declare_start, read_command
@@ -22,8 +21,7 @@ from archgen.link.merged_timing import TimingMerger
 from archgen.link.parameter_texts import flatten_parameters
 from archgen.link.path_guesses import take_path_end
 from archgen.link.port_resolution import PortResolver
-from archgen.link.reference_resolution import ReferenceResolver
-from archgen.link.unknown_references import diagnose_unknown_reference
+from archgen.link.reference_resolution import ReferenceResolver, diagnose_unknown_reference
 from archgen.link.value_readers import read_element, read_values
 from archgen.model.component import Component
 from archgen.model.deployment import Container

@@ -6,9 +6,9 @@ What a variant writes to: it may add elements, but a slip in an id must not make
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
 
 from archgen.compose import expand_project
-from archgen.compose.type_table import MissingTypeDescriber
 from archgen.compose.variant_overlay import MissingKey, drop_key, lay_changes
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.suggestions import did_you_mean
@@ -22,6 +22,9 @@ from archgen.link.variants.variant_selectors import prune_selectors, select_left
 from archgen.model.architecture import Architecture
 from archgen.model.selector_evaluation import SelectorEvaluator
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode
+
+if TYPE_CHECKING:
+    from archgen.compose.type_table import MissingTypeDescriber
 
 _NAMING_SECTIONS = ("groups", "nodes", "component_types", "libraries", "project")
 """Sections that have a say in what the inputs of components read."""

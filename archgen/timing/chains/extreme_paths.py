@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from fractions import Fraction
 
 from archgen.diagnostics.common_wording import join_first
-from archgen.frozen import NamedTuple
+from archgen.frozen import NamedTuple, replace
 from archgen.timing.chains.cost_network import CostNetwork, PathAim
 from archgen.timing.chains.path_search import CostedPath, PathSet, RouteRegion, find_paths
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue

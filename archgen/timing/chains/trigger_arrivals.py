@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import field, replace
 from fractions import Fraction
 from math import ceil
 
 from archgen.diagnostics.common_wording import join_first
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field, replace
 from archgen.timing.analysis import Analysis
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, TimingValue, UnknownCause
 from archgen.timing.figures.value_arithmetic import (

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import field
 
-from archgen.frozen import NamedTuple, dataclass
+from archgen.frozen import NamedTuple, dataclass, field
 from archgen.timing.load.inner_core import urgency_of
 from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.run_ways import EntryWay, Priority

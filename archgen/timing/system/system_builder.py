@@ -21,6 +21,7 @@ from archgen.timing.system.activity_builder import (
 )
 from archgen.timing.system.arc_builder import build_arcs
 from archgen.timing.system.built_parts import BuiltParts
+from archgen.timing.system.fair_hosts import build_fair_share
 from archgen.timing.system.timing_system import Activity, Executor, SharedResource, TimingSystem, group_arcs
 
 _BITS_PER_BYTE = 8
@@ -53,7 +54,10 @@ def build_system(
         cores={host.id: host.cores for host in architecture.hosts.values()},
         executors={executor.id: executor for executor in _build_executors(architecture, activities_by_id)},
         resources={
-            resource.id: SharedResource(resource.id, resource.host, resource.scheduling)
+            # What drivers do, where nobody wrote anything else.
+            resource.id: SharedResource(
+                resource.id, resource.host, resource.scheduling or "fifo", not resource.scheduling
+            )
             for resource in architecture.resources.values()
         },
         host_orders={host.id: host.scheduling for host in architecture.hosts.values() if host.scheduling},
@@ -61,6 +65,11 @@ def build_system(
             (host.id, core): order
             for host in architecture.hosts.values()
             for core, order in host.core_scheduling.items()
+        },
+        fair_shares={
+            host.id: build_fair_share(host, tick_unit)
+            for host in architecture.hosts.values()
+            if host.scheduling in {None, "fair"}
         },
         bandwidths={
             link.id: link.bandwidth.value / _BITS_PER_BYTE if link.bandwidth else None

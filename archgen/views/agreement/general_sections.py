@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 
 from archgen.bringup.plan_shapes import StartStep
-from archgen.bringup.start_plan import describes_start, make_start_plan
+from archgen.bringup.start_plan import make_start_plan
 from archgen.model.agreed_terms import GENERAL_TERMS, find_agreement
 from archgen.model.architecture import Architecture
 from archgen.model.setting_sharing import SharedFrame, find_shared_frames
@@ -112,7 +112,7 @@ def list_changed_frames(content: AgreementContent) -> tuple[str, ...]:
 def _frame_row(content: AgreementContent, shared: SharedFrame, mark: Text | None) -> tuple[Inlines, ...]:
     architecture, frame = content.lookup.architecture, shared.frame
     rate = inline_text.to_inlines("static") if frame.static else inline_text.quantity_to_inlines(frame.rate)
-    ports = (_link_port(architecture, name) for name in shared.ports)
+    ports = (inline_text.port_id_link(architecture, name) for name in shared.ports)
     frames = (link_declared_frame(architecture, name) for name in shared.frames)
     return (
         (Text(frame.id, code=True),),
@@ -123,10 +123,6 @@ def _frame_row(content: AgreementContent, shared: SharedFrame, mark: Text | None
         inline_text.join_inlines((*ports, *frames)),
         (mark,) if mark else (),
     )
-
-
-def _link_port(architecture: Architecture, port_id: str) -> Inlines:
-    return inline_text.port_link(architecture, architecture.outputs.get(port_id) or architecture.inputs[port_id])
 
 
 def _mark_frames(content: AgreementContent) -> dict[str, Text]:
@@ -187,7 +183,7 @@ _START_LEAD = (
 
 def list_start_steps(architecture: Architecture) -> dict[str, StartStep]:
     """Return the steps by id; none where the project does not describe its start-up."""
-    return {step.id: step for step in make_start_plan(architecture).steps} if describes_start(architecture) else {}
+    return {step.id: step for step in make_start_plan(architecture).steps} if architecture.describes_start() else {}
 
 
 def write_start_section(content: AgreementContent) -> Iterator[Section]:

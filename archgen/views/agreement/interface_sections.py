@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import field
 from typing import TYPE_CHECKING
 
 from archgen.bringup.plan_shapes import StartStep
 from archgen.diagnostics.common_wording import join_words
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.model.agreed_terms import INTERFACE_TERMS
 from archgen.model.node import Endpoint
 from archgen.model.partner_interfaces import PartnerInterface, list_givers

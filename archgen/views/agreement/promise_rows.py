@@ -6,10 +6,9 @@ Promised is what an owner wrote. Expected is what follows from other figures, an
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import field, replace
 from fractions import Fraction
 
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field, replace
 from archgen.model.node import Qos
 from archgen.model.partner_interfaces import PartnerInterface, list_givers
 from archgen.model.quantity import Quantity

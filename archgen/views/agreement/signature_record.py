@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
 
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.model.agreed_terms import RULES
 from archgen.views import inline_text
 from archgen.views.agreement.interface_record import InterfaceKey, InterfaceRecord

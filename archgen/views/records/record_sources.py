@@ -12,6 +12,8 @@ from typing import Any
 
 from archgen.frozen import dataclass
 from archgen.model.component import Component, Output
+from archgen.model.declared_timing import list_fair_figures
+from archgen.model.deployment import Host
 from archgen.model.element_annotations import read_figure
 from archgen.model.known_interfaces import InterfaceField
 from archgen.model.message_types import PART_KEYS, ConceptualType, DataField
@@ -138,6 +140,15 @@ def _list_effective(node: Node, lookup: Lookup) -> dict[str, EffectiveParameter]
     """Return the values that count at a node, each with where it comes from; nothing where all are the node's own."""
     parameters = find_effective_parameters(lookup.architecture, node)
     return {} if all(each.origin == "node" for each in parameters.values()) else parameters
+
+
+def _read_host_order(host: Host, _lookup: Lookup) -> object:
+    """Return the order; as a mapping where single cores have one of their own, or figures of a fair one are written."""
+    orders: dict[object, object] = {}
+    orders.update(host.core_scheduling.items())
+    if host.fair:
+        orders["fair"] = dict(list_fair_figures(host.fair))
+    return orders or host.scheduling
 
 
 def _list_steps(use_case: Any, lookup: Lookup) -> list[ConnectedStep]:  # noqa: ANN401  # as all sources
@@ -283,7 +294,7 @@ _PARTS: Mapping[str, Mapping[str, Source]] = {
         "part_fields": _list_part_fields,
     },
     "part_fields": {part: _read_part(part) for part in PART_KEYS},
-    "host": {"scheduling": lambda host, _: host.core_scheduling or host.scheduling},
+    "host": {"scheduling": _read_host_order},
     "container": {"namespace": lambda container, _: None if container.namespace == "/" else container.namespace},
     "variant": {"changes": lambda variant, _: {change.path: change.value for change in variant.changes}},
 }

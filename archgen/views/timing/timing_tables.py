@@ -24,6 +24,7 @@ TIER_WORDS = {
     "non_preemptive": "by priorities, without preemption",
     "fifo": "first in, first out",
     "edf": "earliest deadline first",
+    "fair": "fair shares of the cores",
     "executor": "single-threaded executor",
     "ros2_executor": "by rounds of the executor",
     "cores": "several cores",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -27,6 +28,8 @@ from archgen.plugins.ros.launch.launch_values import (
     describe_launch_value,
 )
 from archgen.plugins.ros.launch.scope_run import ScopeRun
+
+_VARIABLE = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 
 CONTAINER_PACKAGE = "rclcpp_components"
 
@@ -170,6 +173,9 @@ class NodeMaker:
             else:
                 unknown = setting if isinstance(setting, UnknownValue) else UnknownValue(describe_launch_value(name))
                 self._run.tell_computed(action, "a variable of its environment", unknown)
+        for name in [name for name in node.environment if not _VARIABLE.match(name)]:
+            del node.environment[name]
+            self._run.add_note(action.word, f"`{name}` is no name of a variable of an environment", action.span)
         directory = context.resolve(action.get("directory")) if action.get("directory") is not None else ""
         if isinstance(directory, UnknownValue):
             self._run.tell_computed(action, "its folder", directory)
