@@ -57,10 +57,7 @@ def find_trusted_revision(project: Path | None, revision: str | None) -> Trusted
     from archgen import git
     from archgen.products import trusted_backends
 
-    if not revision:
-        return None
     with explain_wrong_usage(git.GitError):
-    try:
         return trusted_backends.read_trusted_revision(project, revision)
 
 

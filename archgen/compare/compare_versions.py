@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from dataclasses import replace
 
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.asked_limits import compare_limits

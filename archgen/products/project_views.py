@@ -126,10 +126,11 @@ def make_edition(
     revision: str,
 ) -> DocumentEdition:
     """Say what documents contain beside the architecture."""
-    found_rules = {finding.rule for finding in checked_project.findings}
+    from archgen.findings import rule_pages
     from archgen.views.pages.report_outline import DocumentEdition
     from archgen.views.tables import statistics_tables
 
+    found_rules = {finding.rule for finding in checked_project.findings}
     return DocumentEdition(
         revision=revision,
         level=level or "implementation",
@@ -182,18 +183,6 @@ def _find_date(checked_project: CheckedProject, options: OutputOptions) -> str:
     if options.revision not in {None, find_revision(checked_project.root, checked_project.input_files)}:
         return ""
     return find_revision_date(checked_project.root, checked_project.input_files)
-
-
-def _format_rule_pages(checked_project: CheckedProject) -> Mapping[str, str]:
-    """Return the pages of the rules that found something, by name, without the titles."""
-    from archgen.findings import rule_pages
-
-    found_rules = {finding.rule for finding in checked_project.findings}
-    return {
-        rule.name: rule_pages.rule_page_to_markdown(rule).partition("\n")[2]
-        for rule in index_all_rules().values()
-        if rule.name in found_rules
-    }
 
 
 def _shows_history(checked_project: CheckedProject, options: OutputOptions) -> bool:

@@ -14,11 +14,9 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from typing import get_args
 
 from archgen.frozen import replace
-from archgen.views.graphs.legend_keys import add_legend_keys
 from archgen.views.inline_text import count_noun
 from archgen.views.picture_shapes import Arrow, Box, Cluster, ElementChange, Graph, PeriodStep
 
