@@ -285,6 +285,7 @@ _TIERS = {
     "dedicated": "no host is written: a core of its own",
     "host": "one core in any order",
     "priorities": "by priority",
+    "fair": "Linux shares the cores",
     "executor": "one thread in any order",
     "non_preemptive": "by priority, without interruption",
     "fifo": "first come, first served",

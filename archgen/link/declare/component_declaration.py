@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, TypeVar
 from archgen.compose import ExpandedProject
 from archgen.compose.expanded_project import ComponentShell
 from archgen.compose.library_types import library_of_type
-from archgen.compose.type_table import is_abstract, list_generic_names
 from archgen.frozen import NamedTuple, dataclass, field, replace
 from archgen.link import mapping_values
 from archgen.link.declare.handed_parameters import HandedParameters, declare_parameters
@@ -46,6 +45,10 @@ def declare_component_types(expansion: ExpandedProject, resolver: ReferenceResol
     Whose a library's types are, those know who check the library by itself.
     """
     types: dict[str, ComponentType] = {}
+    if not expansion.type_entries:
+        return types
+    from archgen.compose.type_table import is_abstract, list_generic_names
+
     for name, entry in expansion.type_entries.items():
         body, whole_body = mapping_values.get_body(entry), expansion.type_bodies[name]
         library = library_of_type(name)
