@@ -1,7 +1,4 @@
-"""Declare component types: what they are called, what they are made from, their ports and their settings.
-
-Declare groups and components as model objects.
-"""
+"""Declare groups and components as model objects, and component types with their ports and settings."""
 
 from __future__ import annotations
 
@@ -37,6 +34,9 @@ from archgen.model.message_types import ConceptualType
 from archgen.model.path_resolver import title_from_id
 from archgen.model.promise import Deprecation
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
+
+if TYPE_CHECKING:
+    from archgen.link.open_shells import OpenShells
 
 
 def declare_component_types(expansion: ExpandedProject, resolver: ReferenceResolver) -> dict[str, ComponentType]:
@@ -113,9 +113,6 @@ def _read_frames(body: MappingNode) -> Iterator[Frame]:
         rate = mapping_values.get_quantity(frame, "rate", "frequency")
         yield Frame(**read_element("frame", Frame, entry, frame), rate=rate)
 
-
-if TYPE_CHECKING:
-    from archgen.link.open_shells import OpenShells
 
 _Port = TypeVar("_Port", Input, Output)
 
