@@ -6,7 +6,7 @@ TESTS ?= tests
 # A process of tests for each core: to collect the tests costs each of them as much as hundreds of tests.
 WORKERS ?= $(shell getconf _NPROCESSORS_ONLN)
 
-.PHONY: demo test test-all properties check lint format bench mutants fuzz golden covered size language pages lock audit sbom test-lowest clean
+.PHONY: demo test test-all properties check lint format bench mutants fuzz golden covered size language pages lock audit sbom dist test-lowest clean
 .DEFAULT_GOAL := help
 
 .PHONY: help
@@ -26,6 +26,7 @@ help:
 	@echo "make language  renew what follows from the description of the language in language/"
 	@echo "make lock      renew the versions and hashes in ci/locked, of all packages that CI and the actions install"
 	@echo "make audit     look up known holes in these packages; make sbom lists them with their licences"
+	@echo "make dist      build the wheel and the sdist of the last commit, the same bytes everywhere"
 	@echo "make test-lowest  the tests of what is written, with the lowest versions of packages that are allowed"
 	@echo "make pages     renew what is generated: rule pages, interface data, the page of the ROS library"
 
@@ -114,6 +115,13 @@ sbom: .make/supply
 	.make/supply-tools/bin/cyclonedx-py environment --output-reproducible --pyproject pyproject.toml -o archgen-out/sbom.json .make/sbom/bin/python
 
 # Tests with the lowest versions that pyproject.toml allows.
+# The wheel and the sdist of the last commit: whoever builds it again, anywhere, gets the same bytes.
+dist: .make/test
+	rm -rf dist .make/dist && mkdir -p .make/dist
+	git archive HEAD | tar -x -C .make/dist
+	SOURCE_DATE_EPOCH=$$(git log -1 --format=%ct) $(BIN)/python -m build --no-isolation --outdir dist .make/dist
+	rm -rf .make/dist
+
 test-lowest: .make/test
 	sh tools/test_lowest_versions.sh
 

@@ -5,21 +5,18 @@ from __future__ import annotations
 import gc
 import io
 import os
-import signal
 import sys
-from types import FrameType
 
 
 def main() -> None:
     """Run the command line. Exit status: 0 no errors, 1 errors found, 2 wrong usage or a failure, 130 and more stopped."""
     # All of it is inside: imports take most of the first tenth of a second, in which people press Ctrl-C, too.
     try:
-        for number in _list_ending_signals():
-            signal.signal(number, _stop)
+        _take_ending_signals()
         _run_verb()
     except KeyboardInterrupt as stop:
         sys.stderr.write("archgen: stopped\n")
-        sys.exit(stop.args[0] if stop.args else 128 + signal.SIGINT)
+        sys.exit(stop.args[0] if stop.args else 130)
     except BrokenPipeError:
         # The reader of our output has closed it (`archgen list | head`): that is not a failure.
         _leave_quietly()
@@ -38,14 +35,20 @@ def main() -> None:
         sys.exit(2)
 
 
-def _list_ending_signals() -> list[int]:
-    """Return the signals that end a process at once where nobody takes them: `kill`, and a terminal that is closed."""
-    return [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if signal.getsignal(getattr(signal, name, 0)) == 0]
+def _take_ending_signals() -> None:
+    """Let signals that would end the process at once (`kill`, a terminal that is closed) stop it as Ctrl-C does.
 
+    So what is half done is taken away.
+    """
+    import signal
 
-def _stop(number: int, _: FrameType | None) -> None:
-    """Stop as Ctrl-C does, so that what is half done is taken away."""
-    raise KeyboardInterrupt(128 + number)
+    def stop(number: int, _: object) -> None:
+        raise KeyboardInterrupt(128 + number)
+
+    for name in ("SIGTERM", "SIGHUP"):
+        number = getattr(signal, name, None)  # Windows has no SIGHUP
+        if number and signal.getsignal(number) == signal.SIG_DFL:
+            signal.signal(number, stop)
 
 
 def _run_verb() -> None:

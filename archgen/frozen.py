@@ -84,7 +84,11 @@ class _TupleMethods(tuple[Any, ...]):
         return cls(*values)
 
     def _replace(self, /, **changes: Any) -> Any:  # noqa: ANN401 - the same
-        return self.__class__(**self._asdict() | changes)
+        made = tuple.__new__(self.__class__, map(changes.pop, self._fields, self))
+        if changes:
+            message = f"{self.__class__.__name__} has no fields {[*changes]}"
+            raise TypeError(message)
+        return made
 
     def _asdict(self) -> dict[str, Any]:
         return dict(zip(self._fields, self, strict=True))

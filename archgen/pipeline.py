@@ -12,7 +12,7 @@ import gc
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from archgen import project
 from archgen.checking.all_rules import SHIPPED_RULES, index_all_rules
@@ -28,12 +28,12 @@ from archgen.checking.variant_judging import (
     stand_in_variants,
 )
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.model.architecture import Architecture
-from archgen.project import LoadedProject, ParsedSlices, TrackedProject
-from archgen.project.project_loading import load_from_files
-from archgen.syntax.project_files import OverlaidFiles
-from archgen.syntax.yaml_writer import write_yaml
+from archgen.project import LoadedProject, ParsedSlices
 from archgen.timing.run_analysis import AnalysisMemory
+
+if TYPE_CHECKING:
+    from archgen.model.architecture import Architecture
+    from archgen.project import TrackedProject
 
 __all__ = [
     "SHIPPED_RULES",
@@ -132,6 +132,11 @@ def check_text(text: str) -> tuple[Diagnostic, ...]:
 
 def link_slices(data: Mapping[str, Any]) -> Architecture:
     """Return the architecture of a project that is at hand as plain data, with the names that count on the robot."""
+    # Imported here: only what makes projects needs them.
+    from archgen.project.project_loading import load_from_files
+    from archgen.syntax.project_files import OverlaidFiles
+    from archgen.syntax.yaml_writer import write_yaml
+
     text = write_yaml(data).encode()
     loaded_project = load_from_files(OverlaidFiles(Path(), {project.PROJECT_FILE: text}), project.PROJECT_FILE)
     return judge_project(loaded_project).architecture

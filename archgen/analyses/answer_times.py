@@ -17,7 +17,6 @@ from archgen.model.deployment import Host
 from archgen.timing.analysis import Analysis, ChainTerm, ServiceLoad
 from archgen.timing.chains.chain_bounds import LateChain, find_missed_shares, find_unmet_chains
 from archgen.timing.chains.read_ages import ReadAge, find_read_ages
-from archgen.timing.chains.unfound_bounds import find_overloaded_hosts, find_unfound_places
 from archgen.timing.chains.use_case_times import WholeBound, WholeLimit, bound_wholes, list_limits
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.figure_wording import format_duration
@@ -256,6 +255,8 @@ def late_chain(architecture: Architecture, analysis: Analysis, *, margin: Fracti
 
 def _describe_bound(analysis: Analysis, late_chain: LateChain) -> str:
     """Describe how long a chain takes, or why nobody can say."""
+    from archgen.timing.chains.unfound_bounds import find_overloaded_hosts, find_unfound_places
+
     bound, deadline = late_chain.bound, late_chain.chain.deadline
     if is_boundless(bound):
         hosts = join_words([f"`{host}`" for host in find_overloaded_hosts(analysis, late_chain.terms)])
@@ -278,6 +279,8 @@ def _label_largest_part(architecture: Architecture, analysis: Analysis, late_cha
     Where a host has too much to do, or leaves no bound to find, the label is at the host: the figures of the elements
     that happen to run there may all be innocent.
     """
+    from archgen.timing.chains.unfound_bounds import find_overloaded_hosts, find_unfound_places
+
     for host_id in find_overloaded_hosts(analysis, late_chain.terms):
         boundless_ids = [
             f"`{term.activity}`"

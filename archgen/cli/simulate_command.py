@@ -67,7 +67,10 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     analysis = analyse_architecture(architecture)
     # Events that trigger one another in a ring: their simulation would not come to an end.
     if analysis.endless:
-        raise click.ClickException(make_visible(_describe_endless(analysis.endless)))
+        ways = "; ".join(" > ".join((*ring, ring[0])) for ring in analysis.endless)
+        raise click.ClickException(
+            make_visible(f"events would go round for ever in {ways}: see `archgen explain endless-trigger`")
+        )
     chain_results = {
         key: one for key, one in bound_all_chains(analysis, architecture).items() if not asked or key in asked
     }
@@ -121,11 +124,6 @@ def _write_trace(
         write_product_file(checked_project, target, format_trace(chain_id, schedule))
     # Not on standard output, where JSON may stand.
     click.echo(f"wrote {command_support.shorten_path(target)}", err=True)
-
-
-def _describe_endless(rings: tuple[tuple[str, ...], ...]) -> str:
-    ways = "; ".join(" > ".join((*ring, ring[0])) for ring in rings)
-    return f"events would go round for ever in {ways}: see `archgen explain endless-trigger`"
 
 
 def _describe_flood(time: Fraction) -> str:

@@ -245,14 +245,9 @@ def _tell_instances(edit: TypeEdit, comparison: Comparison) -> TypeEdit:
         count = len(edit.instances)
         lead = f"in {count} instances: " if count > 1 else "in its instance "
         edit.texts.append(lead + tick_names(edit.instances, _MAX_INSTANCES))
-        owners = _list_owners(edit.instances, comparison)
+        components = (comparison.after.architecture.find_component(each) for each in edit.instances)
+        owners = sorted({component.owner for component in components if component and component.owner})
         names = [name_partner(owner, comparison.versions.partner_names) for owner in owners]
         if len(comparison.versions.partner_names) > 1 and names:
             edit.texts.append(f"of {join_words(names)}")
     return edit
-
-
-def _list_owners(component_ids: Iterable[str], comparison: Comparison) -> list[str]:
-    """Return the partners whose components these are, sorted by id."""
-    components = (comparison.after.architecture.find_component(each) for each in component_ids)
-    return sorted({component.owner for component in components if component and component.owner})

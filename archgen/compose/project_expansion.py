@@ -10,15 +10,18 @@ What a reference (`same_as`) may say: it is its type exactly, and has only a pla
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from archgen.compose.expanded_project import ComponentShell, ExpandedProject, Expansion, InstanceOrigin
 from archgen.compose.instance_containers import make_instance_containers
 from archgen.compose.instance_overlay import InstanceOverlay
 from archgen.compose.library_types import library_of_type, list_type_entries
 from archgen.compose.type_expressions import TypeExpression
-from archgen.compose.type_table import MissingTypeDescriber, TypeTable, diagnose_circle, list_generic_names
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, list_entries
+
+if TYPE_CHECKING:
+    from archgen.compose.type_table import MissingTypeDescriber
 
 MAX_ELEMENTS = 100_000
 """So many components a project may have when everything is written out: ten times the largest that people describe."""
@@ -62,6 +65,8 @@ class _ProjectExpander:
         incomplete_libraries: frozenset[str],
         describe_missing_type: MissingTypeDescriber | None,
     ) -> None:
+        from archgen.compose.type_table import TypeTable
+
         self._root = root
         self._diagnostics: list[Diagnostic] = []
         self._types = TypeTable(list_type_entries(root), self._diagnostics, incomplete_libraries, describe_missing_type)
@@ -127,6 +132,8 @@ class _ProjectExpander:
                 self._judge_type(name)
 
     def _judge_type(self, name: str) -> None:
+        from archgen.compose.type_table import list_generic_names
+
         entry = self._types.entries[name]
         body = self._types.get_body(TypeExpression(name, list_generic_names(entry)))
         self._result.type_bodies[name] = body or MappingNode({}, entry.key_span)
@@ -196,6 +203,8 @@ class _ProjectExpander:
         )
 
     def _report_circle(self, name: str) -> None:
+        from archgen.compose.type_table import diagnose_circle
+
         if name not in self._circular_types:
             self._circular_types.add(name)
             start = self._open_types.index(name)

@@ -24,7 +24,7 @@ from archgen.syntax.yaml_tree import (
 
 MAX_BASES = 60
 """So many types a type may be made from, one of the other."""
-_TYPE_KEYS = frozenset({"generic", "abstract", "title", "owner", "version", "deprecated"})
+_TYPE_KEYS = ("generic", "abstract", "title", "owner", "version", "deprecated")
 """Keys of a type that its instances do not have: they are about the type itself."""
 _NAMING_KEYS = frozenset({"type", "is", "same_as"})
 """Keys whose values name types."""
@@ -105,16 +105,10 @@ class TypeTable:
     def may_replace(self, replaced: ScalarNode, replacing: ScalarNode, component_id: str) -> bool:
         """Whether a type may stand in the place of another: it has all of its ports. Reports why not."""
         old, new = parse_type_expression(replaced.text), self.find_type(replacing, component_id)
-        old_body = self.get_body(old) if old and old.name in self.entries else None
-        new_body = self.get_body(new) if new else None
-        if old is None or old_body is None or new_body is None:
-            return old_body is None
-        missing_ports = [
-            port.key
-            for side in ("inputs", "outputs")
-            for port in list_entries(old_body, side)
-            if port.key not in {entry.key for entry in list_entries(new_body, side)}
-        ]
+        if old is None or old.name not in self.entries or new is None:
+            return old is None or old.name not in self.entries
+        own_ports = self._list_ports(new)
+        missing_ports = [name for side, name in self._list_ports(old) if (side, name) not in own_ports]
         if missing_ports:
             names = join_words([f"`{port}`" for port in missing_ports])
             self.diagnostics.append(
@@ -128,6 +122,16 @@ class TypeTable:
                 )
             )
         return not missing_ports
+
+    def _list_ports(self, expression: TypeExpression) -> list[tuple[str, str]]:
+        """Return the ports of a type and of what it is made from, each with its side: its body may be in the making just now."""
+        bodies: dict[str, YamlNode | None] = {}
+        base: TypeExpression | None = expression
+        while base and base.name in self.entries and base.name not in bodies:
+            bodies[base.name] = self.entries[base.name].value
+            base = _read_base(bodies[base.name])
+        sides = [(side, body) for side in ("inputs", "outputs") for body in reversed(bodies.values())]
+        return list(dict.fromkeys((side, port.key) for side, body in sides for port in list_entries(body, side)))
 
     def _make_body(self, expression: TypeExpression) -> MappingNode | None:
         entry = self.entries[expression.name]
@@ -161,8 +165,7 @@ class TypeTable:
 
     def _list_derived(self, name: str) -> Iterator[str]:
         for entry in self.entries.values():
-            reference = find_value(entry.value, "is")
-            base = parse_type_expression(reference.text) if isinstance(reference, ScalarNode) else None
+            base = _read_base(entry.value)
             if base and base.name == name and not is_abstract(entry):
                 yield entry.key
 
@@ -206,6 +209,11 @@ def _diagnose_in_library(reference: ScalarNode, library: str, library_names: lis
         or "the component types of a library see only one another: write it below `component_types` there",
         element=element_id,
     )
+
+
+def _read_base(body: YamlNode | None) -> TypeExpression | None:
+    reference = find_value(body, "is")
+    return parse_type_expression(reference.text) if isinstance(reference, ScalarNode) else None
 
 
 def list_generic_names(entry: MappingEntry) -> tuple[str, ...]:

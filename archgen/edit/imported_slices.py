@@ -175,6 +175,8 @@ def _plan_slice(  # noqa: PLR0913 - what, where and how
         raise ImportRefusedError(msg)
     if files is None or not files.has_path(file):
         return PlannedSlice(file, new_text, record=new_text)
+    if not merge and not files.has_path(record_path(file)) and read_text_file(files, file).text == new_text:
+        return PlannedSlice(file, new_text, record=new_text)  # left by an import that was killed: its record comes last
     if not merge:
         msg = f"{file} is there already; nothing was written; `--merge` brings it up to date, `-o` names another folder"
         raise ImportRefusedError(msg)

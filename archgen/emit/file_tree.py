@@ -140,9 +140,7 @@ def lock_folder(folder: Path) -> Iterator[None]:
 
     Raise OutputError where another run does not come to its end, and for a file.
     """
-    if folder.exists() and not folder.is_dir():
-        msg = f"{folder} is a file, not a folder"
-        raise OutputError(msg, "give another folder with `-o`")
+    refuse_file(folder)
     new_folders = [each for each in (folder, *folder.parents) if not each.exists()]
     try:
         for _ in range(_LOCK_TRIES):
@@ -158,6 +156,13 @@ def lock_folder(folder: Path) -> Iterator[None]:
         with contextlib.suppress(OSError):
             for each in new_folders:
                 each.rmdir()
+
+
+def refuse_file(folder: Path) -> None:
+    """Raise OutputError where a file stands in the place of a folder."""
+    if folder.exists() and not folder.is_dir():
+        msg = f"{folder} is a file, not a folder"
+        raise OutputError(msg, "give another folder with `-o`")
 
 
 @contextlib.contextmanager

@@ -69,19 +69,15 @@ def _place_new_folder(
         staged_file = staged_top / path.relative_to(folder)
         staged_file.parent.mkdir(parents=True, exist_ok=True)
         staged_file.write_bytes(data)
-    staged_top.chmod(0o777 & ~_read_umask())
+    umask = os.umask(0)
+    os.umask(umask)
+    staged_top.chmod(0o777 & ~umask)
     _refuse_outside(folder.parent, top if top.is_dir() else folder.parent)
     if os.path.lexists(folder):  # since it was looked for
         raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(folder))
     staged_top.rename(folder)
     created_paths.append(folder)
     created_paths += sorted(folder.rglob("*"))
-
-
-def _read_umask() -> int:
-    umask = os.umask(0)
-    os.umask(umask)
-    return umask
 
 
 def _refuse_outside(folder: Path, top: Path) -> None:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING
 
 from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass, field
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.element_outline import ElementOutline
-from archgen.link.port_sources import PortSources
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.link.value_readers import read_values
 from archgen.model.architecture import PortEdge
@@ -17,6 +17,9 @@ from archgen.model.message_types import ConceptualType
 from archgen.model.path_resolver import ElementRef
 from archgen.model.port_media import PHYSICAL, flow_of_port, is_physical
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode
+
+if TYPE_CHECKING:
+    from archgen.link.port_sources import PortSources
 
 _SOURCE_KINDS = ("group", "component", "output")
 MAX_PAIRS = 500_000

@@ -11,7 +11,6 @@ from collections.abc import Mapping
 
 from archgen.compose import ExpandedProject, expand_project, list_type_entries
 from archgen.compose.type_expressions import TypeExpression
-from archgen.compose.type_table import TypeTable
 from archgen.derivation.wire.remap_rules import apply_launch_names
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN, Span
@@ -180,6 +179,8 @@ def link_type_patterns(merged_table: MappingNode, architecture: Architecture) ->
     """
     if not architecture.component_types:
         return TypePatterns()
+    from archgen.compose.type_table import TypeTable
+
     outer_entries = {name: entry for name, entry in merged_table.entries.items() if name in _OUTER_SECTIONS}
     table = TypeTable(list_type_entries(merged_table), [])
     type_bodies = {

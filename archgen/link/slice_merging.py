@@ -11,7 +11,6 @@ from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity, diagnose_
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.language.language_tables import SUPPORTING_KEYS
-from archgen.schema import element_of_path
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, SequenceNode, find_value, list_entries
 
 if TYPE_CHECKING:
@@ -91,6 +90,8 @@ def _is_parameter(path: KeyPath) -> bool:
 
 
 def _diagnose_conflict(entry: MappingEntry, first_entry: MappingEntry, path: KeyPath) -> Diagnostic:
+    from archgen.schema.schema_wording import element_of_path
+
     owner = element_of_path(path[:-1])
     owner_phrase = f" of `{owner}`" if owner else ""
     if path[0] == "groups" and path[-3:-2] == ("parameters",):

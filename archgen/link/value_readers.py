@@ -7,13 +7,13 @@ reader that finds nothing it can use returns None: then the default of the class
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import fields
 from fractions import Fraction
 from functools import cache, partial
 from typing import Any
 
 from archgen.diagnostics.rule_options import parse_percentage
 from archgen.diagnostics.source_span import Span
+from archgen.frozen import fields
 from archgen.language.language_tables import ATTRIBUTES, DATA_PARTS, KEYS, PART_TYPES, PLACED_KEYS, WORDS
 from archgen.link import mapping_values
 from archgen.model.component import PerformanceIndicator, RequirementUse

@@ -292,6 +292,10 @@ class Architecture:
         """Return a composed component or a leaf; of what is both, with ports that nothing inside carries, the composed one."""
         return self.shells.get(component_id) or self.components.get(component_id)
 
+    def describes_start(self) -> bool:
+        """Whether a project says anything about its start-up."""
+        return any(node.start is not None or node.command for node in self.nodes.values())
+
     def list_described_components(self) -> Iterator[Component]:
         """Yield the composed components, then the leaves; what is not designed yet of a composed one is not told twice."""
         yield from self.shells.values()

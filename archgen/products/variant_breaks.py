@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from archgen.compare import Change, Comparison
 from archgen.compare.breaking_changes import sort_breaks_first
 from archgen.compare.comparison import PartnerBreak
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Severity
+from archgen.frozen import replace
 
 _ChangeIdentity = tuple[str, str, str, str | None, str | None, str]
 

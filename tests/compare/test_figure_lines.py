@@ -14,10 +14,9 @@ from archgen.compare.comparison import BoundaryChange
 from archgen.emit.data.comparison_json import comparison_record
 from archgen.views.agreement.partner_agreement import make_agreement
 from archgen.views.changes.boundary_lines import write_boundary_lines
-from archgen.views.changes.comparison_document import describe_comparison
+from archgen.views.changes.comparison_document import ReadingErrors, describe_comparison
 from archgen.views.changes.figure_lines import write_load_lines
 from archgen.views.changes.named_elements import name_partners
-from archgen.views.changes.reading_errors import ReadingErrors
 from tests.agreeing import checked, view
 from tests.compare.conftest import Compared
 from tests.compare.test_whom_a_change_concerns import CASES, HARVESTER

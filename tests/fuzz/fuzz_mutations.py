@@ -8,12 +8,13 @@ from __future__ import annotations
 import ast
 import copy
 import io
+import math
 import random
 import re
 import warnings
 import zipfile
 import zlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import yaml
@@ -71,29 +72,35 @@ def _mutate_part(kind: str, data: bytes, words: Sequence[str], draw: Draw) -> by
 
 def mutate_text(text: str, words: Sequence[str], draw: Draw) -> str:
     """Return a text with one change: another one in its place, a piece of it gone, doubled or replaced."""
-    way = draw.randrange(9)
-    if way == 0 or not text:
-        return draw.choice(ODD_TEXTS)
-    if way == 1 and words:
-        return draw.choice(words)
-    places = sorted(draw.randrange(len(text) + 1) for _ in range(2))
-    if way == 2:
-        return text[: places[0]] + text[places[1] :]
-    if way == 3:
-        return text[: places[1]] + text[places[0] : places[1]] * draw.choice((1, 2, 40)) + text[places[1] :]
-    if way == 4:
-        return text[: places[0]] + draw.choice(ODD_TEXTS) + text[places[0] :]
-    pieces = re.split(r"(\w+|\s+)", text)
-    index = draw.randrange(len(pieces))
-    if way == 5:
-        del pieces[index]
-    elif way == 6:
-        pieces[index] = draw.choice(words) if words and draw.randrange(3) else draw.choice(ODD_TEXTS)
-    elif way == 7:
-        pieces.insert(index, draw.choice(pieces))
-    else:
+    way = draw.randrange(9) if text else 0
+    first, last = sorted(draw.randrange(len(text) + 1) for _ in range(2))
+    if way == 0:
+        changed = draw.choice(ODD_TEXTS)
+    elif way == 1 and words:
+        changed = draw.choice(words)
+    elif way == 2:
+        changed = text[:first] + text[last:]
+    elif way == 3:
+        changed = text[:last] + text[first:last] * draw.choice((1, 2, 40)) + text[last:]
+    elif way == 4:
+        changed = text[:first] + draw.choice(ODD_TEXTS) + text[first:]
+    elif way == 5:
         # An expression loses what stands in it, or stands in another one.
-        return re.sub(r"\$\(([\w-]+)[^()]*\)", r"$(\1 )", text, count=1) if draw.randrange(2) else f"$(eval {text})"
+        emptied = re.sub(r"\$\(([\w-]+)[^()]*\)", r"$(\1 )", text, count=1)
+        changed = emptied if draw.randrange(2) else f"$(eval {text})"
+    else:
+        changed = _mutate_pieces(re.split(r"(\w+|\s+)", text), words, draw)
+    return changed
+
+
+def _mutate_pieces(pieces: list[str], words: Sequence[str], draw: Draw) -> str:
+    index, way = draw.randrange(len(pieces)), draw.randrange(3)
+    if way == 0:
+        del pieces[index]
+    elif way == 1:
+        pieces[index] = draw.choice(words) if words and draw.randrange(3) else draw.choice(ODD_TEXTS)
+    else:
+        pieces.insert(index, draw.choice(pieces))
     return "".join(pieces)
 
 
@@ -179,11 +186,17 @@ def _xml_text(text: str) -> str:
 
 def _mutate_yaml(data: bytes, words: Sequence[str], draw: Draw) -> bytes:
     tree = yaml.load(data, yaml.CSafeLoader)
-    places = list(_list_places(tree, 0))
+    places = list(_list_places(tree))
     if not places:
         return _mutate_lines(data, words, draw)
-    holder, key = draw.choice(places)
-    other_holder, other_key = draw.choice(places)
+    _change_tree(places, words, draw)
+    flow = draw.choice((None, None, False, True))
+    text: str = yaml.dump(tree, Dumper=yaml.CSafeDumper, sort_keys=False, allow_unicode=True, default_flow_style=flow)
+    return text.encode("utf-8", "replace")
+
+
+def _change_tree(places: Sequence[tuple[Any, Any]], words: Sequence[str], draw: Draw) -> None:
+    (holder, key), (other_holder, other_key) = draw.choice(places), draw.choice(places)
     way = draw.randrange(9)
     if way == 0:
         del holder[key]
@@ -194,38 +207,46 @@ def _mutate_yaml(data: bytes, words: Sequence[str], draw: Draw) -> bytes:
     elif way == 3 and isinstance(other_holder, dict) and isinstance(holder[key], dict):
         holder[key][other_key] = copy.deepcopy(other_holder[other_key])
     elif way == 4:
-        holder[key] = draw.choice(
-            (None, [], {}, [holder[key]], {"x": holder[key]}, True, 0, -1, 1.5, 10**30, float("inf"), "", [None], [[]])
+        odd: tuple[Any, ...] = (
+            None,
+            [],
+            {},
+            [holder[key]],
+            {"x": holder[key]},
+            True,
+            0,
+            -1,
+            1.5,
+            10**30,
+            math.inf,
+            "",
+            [None],
+            [[]],
         )
+        holder[key] = draw.choice(odd)
     elif way == 5 and isinstance(holder, list):
         holder.insert(draw.randrange(len(holder) + 1), copy.deepcopy(draw.choice(holder)))
     else:
-        value = holder[key]
-        if isinstance(value, dict | list):
-            below = list(_list_places(value, 0))
-            if below:
-                holder, key = draw.choice(below)
-                value = holder[key]
-        if not isinstance(value, dict | list):
-            holder[key] = mutate_text(str(value), words, draw)
-    return yaml.dump(
-        tree,
-        Dumper=yaml.CSafeDumper,
-        sort_keys=False,
-        allow_unicode=True,
-        default_flow_style=draw.choice((None, None, False, True)),
-    ).encode("utf-8", "replace")
+        leaves = [(held, each) for held, each in places if not isinstance(held[each], dict | list)]
+        holder, key = draw.choice(leaves or places)
+        holder[key] = mutate_text(str(holder[key]), words, draw)
 
 
 def _mutate_key(key: object, words: Sequence[str], draw: Draw) -> Any:  # noqa: ANN401 - keys of YAML are anything
     return draw.choice((None, 1, True, 1.5)) if not draw.randrange(8) else mutate_text(str(key), words, draw)
 
 
-def _list_places(tree: Any, depth: int) -> list[tuple[Any, Any]]:  # noqa: ANN401 - data of YAML
-    if depth > 60 or not isinstance(tree, dict | list):
-        return []
-    keys: list[Any] = list(tree) if isinstance(tree, dict) else list(range(len(tree)))
-    return [(tree, key) for key in keys] + [place for key in keys for place in _list_places(tree[key], depth + 1)]
+def _list_places(tree: Any) -> Iterator[tuple[Any, Any]]:  # noqa: ANN401 - data of YAML
+    """Yield each mapping and list with each of its keys; what aliases say again is walked through once."""
+    waiting, seen = [tree], set()
+    while waiting:
+        held = waiting.pop()
+        if not isinstance(held, dict | list) or id(held) in seen:
+            continue
+        seen.add(id(held))
+        for key in list(held) if isinstance(held, dict) else range(len(held)):
+            yield held, key
+            waiting.append(held[key])
 
 
 _ODD_EXPRESSIONS = (

@@ -36,9 +36,27 @@ from typing import Any, NoReturn
 from tests.fuzz.fuzz_mutations import SEPARATOR, list_words, mutate_input
 from tests.fuzz.fuzz_targets import Target, list_targets, make_folder
 
+GUIDING_ROOMS = (
+    *(
+        "plugins",
+        "importers",
+        "syntax",
+        "schema",
+        "compose",
+        "link",
+        "project",
+        "model",
+        "derivation",
+        "analyses",
+        "checking",
+    ),
+    *("passes", "edit", "merge", "git", "diagnostics"),
+)
+"""What is watched for new ways: the rooms that read and judge. To prepare the others, too, takes as long again, and slows each input."""
 PROCESSOR_SECONDS = 10
 MEMORY_BYTES = 1_000_000_000
-MAX_BYTES = 12_000
+_MEMORY_FOLDER = "/dev/shm"  # noqa: S108 - whose folders below it are our own
+MAX_BYTES = 20_000
 """An input is no larger: what takes long although it is small is what is looked for."""
 
 
@@ -106,7 +124,7 @@ class FuzzRun:
     def begin(self) -> None:
         """Make the folder of the inputs, in the process that reads them."""
         self.base = Path(
-            tempfile.mkdtemp(prefix="archgen-fuzz-", dir="/dev/shm" if Path("/dev/shm").is_dir() else None)
+            tempfile.mkdtemp(prefix="archgen-fuzz-", dir=_MEMORY_FOLDER if Path(_MEMORY_FOLDER).is_dir() else None)
         )
 
     def take_input(self, data: bytes) -> None:
@@ -174,7 +192,7 @@ def _minimise_files(paths: Sequence[Path]) -> int:
     with tempfile.TemporaryDirectory() as base:
         for path in paths:
             data = minimise(targets[path.name.partition("-")[0]], path.read_bytes(), Path(base))
-            print(f"{path}: {path.stat().st_size} bytes, {len(data)} left")  # noqa: T201 - a script
+            sys.stdout.write(f"{path}: {path.stat().st_size} bytes, {len(data)} left\n")
             path.write_bytes(data)
     return 0
 
@@ -239,7 +257,7 @@ def _prepare_atheris() -> Any:  # noqa: ANN401 - as above
     sys.stderr.write("instrumenting archgen\n")
     quiet = os.dup(2)
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
-    with atheris.instrument_imports(include=["archgen"]):
+    with atheris.instrument_imports(include=[f"archgen.{room}" for room in GUIDING_ROOMS]):
         _import_all()
     os.dup2(quiet, 2)
     return atheris
@@ -276,6 +294,9 @@ def main(words: Sequence[str] | None = None) -> int:
     parser.add_argument("--rounds", type=int, default=1, help="how often all targets have their turn")
     parser.add_argument("--work", type=Path, default=Path(".make/fuzzed"))
     parser.add_argument("--minimise", type=Path, nargs="+", help="leave out of these inputs what they break without")
+    parser.add_argument(
+        "--replay", action="store_true", help="feed what is in WORK/corpus once, in one process, for coverage.py"
+    )
     given = parser.parse_args(words)
     if given.minimise:
         _fork_templates()
@@ -287,6 +308,8 @@ def main(words: Sequence[str] | None = None) -> int:
     os.environ["COLUMNS"] = "100"
     warnings.simplefilter("ignore")
     targets = [target for target in list_targets() if not given.targets or target.name in given.targets]
+    if given.replay:
+        return _replay_corpus(targets, work)
     atheris = _prepare_atheris()
     runs = [FuzzRun(target, work, given.seed) for target in targets]
     _fork_templates()
@@ -299,6 +322,16 @@ def main(words: Sequence[str] | None = None) -> int:
     return _report(targets, work)
 
 
+def _replay_corpus(targets: Sequence[Target], work: Path) -> int:
+    """Feed the inputs of a run again: which lines they execute is measured from outside."""
+    faults = 0
+    with tempfile.TemporaryDirectory() as base:
+        for target in targets:
+            for path in sorted((work / "corpus" / target.name).glob("*")):
+                faults += find_fault(target, path.read_bytes(), Path(base)) is not None
+    return int(faults > 0)
+
+
 def _fork_templates() -> None:
     from archgen.emit import text
     from tests.forked_templates import FORKING
@@ -307,25 +340,28 @@ def _fork_templates() -> None:
 
 
 def _report(targets: Sequence[Target], work: Path) -> int:
-    total, seconds, processor_seconds, faults = 0, 0.0, 0.0, 0
+    """Print what was counted for each target; return 1 where one broke."""
+    lines, totals = [], [0, 0.0, 0.0, 0]
     for target in targets:
         file = work / "counts" / f"{target.name}.json"
         if not file.exists():
-            print(f"{target.name:16} came to no end: {work}/counts/{target.name}.log says why")  # noqa: T201 - a script
-            faults += 1
+            lines.append(f"{target.name:16} came to no end: {work}/counts/{target.name}.log says why")
+            totals[3] += 1
             continue
         counts = json.loads(file.read_text(encoding="utf-8"))
         log = file.with_suffix(".log")
         edges = re.findall(r"cov: ([0-9]+)", log.read_text(encoding="utf-8", errors="replace")) if log.exists() else []
-        total, seconds, faults = total + counts["inputs"], seconds + counts["seconds"], faults + len(counts["faults"])
-        processor_seconds += counts["processor_seconds"]
-        print(
-            f"{target.name:16} {counts['inputs']:9,} inputs {counts['seconds']:8.1f} s ({counts['processor_seconds']:6.1f} s of the processor) {edges[-1] if edges else '-':>7} edges {len(counts['faults']):3} faults"
-        )
-        for name, count in counts["faults"].items():
-            print(f"    {name} ({count} times)")  # noqa: T201
-    print(f"{'all':16} {total:9,} inputs {seconds:8.1f} s ({processor_seconds:.1f} s of the processor) {faults} faults")  # noqa: T201
-    return int(faults > 0)
+        numbers = (counts["inputs"], counts["seconds"], counts["processor_seconds"], len(counts["faults"]))
+        totals = [total + number for total, number in zip(totals, numbers, strict=True)]
+        lines.append(_write_line(target.name, numbers, f", {edges[-1]} edges" if edges else ""))
+        lines += [f"    {name} ({count} times)" for name, count in counts["faults"].items()]
+    sys.stdout.write("\n".join((*lines, _write_line("all", totals, ""), "")))
+    return int(totals[3] > 0)
+
+
+def _write_line(name: str, numbers: Sequence[float], more: str) -> str:
+    inputs, seconds, processor_seconds, faults = numbers
+    return f"{name:16} {inputs:9,} inputs, {seconds:8.1f} s, {processor_seconds:8.1f} s of the processor, {faults} faults{more}"
 
 
 if __name__ == "__main__":

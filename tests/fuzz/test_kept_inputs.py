@@ -5,13 +5,11 @@
 
 from __future__ import annotations
 
-import random
 from pathlib import Path
 
 import pytest
 
 from tests.fuzz import fuzz_targets
-from tests.fuzz.fuzz_mutations import list_words, mutate_input
 from tests.fuzz.fuzz_targets import Target, list_targets
 from tests.fuzz.run_fuzz import find_fault
 
@@ -37,13 +35,9 @@ def test_a_kept_input_breaks_nothing(path: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", TARGETS)
-def test_fixtures_and_some_changes_of_them_break_nothing(name: str, tmp_path: Path) -> None:
-    target = TARGETS[name]
-    seeds = target.list_seeds()
+def test_fixtures_break_nothing(name: str, tmp_path: Path) -> None:
+    """What is changed from them is tried by `make fuzz` and in a slow test: other fixtures would be changed otherwise."""
+    seeds = list(TARGETS[name].list_seeds())
     assert seeds, "the fixtures are elsewhere"
-    draw = random.Random(name)  # noqa: S311 - the same inputs each time
-    count = 1 if name in DRAWING else 6
-    inputs = draw.choices(seeds, k=count) + [
-        mutate_input(target.kinds, draw.choice(seeds), list_words(seeds), draw) for _ in range(count)
-    ]
-    assert [break_target(target, data, tmp_path) for data in inputs] == [""] * len(inputs)
+    inputs = seeds[:: len(seeds) // (1 if name in DRAWING else 6) + 1]
+    assert [break_target(TARGETS[name], data, tmp_path) for data in inputs] == [""] * len(inputs)

@@ -11,7 +11,7 @@ from fractions import Fraction
 from typing import Any
 
 from archgen.bringup.start_plan import resolve_conditions
-from archgen.compare.kinds import component_keys, promise_keys
+from archgen.compare.kinds import component_keys
 from archgen.compare.kinds.key_spec import ReadContext, Reader
 from archgen.compare.normal_values import freeze_value, last_part, parameter_leaves, unordered_values
 from archgen.frozen import replace
@@ -193,14 +193,14 @@ READERS: Mapping[tuple[str, str], Reader] = {
     ("component", "operations."): component_keys.read_operations,
     ("component", "timing."): component_keys.find_node_timing,
     ("component_type", "is"): component_keys.read_base,
-    ("component_type", "deprecated."): promise_keys.find_component_type_deprecation,
+    ("component_type", "deprecated."): component_keys.find_component_type_deprecation,
     ("input", "medium"): component_keys.read_medium,
     ("output", "medium"): component_keys.read_medium,
-    ("output", "deprecated."): promise_keys.find_output_deprecation,
+    ("output", "deprecated."): component_keys.find_output_deprecation,
     ("type", "fields."): _read_fields,
-    ("type", "deprecated."): promise_keys.find_type_deprecation,
+    ("type", "deprecated."): component_keys.find_type_deprecation,
     ("frame", "by"): lambda frame, context: context.common_id(frame.by_kind, frame.by),
-    ("promise", "range"): promise_keys.read_range,
+    ("promise", "range"): component_keys.read_range,
     ("node", "name"): lambda node, _: None if node.name == node.id else node.name,
     ("node", "command"): lambda node, _: " ".join(map(shlex.quote, node.command)) or None,
     ("node", "arguments"): lambda node, _: " ".join(map(shlex.quote, node.arguments)) or None,

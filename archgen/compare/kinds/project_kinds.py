@@ -11,17 +11,20 @@ from archgen.compare.normal_values import freeze_value, normalize_text, unordere
 from archgen.model.architecture import ProjectInfo
 from archgen.model.element_annotations import describe_range
 from archgen.model.path_resolver import title_from_id
-from archgen.model.review_settings import ReviewSettings
 
 
 def _read_review(_project: ProjectInfo, context: ReadContext) -> Mapping[str, object]:
     review = context.architecture.review
+    texts_by_element: dict[str, list[str]] = {}
+    for entry in review.accepted:
+        text = f"{entry.reason} ({entry.key})" if entry.key else entry.reason
+        texts_by_element.setdefault(entry.element, []).append(text)
     return {
         "main": review.main,
         "breaking": review.breaking and str(review.breaking),
         "backends": unordered_values(review.backends),
         "passes": unordered_values(review.passes),
-        **{f"accepted.{name}": "; ".join(texts) for name, texts in _group_accepted(review).items()},
+        **{f"accepted.{name}": "; ".join(texts) for name, texts in texts_by_element.items()},
     }
 
 
@@ -74,15 +77,6 @@ def _read_site(_project: ProjectInfo, context: ReadContext) -> Mapping[str, obje
         "folder": repository.folder,
         "forge": repository.forge,
     }
-
-
-def _group_accepted(review: ReviewSettings) -> Mapping[str, list[str]]:
-    """Return what is accepted of each element; several partners may accept the same change."""
-    texts_by_element: dict[str, list[str]] = {}
-    for entry in review.accepted:
-        text = f"{entry.reason} ({entry.key})" if entry.key else entry.reason
-        texts_by_element.setdefault(entry.element, []).append(text)
-    return texts_by_element
 
 
 # Sections, and parts of sections, that belong to no other element.

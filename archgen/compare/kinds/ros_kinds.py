@@ -8,9 +8,16 @@ from typing import TypeVar
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.element_likeness import letter_pairs
 from archgen.compare.element_relations import ElementRelations, project_messages
-from archgen.compare.kinds.element_owners import CO_OWNERS, find_type_owner, read_owner
 from archgen.compare.kinds.key_readers import is_own_type
-from archgen.compare.kinds.key_spec import Effect, KeySpec, ReadContext, Worsening
+from archgen.compare.kinds.key_spec import (
+    CO_OWNERS,
+    Effect,
+    KeySpec,
+    ReadContext,
+    Worsening,
+    find_type_owner,
+    read_owner,
+)
 from archgen.compare.kinds.kind_spec import (
     NAME_FEATURES,
     FeatureSpec,

@@ -11,7 +11,6 @@ from collections.abc import Mapping
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.version_pair import VersionPair
 from archgen.model.architecture import Architecture
-from archgen.model.node import Endpoint
 
 Wire = frozenset[tuple[object, ...]]
 """What the nodes of an output offer: names, messages, QoS, and whether a program does so or only a plan."""
@@ -54,15 +53,12 @@ def _collect_wires(architecture: Architecture, matched_ids: MatchedIds) -> Mappi
         node = architecture.nodes[endpoint.node]
         if endpoint.use in {"publishes", "serves"} and endpoint.port and node.written:
             wire = wires.setdefault(matched_ids.common_id("output", endpoint.port), set())
-            wire.add((*_describe_endpoint(endpoint), node.status == "planned"))
+            qos = endpoint.qos
+            durations = [each and each.value for each in (qos.deadline, qos.lifespan, qos.lease_duration)]
+            kept_qos = (qos.reliability, qos.durability, qos.history, qos.depth, qos.liveliness)
+            is_planned = node.status == "planned"
+            wire.add((endpoint.label, endpoint.flow, endpoint.message, *kept_qos, *durations, is_planned))
     return {port: frozenset(wire) for port, wire in wires.items()}
-
-
-def _describe_endpoint(endpoint: Endpoint) -> tuple[object, ...]:
-    qos = endpoint.qos
-    durations = [each and each.value for each in (qos.deadline, qos.lifespan, qos.lease_duration)]
-    kept_qos = (qos.reliability, qos.durability, qos.history, qos.depth, qos.liveliness)
-    return endpoint.label, endpoint.flow, endpoint.message, *kept_qos, *durations
 
 
 def _continues_wire(old_id: str, old_wire: Wire, new_id: str, new_wire: Wire) -> bool:

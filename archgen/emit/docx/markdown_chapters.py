@@ -58,14 +58,6 @@ class ChapterSource:
         return replace(text, ref=f"chapter:{posixpath.normpath(posixpath.join(self.folder, unquote(path)))}")
 
 
-def _read_content(writer: DocxWriter, node: SyntaxTreeNode, source: ChapterSource) -> ParagraphContent:
-    """Return what stands in a paragraph, pictures among the words too."""
-    spans = list(_walk_children(writer, node, source))
-    runs = [format_runs(writer, (span,)) if isinstance(span, Text) else span.xml for span in spans]
-    height = max((span.height for span in spans if isinstance(span, PictureRun)), default=0.0)
-    return ParagraphContent("".join(runs), join_text(span for span in spans if isinstance(span, Text)), height)
-
-
 def _read_inlines(node: SyntaxTreeNode, source: ChapterSource) -> Inlines:
     """Return the words of a heading or a table's cell; a picture in it is its text."""
     spans = _walk_children(None, node, source)
@@ -217,7 +209,10 @@ def _write_paragraph(writer: DocxWriter, node: SyntaxTreeNode, context: BlockCon
         if pieces:
             yield from pieces
             return
-    content = _read_content(writer, node, context.source)
+    spans = list(_walk_children(writer, node, context.source))
+    runs = [format_runs(writer, (span,)) if isinstance(span, Text) else span.xml for span in spans]
+    height = max((span.height for span in spans if isinstance(span, PictureRun)), default=0.0)
+    content = ParagraphContent("".join(runs), join_text(span for span in spans if isinstance(span, Text)), height)
     if context.sign is not None:
         yield _write_item_text(writer, content, context.sign, context.lists)
         return

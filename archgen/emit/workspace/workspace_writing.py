@@ -22,7 +22,9 @@ from archgen.emit.workspace.workspace_plan import WorkspacePlan
 def lock_workspace(workspace: Path) -> Iterator[None]:
     """Keep other runs of archgen out of a workspace. Raise OutputError where one is at work."""
     folder = workspace / RECORD_FOLDER
-    _refuse_link(folder)
+    if folder.is_symlink():
+        msg = f"{folder} is a link"
+        raise OutputError(msg, "take the link away: archgen writes there what it made")
     try:
         with lock_folder(folder):
             yield
@@ -111,12 +113,6 @@ def _put_record(record: RunRecord, workspace: Path, staging: Path) -> None:
     staging.mkdir(exist_ok=True)
     (staging / "record").write_bytes(data)
     os.replace(staging / "record", path)  # noqa: PTH105
-
-
-def _refuse_link(folder: Path) -> None:
-    if folder.is_symlink():
-        msg = f"{folder} is a link"
-        raise OutputError(msg, "take the link away: archgen writes there what it made")
 
 
 def _refuse_closed_folders(plan: WorkspacePlan, workspace: Path) -> None:

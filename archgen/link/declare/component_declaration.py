@@ -1,29 +1,22 @@
-"""Declare component types: what they are called, what they are made from, their ports and their settings.
-
-Declare groups and components as model objects.
-"""
+"""Declare groups and components as model objects, and component types with their ports and settings."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from archgen.compose import ExpandedProject
 from archgen.compose.expanded_project import ComponentShell
 from archgen.compose.library_types import library_of_type
-from archgen.compose.type_table import is_abstract, list_generic_names
 from archgen.frozen import NamedTuple, dataclass, field, replace
 from archgen.link import mapping_values
-from archgen.link.automatic_connections import join_ports
 from archgen.link.declare.handed_parameters import HandedParameters, declare_parameters
 from archgen.link.declare.promise_declaration import PromisedOutputs
 from archgen.link.declare.timing_declaration import declare_timing
 from archgen.link.element_outline import ElementOutline
 from archgen.link.input_wiring import InputWiring
 from archgen.link.link_memory import LinkedLeaf, LinkMemory
-from archgen.link.open_shells import OpenShells
 from archgen.link.port_resolution import PortResolver
-from archgen.link.port_sources import PortSources
 from archgen.link.promise_reading import read_deprecation
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.link.value_readers import read_element, read_operations, read_values
@@ -42,6 +35,9 @@ from archgen.model.path_resolver import title_from_id
 from archgen.model.promise import Deprecation
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
+if TYPE_CHECKING:
+    from archgen.link.open_shells import OpenShells
+
 
 def declare_component_types(expansion: ExpandedProject, resolver: ReferenceResolver) -> dict[str, ComponentType]:
     """Return the component types of a project, by id. Owners of its own types that are no partners are reported.
@@ -49,6 +45,10 @@ def declare_component_types(expansion: ExpandedProject, resolver: ReferenceResol
     Whose a library's types are, those know who check the library by itself.
     """
     types: dict[str, ComponentType] = {}
+    if not expansion.type_entries:
+        return types
+    from archgen.compose.type_table import is_abstract, list_generic_names
+
     for name, entry in expansion.type_entries.items():
         body, whole_body = mapping_values.get_body(entry), expansion.type_bodies[name]
         library = library_of_type(name)
@@ -149,11 +149,17 @@ def declare_groups(
 
     Components that `memory` knows are taken over; it is for projects in which no component holds others.
     """
-    sources = None
+    sources = open_shells = None
     if outline.expansion:
+        # Imported here: in most projects no component holds others.
+        from archgen.link.automatic_connections import join_ports
+        from archgen.link.open_shells import OpenShells
+        from archgen.link.port_sources import PortSources
+
         sources = PortSources(outline, resolver, types)
         join_ports(outline, sources, resolver)
         sources.spread_media()
+        open_shells = OpenShells(outline, sources)
     wiring = InputWiring(outline, resolver, types, sources)
     group_declarer = _GroupDeclarer(
         outline,
@@ -164,7 +170,6 @@ def declare_groups(
         outside_readers=sources.list_given_outside() if sources else {},
         memory=None if sources else memory,
     )
-    open_shells = OpenShells(outline, sources) if sources else None
     groups = {name: group_declarer.declare_group(name, entry, open_shells) for name, entry in outline.groups.items()}
     components = {component.id: component for group in groups.values() for component in group.components.values()}
     shells = {shell.id: group_declarer.declare_shell(shell) for shell in outline.shells.values()}

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from archgen.diagnostics.diagnostic import Label
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.frozen import NamedTuple, replace
 from archgen.link.declare.handed_parameters import HandedParameters
 from archgen.link.element_outline import ElementOutline
-from archgen.link.port_sources import PortKey, PortSources
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.component import Output
 from archgen.model.promise import PROMISE_KEYS, Deprecation, Promise
+
+if TYPE_CHECKING:
+    from archgen.link.port_sources import PortKey, PortSources
 
 
 class _OutputWords(NamedTuple):

@@ -8,9 +8,9 @@ point (K. Tindell, J. Clark 1994; compositional analysis as in pyCPA).
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
 from typing import TypeVar
 
+from archgen.frozen import replace
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.figures.timing_values import UnknownCause, sum_ratios
 from archgen.timing.load.core_responses import CoreResponses

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from fractions import Fraction
 
+from archgen.frozen import replace
 from archgen.timing.analysis import EventPace, HostLoad, Reason, ResponseTime, RunResponse
 from archgen.timing.figures.figure_wording import format_share
 from archgen.timing.figures.tick_unit import NS_PER_SECOND

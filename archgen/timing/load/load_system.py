@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 
+from archgen.frozen import replace
 from archgen.model.declared_timing import SchedulingOrder
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.system.core_sets import CoreSet, find_core_sets, find_free_cores

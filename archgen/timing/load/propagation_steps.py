@@ -1,10 +1,12 @@
 """The steps of a propagation: what each core, host and activity is looked at as, and what must be looked at again behind it."""
 
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
+from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from archgen.frozen import replace
 from archgen.timing.figures.timing_values import UnknownCause
-from archgen.timing.load.core_paths import CorePaths
 from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.load.fair_shares import FairCores, prepare_fair_cores
 from archgen.timing.load.inner_core import InnerCore, prepare_inner_core
@@ -23,6 +25,9 @@ from archgen.timing.system.core_placement import ProcessingResource
 from archgen.timing.system.resource_division import split_resources
 from archgen.timing.system.timing_system import Arc, find_request, is_taken_answer
 from archgen.timing.system.trigger_graph import has_own_rate
+
+if TYPE_CHECKING:
+    from archgen.timing.load.core_paths import CorePaths
 
 _MAX_WAITING_ACTIVATIONS = 200
 """Activations of one activity that may come within its response, in a loop, before the loop is given up."""
@@ -127,6 +132,9 @@ class PropagationSteps:
                 core = self.inner_cores[step] = replace(core, queue=self.queues.get(step))
                 self.inner_triggers[step], ways_to = core.inner_triggers, core.ways_to
             else:
+                # Imported here: most projects have no such host.
+                from archgen.timing.load.core_paths import CorePaths
+
                 cores = prepare_shared_cores(system, resource, inner_triggers)
                 self.shared_cores[step] = CorePaths(cores)
                 self.inner_triggers[step], ways_to = cores.inner_triggers, cores.ways_to

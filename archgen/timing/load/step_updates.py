@@ -1,7 +1,10 @@
 """One step of a propagation at a time: the event model of an activity, or the responses of what a resource runs."""
 
+from __future__ import annotations
+
 from collections import ChainMap
 from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING
 
 from archgen.timing.figures.timing_values import UnknownCause, is_same_cause
 from archgen.timing.load.busy_windows import SearchBudget
@@ -16,7 +19,6 @@ from archgen.timing.load.queue_orders import QueueBound
 from archgen.timing.load.queue_responses import CoreQueue
 from archgen.timing.load.response_times import AnalysisEffort, find_dedicated_response, find_responses
 from archgen.timing.load.run_ways import EntryWay
-from archgen.timing.load.shared_core_responses import SharedCoreSolver, open_shared_solver
 from archgen.timing.load.single_cores import delay_by_response
 from archgen.timing.load.thread_work import EventModels, WorstResponse
 from archgen.timing.load.transaction_windows import ENDLESS, TransactionWindows
@@ -25,6 +27,9 @@ from archgen.timing.load.whole_hosts import HostLimit, limit_responses, list_hos
 from archgen.timing.system.core_placement import (
     ProcessingResource,
 )
+
+if TYPE_CHECKING:
+    from archgen.timing.load.shared_core_responses import SharedCoreSolver
 
 
 class StepUpdates(PropagationSteps):
@@ -221,6 +226,8 @@ class StepUpdates(PropagationSteps):
         """Return what finds the responses of a core, or several, on which activities fire one another, or of a host."""
         find_model, budget = self._model_finder(step, entering_models), self.budget_of[step]
         if step in self.shared_cores:
+            from archgen.timing.load.shared_core_responses import open_shared_solver
+
             known_bounds = ChainMap(self.state.work_ends, self.state.responses)
             return open_shared_solver(
                 self.shared_cores[step], find_model, (known_bounds, self._limits_of(step)), budget

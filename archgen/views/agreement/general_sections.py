@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 
 from archgen.bringup.plan_shapes import StartStep
-from archgen.bringup.start_plan import describes_start, make_start_plan
+from archgen.bringup.start_plan import make_start_plan
 from archgen.model.agreed_terms import GENERAL_TERMS, find_agreement
 from archgen.model.architecture import Architecture
 from archgen.model.setting_sharing import SharedFrame, find_shared_frames
@@ -17,7 +17,7 @@ from archgen.timing.search.chain_budgets import SharedBudget
 from archgen.views import inline_text, start_phrases
 from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.interface_record import InterfaceRecord
-from archgen.views.agreement.term_changes import AgreementChanges, write_signed_kind
+from archgen.views.agreement.term_changes import AgreementChanges, mark_changed_names
 from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.sequences.sequence_blocks import make_step_table
 from archgen.views.shapes import (
@@ -112,7 +112,7 @@ def list_changed_frames(content: AgreementContent) -> tuple[str, ...]:
 def _frame_row(content: AgreementContent, shared: SharedFrame, mark: Text | None) -> tuple[Inlines, ...]:
     architecture, frame = content.lookup.architecture, shared.frame
     rate = inline_text.to_inlines("static") if frame.static else inline_text.quantity_to_inlines(frame.rate)
-    ports = (_link_port(architecture, name) for name in shared.ports)
+    ports = (inline_text.port_id_link(architecture, name) for name in shared.ports)
     frames = (link_declared_frame(architecture, name) for name in shared.frames)
     return (
         (Text(frame.id, code=True),),
@@ -125,10 +125,6 @@ def _frame_row(content: AgreementContent, shared: SharedFrame, mark: Text | None
     )
 
 
-def _link_port(architecture: Architecture, port_id: str) -> Inlines:
-    return inline_text.port_link(architecture, architecture.outputs.get(port_id) or architecture.inputs[port_id])
-
-
 def _mark_frames(content: AgreementContent) -> dict[str, Text]:
     """Return what happened to each frame since the earlier revision; nothing where no changes are asked for."""
     if content.changes is None or content.earlier_lookup is None:
@@ -137,11 +133,7 @@ def _mark_frames(content: AgreementContent) -> dict[str, Text]:
         {shared.frame.id: _plain_terms(shared) for shared in find_shared_frames(architecture, *content.pair)}
         for architecture in (content.lookup.architecture, content.earlier_lookup.architecture)
     )
-    names = [name for name in {**earlier, **shown} if shown.get(name) != earlier.get(name)]
-    return {
-        name: write_signed_kind("removed" if name not in shown else "added" if name not in earlier else "changed")
-        for name in names
-    }
+    return mark_changed_names(shown, earlier)
 
 
 def _plain_terms(shared: SharedFrame) -> tuple[object, ...]:
@@ -187,7 +179,7 @@ _START_LEAD = (
 
 def list_start_steps(architecture: Architecture) -> dict[str, StartStep]:
     """Return the steps by id; none where the project does not describe its start-up."""
-    return {step.id: step for step in make_start_plan(architecture).steps} if describes_start(architecture) else {}
+    return {step.id: step for step in make_start_plan(architecture).steps} if architecture.describes_start() else {}
 
 
 def write_start_section(content: AgreementContent) -> Iterator[Section]:

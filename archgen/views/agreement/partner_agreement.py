@@ -27,8 +27,7 @@ from archgen.views.elements import element_names
 from archgen.views.graphs import element_boxes
 from archgen.views.graphs.drawn_level import FlowStyle
 from archgen.views.graphs.element_boxes import join_owner_titles
-from archgen.views.graphs.graph_folding import fold_graph
-from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.graphs.graph_folding import add_legend_keys, fold_graph
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph

@@ -22,6 +22,15 @@ NAME_KIND = "name"
 """The kind of the term that a renamed interface has its old and new id in."""
 
 
+def mark_changed_names(shown: Mapping[str, object], earlier: Mapping[str, object]) -> dict[str, Text]:
+    """Return what happened to each name since the earlier revision, of those that are not what they were."""
+    names = [name for name in {**earlier, **shown} if shown.get(name) != earlier.get(name)]
+    return {
+        name: write_signed_kind("removed" if name not in shown else "added" if name not in earlier else "changed")
+        for name in names
+    }
+
+
 def write_signed_kind(kind: ChangeKind) -> Text:
     """Return a kind of change as a sign and a word, so that nothing depends on colour."""
     return Text(f"{CHANGE_SIGNS[kind]} {kind}", change=choose_mark(kind))
@@ -173,7 +182,10 @@ def _describe_change(
 ) -> TermChange:
     old_text, new_text = (term.text if term else None for term in (old_term, new_term))
     if old_text and new_text:
-        old_text, new_text = _drop_common_source(old_text, new_text)
+        (old_figure, _, old_source), (new_figure, _, new_source) = (
+            text.partition(SOURCE_PHRASE) for text in (old_text, new_text)
+        )
+        old_text, new_text = (old_figure, new_figure) if old_source == new_source else (old_text, new_text)
     return TermChange(
         kind,
         shown_term.kind,
@@ -183,11 +195,3 @@ def _describe_change(
         shown_term.is_expected,
         old_term is not None and is_weaker(old_term.strength, new_term.strength if new_term else {}),
     )
-
-
-def _drop_common_source(old_text: str, new_text: str) -> tuple[str, str]:
-    """Return two texts without what both figures follow from, where that is the same."""
-    (old_figure, _, old_source), (new_figure, _, new_source) = (
-        text.partition(SOURCE_PHRASE) for text in (old_text, new_text)
-    )
-    return (old_figure, new_figure) if old_source == new_source else (old_text, new_text)

@@ -79,7 +79,9 @@ def write_missing_entries(comparison: Comparison) -> tuple[str, ...]:
     files_by_entries: dict[str, list[str]] = {}
     for partner, targets in sorted(_find_refused_targets(comparison).items()):
         file = agreement_file(find_partner_id(partner, comparison.matched_ids))
-        files_by_entries.setdefault(_write_entries(targets), []).append(file)
+        files_by_entries.setdefault(
+            "\n".join(("review:", "  accepted:", *(f"    {line}" for line in _write_lines(targets, "THE REASON")))), []
+        ).append(file)
     return tuple(
         f"# {join_words(files)}{', each' if len(files) > 1 else ''}\n{entries}"
         for entries, files in files_by_entries.items()
@@ -184,11 +186,6 @@ def _describe_place(entry: AcceptedChange) -> str:
 def _write_flow_entries(targets: Iterable[AgreementTarget], reason: str) -> str:
     """Return the section that accepts something, in one line."""
     return "`review: {accepted: {" + ", ".join(_write_lines(targets, reason)) + "}}`"
-
-
-def _write_entries(targets: Iterable[AgreementTarget]) -> str:
-    """Return the section that accepts something, a line for each element."""
-    return "\n".join(("review:", "  accepted:", *(f"    {line}" for line in _write_lines(targets, "THE REASON"))))
 
 
 def _write_lines(targets: Iterable[AgreementTarget], reason: str) -> Iterator[str]:

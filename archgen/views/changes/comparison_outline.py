@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 
 from archgen.compare.edits import EditKind
+from archgen.frozen import replace
 from archgen.views import inline_text
 from archgen.views.changes import comparison_document
 from archgen.views.changes.breaking_items import BreakingChange
@@ -31,9 +31,10 @@ _MAX_ERRORS = 8
 
 def write_comparison_outline(document: ComparisonDocument) -> Outline:
     """Return the outline of a comparison document."""
+    figures = tuple(Figure(f"figure:{graph.id}", graph.id, graph.title, graph.alt) for graph in document.graphs)
     sections = (
         _breaking_section(document),
-        _picture_section(document),
+        Section("changes:pictures", "Pictures", figures) if figures else None,
         _change_section(document),
         _figure_section("changes:boundaries", comparison_document.BOUNDARY_HEADING, document.boundary_lines, document),
         _figure_section("changes:loads", comparison_document.LOAD_HEADING, document.load_lines, document),
@@ -101,11 +102,6 @@ def _breaking_item(item: BreakingChange, document: ComparisonDocument) -> Inline
     for line in item.agreements:
         lines += [Text("", line_break=True), *text_runs(line)]
     return (*_sign_runs(item.change.kind), *_titled_runs(item.short_text, document), *lines)
-
-
-def _picture_section(document: ComparisonDocument) -> Section | None:
-    figures = tuple(Figure(f"figure:{graph.id}", graph.id, graph.title, graph.alt) for graph in document.graphs)
-    return Section("changes:pictures", "Pictures", figures) if figures else None
 
 
 def _change_section(document: ComparisonDocument) -> Section | None:

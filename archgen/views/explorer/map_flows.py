@@ -9,9 +9,8 @@ from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Input, Output
 from archgen.model.port_media import ROS, label_of_medium, name_on_medium
 from archgen.views.explorer.map_shapes import Row
-from archgen.views.graphs.drawn_level import flow_style, list_flows
+from archgen.views.graphs.drawn_level import flow_style, list_flows, warn_of_outputs
 from archgen.views.lookup import Lookup
-from archgen.views.port_warnings import warn_of_outputs
 from archgen.views.search.search_entry import join_entry_parts
 
 _OPTIONAL, _MADE = 1, 2

@@ -27,6 +27,7 @@ UNMET_NEED = Rule(
     fixed=True,
 )
 """What `archgen generate` says where `needs` of a backend do not hold. `archgen check` never says it."""
+GENERATION_RULES = (NOT_GENERATED, UNMET_NEED)
 
 
 def find_unmet_needs(context: GenerationContext, needs: tuple[str, ...]) -> Iterator[Diagnostic]:

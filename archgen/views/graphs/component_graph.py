@@ -9,20 +9,26 @@ lists its types, with an asterisk on its arrow. Partners outside of the architec
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import Literal
 
 from archgen.diagnostics.common_wording import fit_lines
+from archgen.frozen import replace
 from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.component_nesting import find_component
 from archgen.model.port_media import is_physical
 from archgen.views.graphs import element_boxes
-from archgen.views.graphs.drawn_level import add_notes, flow_style, join_type_names, name_media, port_style
-from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.graphs.drawn_level import (
+    add_notes,
+    flow_style,
+    join_type_names,
+    name_media,
+    port_style,
+    warn_of_outputs,
+)
+from archgen.views.graphs.graph_folding import add_legend_keys
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import Arrow, Box, Graph
-from archgen.views.port_warnings import warn_of_outputs
 from archgen.views.timing_words import format_short_timing
 
 DrawnNeighbour = tuple[Box, Arrow]

@@ -16,8 +16,7 @@ from archgen.model.component_nesting import find_component, find_passed_shell, l
 from archgen.views.graphs import element_boxes
 from archgen.views.graphs.component_graph import port_key
 from archgen.views.graphs.drawn_level import ComponentFlow, DrawnLevel, FlowStyle, flow_style, merge_flows, port_style
-from archgen.views.graphs.graph_folding import MAX_ARROWS, MAX_BOXES, fold_graph
-from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.graphs.graph_folding import MAX_ARROWS, MAX_BOXES, add_legend_keys, fold_graph
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph

@@ -12,7 +12,7 @@ from archgen.model.component_nesting import find_component, list_members
 from archgen.views.graphs import element_boxes
 from archgen.views.graphs.composed_graph import draw_to_depth, find_drawn, list_opened, place_in_frames
 from archgen.views.graphs.drawn_level import ComponentFlow, DrawnLevel, merge_flows
-from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.graphs.graph_folding import add_legend_keys
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph

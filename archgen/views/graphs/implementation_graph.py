@@ -10,8 +10,7 @@ from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.port_media import ROS, key_of_carrier, label_of_medium
 from archgen.views.graphs import element_boxes
 from archgen.views.graphs.element_boxes import NodeFlow
-from archgen.views.graphs.graph_folding import fold_graph
-from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.graphs.graph_folding import add_legend_keys, fold_graph
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph

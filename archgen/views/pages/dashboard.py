@@ -53,7 +53,14 @@ def make_dashboard(lookup: Lookup, edition: DocumentEdition) -> Dashboard:
 
 def _list_figures(lookup: Lookup, edition: DocumentEdition) -> Iterator[KeyFigure]:
     """Yield the figures, each with the reason why it is not better."""
-    yield _point_figure(lookup)
+    chains = _chains_without_finding(lookup)
+    parts = [*phrase_severity_counts(lookup.findings), *([count_noun(len(chains), "chain")] if chains else [])]
+    severities = {finding.severity for finding in lookup.findings}
+    worst = "missed" if "error" in severities else "warning" if "warning" in severities else "open" if parts else "met"
+    count = len(lookup.findings) + len(chains)
+    yield KeyFigure(
+        "Open points", str(count), "", _make_note(worst, join_words(parts) or "nothing is open"), "page:findings"
+    )
     if lookup.timing and lookup.timing.chains:
         yield _chain_figure(lookup)
     if requirements := requirement_tables.shown_requirements(lookup):
@@ -86,17 +93,6 @@ def _make_note(status: str, text: str) -> Inlines:
 def _list_some(names: Sequence[str], singular: str, plural: str) -> str:
     """Name one, or count several: `R-80 has no component`, `3 have none`."""
     return f"{names[0]} {singular}" if len(names) == 1 else f"{len(names)} {plural}"
-
-
-def _point_figure(lookup: Lookup) -> KeyFigure:
-    chains = _chains_without_finding(lookup)
-    parts = [*phrase_severity_counts(lookup.findings), *([count_noun(len(chains), "chain")] if chains else [])]
-    severities = {finding.severity for finding in lookup.findings}
-    worst = "missed" if "error" in severities else "warning" if "warning" in severities else "open" if parts else "met"
-    count = len(lookup.findings) + len(chains)
-    return KeyFigure(
-        "Open points", str(count), "", _make_note(worst, join_words(parts) or "nothing is open"), "page:findings"
-    )
 
 
 def _chain_figure(lookup: Lookup) -> KeyFigure:

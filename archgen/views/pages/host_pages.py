@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
+from archgen.frozen import replace
 from archgen.model.deployment import Container, Host
 from archgen.model.parameter import format_parameter
 from archgen.model.port_media import name_medium
@@ -107,14 +107,9 @@ def _list_program_facts(container: Container) -> Iterator[tuple[str, Inlines]]:
         yield "Parameters", inline_text.join_lines(lines)
 
 
-def _describe_threads(lookup: Lookup, container: Container) -> str:
-    """Return the threads of a container, and whether that is written or what it is started with."""
+def _container_page(lookup: Lookup, container: Container) -> Page:
     threads = find_container_threads(lookup.architecture, container)
     text = "as many as are asked for" if threads is None else str(threads)
-    return text if container.threads is not None else f"{text} (nothing is written)"
-
-
-def _container_page(lookup: Lookup, container: Container) -> Page:
     facts = [
         (
             "Host",
@@ -122,7 +117,7 @@ def _container_page(lookup: Lookup, container: Container) -> Page:
         ),
         (
             "Threads",
-            inline_text.to_inlines(_describe_threads(lookup, container)),
+            inline_text.to_inlines(text if container.threads is not None else f"{text} (nothing is written)"),
         ),
         *([("Scheduling", inline_text.to_inlines(container.scheduling))] if container.scheduling else []),
         *_list_program_facts(container),

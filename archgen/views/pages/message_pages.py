@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 from typing import TypeVar
 
+from archgen.frozen import replace
 from archgen.model.component import Output
 from archgen.model.known_interfaces import Interface, InterfaceField
 from archgen.model.message_types import ConceptualType, flow_of

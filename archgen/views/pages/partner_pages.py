@@ -153,7 +153,19 @@ def _pair_page(
     blocks = (note,) if has_interface_pages else (note, hint_block)
     section = Section(pair_reference(exchange.pair), title, blocks, sections)
     path = f"partners/{make_page_slug(exchange.pair[0])}/{make_page_slug(exchange.pair[1])}.html"
-    dashboard = Dashboard(tuple(_list_figures(lookup, exchange)), (_point_card(lookup, exchange),))
+    table = exchange_tables.make_point_table(lookup, f"points:{exchange.pair[0]}", exchange)
+    remark = f"{exchange.open_count} in {inline_text.count_noun(len(exchange.interfaces), 'interface')}"
+    settled = Paragraph(
+        inline_text.to_inlines("Nothing is open: every term is settled, and nothing contradicts another.")
+    )
+    dashboard = Dashboard(
+        tuple(_list_figures(lookup, exchange)),
+        (
+            DashboardCard(
+                "Open points between the two", (table or settled,), 12, remark if table else "", None, "points"
+            ),
+        ),
+    )
     return Page(
         path,
         section.anchor,
@@ -178,17 +190,6 @@ def _list_figures(lookup: Lookup, exchange: PartnerExchange) -> Iterator[KeyFigu
             left = total - promised
             note = (Text(f"{left} still to be written" if left else "all of them", status="open" if left else "met"),)
             yield KeyFigure(name, str(promised), str(total), note, f"points:{exchange.pair[0]}" if left else "")
-
-
-def _point_card(lookup: Lookup, exchange: PartnerExchange) -> DashboardCard:
-    table = exchange_tables.make_point_table(lookup, f"points:{exchange.pair[0]}", exchange)
-    remark = f"{exchange.open_count} in {inline_text.count_noun(len(exchange.interfaces), 'interface')}"
-    settled = Paragraph(
-        inline_text.to_inlines("Nothing is open: every term is settled, and nothing contradicts another.")
-    )
-    return DashboardCard(
-        "Open points between the two", (table or settled,), 12, remark if table else "", None, "points"
-    )
 
 
 def _list_direction_sections(lookup: Lookup, exchange: PartnerExchange) -> Iterator[Section]:

@@ -25,6 +25,7 @@ from archgen.views.shapes import (
     Section,
     Table,
     Text,
+    keep_columns,
     make_columns,
 )
 from archgen.views.timing.timing_tables import is_blank
@@ -212,20 +213,12 @@ def _print_card(card: DashboardCard) -> Iterator[Block]:
     for block in card.blocks:
         match block:
             case Table():
-                yield _drop_wordless_columns(block)
+                # Columns that hold nothing but bars are dropped.
+                places = range(len(block.columns))
+                yield keep_columns(block, (at for at in places if not all(is_blank(row[at]) for row in block.rows)))
             case Paragraph():
                 yield dataclasses.replace(block, inlines=tuple(part for part in block.inlines if part.text))
             case _:
                 yield block
     if card.remark and not any(isinstance(block, Table) for block in card.blocks):
         yield Paragraph(inline_text.to_inlines(Text(f"{card.remark[:1].upper()}{card.remark[1:]}.", muted=True)))
-
-
-def _drop_wordless_columns(table: Table) -> Table:
-    """Drop columns that hold nothing but bars."""
-    indices = [index for index in range(len(table.columns)) if not all(is_blank(row[index]) for row in table.rows)]
-    return dataclasses.replace(
-        table,
-        columns=tuple(table.columns[index] for index in indices),
-        rows=tuple(tuple(row[index] for index in indices) for row in table.rows),
-    )

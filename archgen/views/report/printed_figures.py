@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import replace
 from decimal import Decimal
 
+from archgen.frozen import replace
 from archgen.views import inline_text
 from archgen.views.shapes import Block, Bullets, Column, Facts, Inlines, Paragraph, Section, Table, Text
 from archgen.views.short_figures import QUANTITY, round_number, shorten_quantity, write_comparisons

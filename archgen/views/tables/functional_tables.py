@@ -129,7 +129,9 @@ def make_frame_table(lookup: Lookup) -> Table | None:
             link_declared_frame(architecture, frame.parent) if frame.parent is not None else _mute_words("a root"),
             link_writer(architecture, frame) if frame.parent is not None else (),
             _rate_cell(frame),
-            inline_text.join_inlines(_link_port(architecture, port) for port in ports_by_frame.get(frame.id, ())),
+            inline_text.join_inlines(
+                inline_text.port_id_link(architecture, port) for port in ports_by_frame.get(frame.id, ())
+            ),
         )
         for frame in frames
     )
@@ -165,10 +167,6 @@ def _rate_cell(frame: Frame) -> Inlines:
     if frame.parent is None:
         return ()
     return _mute_words("static") if frame.static else inline_text.quantity_to_inlines(frame.rate)
-
-
-def _link_port(architecture: Architecture, port_id: str) -> Inlines:
-    return inline_text.port_link(architecture, architecture.outputs.get(port_id) or architecture.inputs[port_id])
 
 
 def _mute_words(words: str) -> Inlines:

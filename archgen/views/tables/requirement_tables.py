@@ -44,9 +44,15 @@ def _make_row(lookup: Lookup, requirement: Requirement, row: TreeRow) -> tuple[I
         note = inline_text.to_inlines(requirement.title, Text(" (also above)", muted=True))
         return ((link,), (*_indent(row.depth), *note), (), (), (), ())
     shows_state = bool(lookup.requirement_trace.parts) or lookup.requirement_trace.is_verification_told
+    words = " · ".join(word for word in (requirement.kind, requirement.priority) if word)
+    indent = _INDENT * min(row.depth, _MAX_INDENT)
     return (
         (link,),
-        (*_indent(row.depth), *_title_cell(requirement, row.depth)),
+        (
+            *_indent(row.depth),
+            Text(requirement.title),
+            *((Text(f"{indent}{words}", muted=True, line_break=True),) if words else ()),
+        ),
         inline_text.join_inlines(use_case_link(lookup, name) for name in requirement.use_cases),
         _server_cell(lookup, requirement),
         _verifier_cell(lookup, requirement),
@@ -60,13 +66,6 @@ def _indent(depth: int) -> Inlines:
         return ()
     depth_words = f"{depth} " if depth > _MAX_INDENT else ""
     return (Text(f"{_INDENT * min(depth, _MAX_INDENT)}{depth_words}", muted=True),)
-
-
-def _title_cell(requirement: Requirement, depth: int) -> Inlines:
-    """Return the title, and below it kind and priority, indented as the title is."""
-    words = " · ".join(word for word in (requirement.kind, requirement.priority) if word)
-    indent = _INDENT * min(depth, _MAX_INDENT)
-    return (Text(requirement.title), *((Text(f"{indent}{words}", muted=True, line_break=True),) if words else ()))
 
 
 def _server_cell(lookup: Lookup, requirement: Requirement) -> Inlines:

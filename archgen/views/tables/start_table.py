@@ -6,7 +6,7 @@ import shlex
 from collections.abc import Collection, Iterator, Mapping
 
 from archgen.bringup.plan_shapes import StartPlan, StartStep
-from archgen.bringup.start_plan import describes_start, make_start_plan
+from archgen.bringup.start_plan import make_start_plan
 from archgen.model.start_up import PHASES
 from archgen.views import inline_text, start_phrases
 from archgen.views.lookup import Lookup
@@ -23,7 +23,7 @@ _COLUMNS = make_columns(("Step", 0.4, "right"), ("What starts", 1.4), ("How", 2.
 
 def make_start_blocks(lookup: Lookup) -> list[Block]:
     """Make the tables of the phases and what is said below them; nothing where the project does not describe its start-up."""
-    if not describes_start(lookup.architecture):
+    if not lookup.architecture.describes_start():
         return []
     plan = make_start_plan(lookup.architecture)
     steps = {step.id: step for step in plan.steps}
@@ -138,7 +138,7 @@ def _mute_words(words: str) -> Inlines:
 START_COLUMNS = ("number", "id", "kind", "phase", "host", "command", "waits_for", "up_when", "state", "place")
 
 
-def list_start_rows(lookup: Lookup) -> Iterator[tuple[str, ...]]:
+def list_start_rows(lookup: Lookup) -> Iterator[tuple[object, ...]]:
     """Yield the shown steps of the start-up, with their numbers in the whole plan."""
     architecture = lookup.architecture
     for number, step in list_shown_steps(lookup, make_start_plan(architecture)):

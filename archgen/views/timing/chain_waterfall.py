@@ -203,9 +203,12 @@ def _make_steps(
                 start_share = pieces[-1].end if pieces else axis.find_share(time)
                 end_share = min(1.0, start_share + _UNKNOWN_LENGTH)
                 pieces.append(WaterfallPiece("unknown", start_share, end_share, f"{word} for how long, nobody knows"))
+        owners = inline_text.owner_links(lookup.architecture, _list_owners(lookup, timing_lookup, term.activity))
+        activity = timing_lookup.analysis.system.activities.get(term.activity)
+        host = inline_text.host_link(lookup.architecture, activity.host) if activity and activity.host else ()
         yield WaterfallStep(
             timing_tables.activity_link(timing_lookup, term.activity)[0],
-            _describe_place(lookup, timing_lookup, term),
+            inline_text.join_inlines(tuple(part for part in (owners, host) if part)),
             tuple(pieces),
             _describe_step(term),
         )
@@ -219,14 +222,6 @@ def _describe_step(term: ChainTerm) -> str:
         if value.value or value.value is None
     ]
     return " · ".join(filter(None, (", ".join(phrases) or "adds no time", term.why)))
-
-
-def _describe_place(lookup: Lookup, timing_lookup: TimingLookup, term: ChainTerm) -> Inlines:
-    """Name the owner of a step and its host."""
-    owners = inline_text.owner_links(lookup.architecture, _list_owners(lookup, timing_lookup, term.activity))
-    activity = timing_lookup.analysis.system.activities.get(term.activity)
-    host = inline_text.host_link(lookup.architecture, activity.host) if activity and activity.host else ()
-    return inline_text.join_inlines(tuple(part for part in (owners, host) if part))
 
 
 def _list_owners(lookup: Lookup, timing_lookup: TimingLookup, activity_id: str) -> tuple[str, ...]:

@@ -59,7 +59,11 @@ def make_chain_blocks(
             "At the earliest",
             timing_tables.figure_cell(value_format.display_lower_bound(result.best), result.best),
         ),
-        Fact("", "From the earliest to the latest", _spread_cell(result)),
+        Fact(
+            "",
+            "From the earliest to the latest",
+            () if result.spread is None else timing_tables.duration_cell(TimingValue(result.spread)),
+        ),
         Fact(
             "",
             "Reaction time without the first wait",
@@ -100,10 +104,6 @@ def make_chain_blocks(
         *make_late_run_figures(lookup, timing_lookup, result),
         *([Table(f"table:{name}", f"{chain.title}: parts of the bound", columns, rows)] if rows else []),
     )
-
-
-def _spread_cell(result: ChainResult) -> Inlines:
-    return () if result.spread is None else timing_tables.duration_cell(TimingValue(result.spread))
 
 
 def _list_advice(timing_lookup: TimingLookup, result: ChainResult) -> Iterator[Fact]:

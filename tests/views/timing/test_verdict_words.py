@@ -8,7 +8,7 @@ import pytest
 
 from archgen import pipeline
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.emit.graphviz.chart_styles import STRETCH_FORMS
+from archgen.emit.graphviz.chart_layout import STRETCH_FORMS
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.shapes import Bullets, Inlines, Paragraph
 from archgen.views.timing import chain_charts, element_timing, load_charts, timing_tables, timing_verdicts

@@ -324,7 +324,7 @@ def test_a_computed_remap_leaves_the_name_unknown(run: Run) -> None:
     assert run("import", "workspace", "src", "--distro", "humble", "-o", "robot").status == 0
     text = Path("robot/robot.yaml").read_text()
     assert (
-        "odom: nav_msgs/msg/Odometry  # name unknown: `a computed remap of odom`, my_bringup/launch/robot.launch.py:"
+        "odometry: nav_msgs/msg/Odometry  # name unknown: `a computed remap of odom`, my_bringup/launch/robot.launch.py:"
         in text
     )
-    assert "odom: {}" in text
+    assert "odometry: {}" in text
