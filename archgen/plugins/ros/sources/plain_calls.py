@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Mapping, Sequence
+from functools import reduce
 from types import MappingProxyType
 
 from archgen.plugins.ros.sources.walk_values import Value, WalkedObject, join_texts, settle
@@ -72,7 +73,7 @@ def add_up(values: Sequence[Value]) -> Value:
     """Return what `+` makes of values; NotImplemented where it is longer than anybody writes."""
     settled = [settle(each) for each in values]
     if all(isinstance(each, int | float) for each in settled):
-        return sum(settled)
+        return reduce(operator.add, settled, 0)
     if all(isinstance(each, list) for each in settled):
         return [item for each in settled for item in each][:MAX_ITEMS]
     joined = join_texts(values)
