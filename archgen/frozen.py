@@ -45,6 +45,8 @@ else:
 
 
 _NO_VALUE: Any = object()
+_NOTHING: Mapping[Any, Any] = {}
+"""What all fields of type `Mapping` share that are empty unless given: nobody may write to them, and models have a million."""
 
 
 def _make_frozen(cls: type) -> type:
@@ -86,6 +88,8 @@ def _make_init(frozen_class: type, fields: tuple[dataclasses.Field[Any], ...]) -
         namespace[f"set_{at}"] = frozen_class.__dict__[field.name].__set__
         if field.default is not dataclasses.MISSING:
             defaults[field.name] = field.default
+        elif field.default_factory is dict and str(field.type).startswith("Mapping["):
+            defaults[field.name] = _NOTHING
         elif field.default_factory is not dataclasses.MISSING:
             namespace[f"make_{at}"], defaults[field.name] = field.default_factory, _NO_VALUE
             made_places.append(at)

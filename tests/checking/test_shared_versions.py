@@ -36,8 +36,7 @@ def describe(checked: CheckedProject) -> tuple[object, ...]:
     return (
         [repr(each) for each in checked.findings],
         repr(checked.architecture),
-        repr(checked.analysis.outputs),
-        repr(checked.analysis.responses),
+        checked.analysis and repr((checked.analysis.outputs, checked.analysis.responses)),
         {name: repr(each.architecture) for name, each in variants},
     )
 

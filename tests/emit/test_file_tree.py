@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from archgen.emit import file_tree
 from archgen.emit.file_tree import TREE_MANIFEST, FileTree, OutputError, make_file_tree, write_file, write_tree
 from archgen.emit.safe_names import assign_safe_paths, is_safe_path, make_safe_path, make_slug
 
@@ -225,3 +226,15 @@ def test_one_file_is_never_written_over_something_else(tmp_path: Path, place: st
     os.mkfifo(tmp_path / "fifo")
     with pytest.raises(OutputError, match="not a regular file"):
         write_file(tmp_path / place, b"x")
+
+
+def test_what_comes_after_many_bytes_waits_on_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    files = [(f"f{number}.txt", f"{number}\n".encode() * 9) for number in range(9, -1, -1)]
+    held = make_file_tree(files)
+    monkeypatch.setattr(file_tree, "_MAX_HELD_BYTES", 40)
+    stored = make_file_tree(files)
+    assert dict(stored.files) == dict(held.files) == dict(files)
+    assert list(stored.files) == sorted(dict(files))
+    assert write_tree(stored, tmp_path / "out").written == tuple(held.files)
+    assert {path.name: path.read_bytes() for path in (tmp_path / "out").glob("*.txt")} == dict(files)
+    assert write_tree(held, tmp_path / "out").unchanged == tuple(held.files)
