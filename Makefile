@@ -6,7 +6,7 @@ TESTS ?= tests
 # A process of tests for each core: to collect the tests costs each of them as much as hundreds of tests.
 WORKERS ?= $(shell getconf _NPROCESSORS_ONLN)
 
-.PHONY: demo test test-all properties check lint format bench mutants golden covered size language pages lock audit sbom test-lowest clean
+.PHONY: demo test test-all properties check lint format bench mutants fuzz golden covered size language pages lock audit sbom dist test-lowest clean
 .DEFAULT_GOAL := help
 
 .PHONY: help
@@ -20,11 +20,13 @@ help:
 	@echo "make test-all  all tests: also those that take longer, and those that need browsers, an office, compilers, judges or ROS"
 	@echo "make properties  the property tests again, on new random draws each time"
 	@echo "make mutants   change one condition at a time, and see which changes no test notices"
+	@echo "make fuzz      feed changed fixtures to all readers and verbs, guided by coverage: SECONDS=600 SEED=1 TARGETS="
 	@echo "make bench     measure speed and scale"
 	@echo "make golden    renew the expected outputs of example_ramcip"
 	@echo "make language  renew what follows from the description of the language in language/"
 	@echo "make lock      renew the versions and hashes in ci/locked, of all packages that CI and the actions install"
 	@echo "make audit     look up known holes in these packages; make sbom lists them with their licences"
+	@echo "make dist      build the wheel and the sdist of the last commit, the same bytes everywhere"
 	@echo "make test-lowest  the tests of what is written, with the lowest versions of packages that are allowed"
 	@echo "make pages     renew what is generated: rule pages, interface data, the page of the ROS library"
 
@@ -78,6 +80,10 @@ bench: .make/test
 mutants: .make/test
 	$(BIN)/python tools/run_mutants.py --seed $(or $(SEED),1) --count $(or $(COUNT),200)
 
+# What breaks lies in .make/fuzzed/found: mended, and kept in tests/fuzz/kept. What was learnt of the readers is gone on from.
+fuzz: .make/fuzz
+	.make/fuzz-tools/bin/python -m tests.fuzz.run_fuzz --seconds $(or $(SECONDS),600) --seed $(or $(SEED),1) --work .make/fuzzed $(TARGETS)
+
 golden: .make/test
 	$(BIN)/python -m pytest tests/test_golden.py --update-golden
 
@@ -109,6 +115,13 @@ sbom: .make/supply
 	.make/supply-tools/bin/cyclonedx-py environment --output-reproducible --pyproject pyproject.toml -o archgen-out/sbom.json .make/sbom/bin/python
 
 # Tests with the lowest versions that pyproject.toml allows.
+# The wheel and the sdist of the last commit: whoever builds it again, anywhere, gets the same bytes.
+dist: .make/test
+	rm -rf dist .make/dist && mkdir -p .make/dist
+	git archive HEAD | tar -x -C .make/dist
+	SOURCE_DATE_EPOCH=$$(git log -1 --format=%ct) $(BIN)/python -m build --no-isolation --outdir dist .make/dist
+	rm -rf .make/dist
+
 test-lowest: .make/test
 	sh tools/test_lowest_versions.sh
 
@@ -150,13 +163,27 @@ endif
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check $(CHECK_PACKAGES)
 	touch $@
 
+# The fuzzer, with what the tests need whose fixtures it changes: its counters of coverage are in the way elsewhere.
+.make/fuzz: pyproject.toml tools/system_packages.sh
+	sh tools/system_packages.sh run
+	mkdir -p .make && $(PYTHON) -m venv .make/fuzz-tools
+ifdef LOCKED
+	.make/fuzz-tools/bin/python -m pip install --quiet --disable-pip-version-check $(PACKAGES)
+	.make/fuzz-tools/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes --requirement ci/locked/fuzz.txt
+	.make/fuzz-tools/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --no-index --editable .
+else
+	.make/fuzz-tools/bin/python -m pip install --quiet --disable-pip-version-check --upgrade "pip>=25.1"
+	.make/fuzz-tools/bin/python -m pip install --quiet --disable-pip-version-check --editable . --group test --group fuzz
+endif
+	touch $@
+
 .make/supply: ci/locked/supply.txt
 	mkdir -p .make && $(PYTHON) -m venv .make/supply-tools
 	.make/supply-tools/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes --requirement ci/locked/supply.txt
 	touch $@
 
 # What the other tests need: browsers, an office, compilers and the judges.
-.make/test-all: .make/check tests/judges/package.json tools/system_packages.sh
+.make/test-all: .make/check .make/fuzz tests/judges/package.json tools/system_packages.sh
 	sh tools/system_packages.sh test-all
 	npm install --prefix tests/judges --no-package-lock --no-audit --no-fund --loglevel=error
 	touch $@

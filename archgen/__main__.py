@@ -9,13 +9,14 @@ import sys
 
 
 def main() -> None:
-    """Run the command line. Exit status: 0 no errors, 1 errors found, 2 wrong usage or a failure, 130 interrupted."""
+    """Run the command line. Exit status: 0 no errors, 1 errors found, 2 wrong usage or a failure, 130 and more stopped."""
     # All of it is inside: imports take most of the first tenth of a second, in which people press Ctrl-C, too.
     try:
+        _take_ending_signals()
         _run_verb()
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as stop:
         sys.stderr.write("archgen: stopped\n")
-        sys.exit(130)
+        sys.exit(stop.args[0] if stop.args else 130)
     except BrokenPipeError:
         # The reader of our output has closed it (`archgen list | head`): that is not a failure.
         _leave_quietly()
@@ -32,6 +33,22 @@ def main() -> None:
         error_text = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
         sys.stderr.write(f"archgen: failed: {error_text}\nThis is a mistake in archgen. ARCHGEN_DEBUG=1 shows where.\n")
         sys.exit(2)
+
+
+def _take_ending_signals() -> None:
+    """Let signals that would end the process at once (`kill`, a terminal that is closed) stop it as Ctrl-C does.
+
+    So what is half done is taken away.
+    """
+    import signal
+
+    def stop(number: int, _: object) -> None:
+        raise KeyboardInterrupt(128 + number)
+
+    for name in ("SIGTERM", "SIGHUP"):
+        number = getattr(signal, name, None)  # Windows has no SIGHUP
+        if number and signal.getsignal(number) == signal.SIG_DFL:
+            signal.signal(number, stop)
 
 
 def _run_verb() -> None:
@@ -62,8 +79,8 @@ def _run_verb() -> None:
     except PluginRefusedError as error:
         sys.stderr.write(f"Error: {make_visible(str(error))}\n")
         sys.exit(2)
-    except click.Abort:
-        raise KeyboardInterrupt from None
+    except click.Abort as abort:
+        raise (abort.__cause__ if isinstance(abort.__cause__, KeyboardInterrupt) else KeyboardInterrupt) from None
 
 
 def _leave_quietly() -> None:

@@ -12,6 +12,7 @@ import gc
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from archgen import project
 from archgen.checking.all_rules import SHIPPED_RULES, index_all_rules
@@ -28,8 +29,11 @@ from archgen.checking.variant_judging import (
     stand_in_variants,
 )
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.project import LoadedProject, ParsedSlices, TrackedProject
+from archgen.project import LoadedProject, ParsedSlices
 from archgen.timing.run_analysis import AnalysisMemory
+
+if TYPE_CHECKING:
+    from archgen.project import TrackedProject
 
 __all__ = [
     "SHIPPED_RULES",

@@ -57,7 +57,7 @@ _PACKAGES = {
 }
 """Debian's packages that are called otherwise than their program."""
 _BARE_COMMANDS = frozenset(Path(__file__).with_name("bare_commands.txt").read_text("utf-8").split())
-"""What every Debian has (coreutils, findutils, grep, sed, mawk, tar, gzip, diffutils, util-linux, two shells), git, and Pythons."""
+"""What every Debian has (coreutils, findutils, grep, sed, mawk, tar, gzip, diffutils, util-linux, libc-bin, two shells), git, make, and Pythons."""
 
 
 def find_tool(*names: str) -> str:

@@ -6,12 +6,15 @@ import json
 import os
 import re
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
 from tests import readable
-from tests.running import RAMCIP, REVISION, archgen, archgen_here, contents
+from tests.determined_project import make_project, run_every_output
+from tests.running import RAMCIP, REVISION, ROOT, archgen, archgen_here, contents, made_once
 
 ELSEWHERE = {
     "TZ": "Asia/Kathmandu",
@@ -162,3 +165,74 @@ def placeless(data: bytes) -> bytes:
     """Take the places in files out of an output: in the packed file everything stands elsewhere."""
     data = data.replace(b"<wbr>", b"").replace("\u200b".encode(), b"")
     return re.sub(rb"[a-z_/]+\.yaml:\d+(:\d+)?", b"PLACE", data)
+
+
+LOCALES = (
+    *(("tr_TR", "UTF-8"), ("de_DE", "UTF-8"), ("ja_JP", "UTF-8"), ("tr_TR", "ISO-8859-9"), ("ja_JP", "EUC-JP")),
+    *(("C", "UTF-8"), ("C", ""), ("POSIX", "")),
+)
+ZONES = ("UTC", "Asia/Kathmandu", "America/St_Johns", "Pacific/Kiritimati", "Europe/Berlin", ":/nonexistent")
+FOLDERS = (
+    "plain",
+    "with blanks  in it",
+    "çöpy ü",
+    "日本語/ロボット",
+    "a" * 100,
+    "it's $HOME; `x` & %d #1",
+    "-o",
+    ".hidden",
+)
+
+
+@pytest.fixture(scope="module")
+def locales(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Compile the locales that this system has the sources of; programs take any other one for C."""
+    folder = tmp_path_factory.mktemp("locales")
+    for language, charset in LOCALES:
+        if charset and language != "C":
+            words = ("localedef", "-i", language, "-f", charset, folder / f"{language}.{charset}")
+            subprocess.run(words, capture_output=True, check=False)  # noqa: S603 - of Debian's base system
+    return folder
+
+
+@pytest.fixture(scope="module")
+def every_output(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> dict[str, bytes]:
+    """Make every output under the settings of the tests, once for all of pytest's workers."""
+    base = tmp_path_factory.getbasetemp()
+    place = (base if worker_id == "master" else base.parent) / "every output"
+
+    def make(folder: Path) -> None:
+        run_every_output(sys.executable, make_project(folder / "robot"), folder / "out", {"PYTHONPATH": str(ROOT)})
+
+    return contents(made_once(place, make) / "out")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", range(20))
+def test_twenty_settings_make_the_same_bytes_of_every_output(
+    number: int, every_output: dict[str, bytes], tmp_path: Path, locales: Path
+) -> None:
+    """Hash seeds, locales, time zones, folders, numbers of processors, masks of permissions, cold and warm caches."""
+    language, charset = LOCALES[number % len(LOCALES)]
+    project = make_project(tmp_path / FOLDERS[(number * 3) % len(FOLDERS)])
+    environment = {
+        "PYTHONPATH": str(ROOT),
+        "PYTHONHASHSEED": str(number * 101),
+        "LC_ALL": ".".join(filter(None, (language, charset))),
+        "LOCPATH": str(locales),
+        "TZ": ZONES[number % len(ZONES)],
+        "PYTHONUTF8": str(number // 3 % 2),
+        "PYTHONCOERCECLOCALE": "0",
+        "COLUMNS": "",
+        # Each third has a cache of its own, which is empty.
+        **({} if number % 3 else {"XDG_CACHE_HOME": str(tmp_path / "cache")}),
+    }
+    old = os.umask((0o022, 0o077, 0o002)[number % 3])
+    try:
+        made = run_every_output(sys.executable, project, tmp_path / "out", environment, 1 + number % 5)
+    finally:
+        os.umask(old)
+    assert sorted(made) == sorted(every_output)
+    assert [name for name, data in every_output.items() if made[name] != data] == []
+    statuses = made["statuses.txt"].decode()
+    assert statuses.count("\n0 ") > 55, statuses

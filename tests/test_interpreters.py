@@ -17,6 +17,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.determined_project import make_project, run_every_output
 from tests.running import RAMCIP, REVISION, ROOT, contents
 
 pytestmark = pytest.mark.build
@@ -62,7 +63,7 @@ def find_interpreter(version: str) -> Path | None:
 
 def version_of(python: Path) -> str:
     """Ask an interpreter for its version; a shim of one that is not installed answers with an error."""
-    words = (python, "-c", "import sys, venv, ensurepip; print('%d.%d' % sys.version_info[:2])")
+    words = (python, "-c", "import sys, venv; print('%d.%d' % sys.version_info[:2])")
     done = subprocess.run(words, capture_output=True, text=True, check=False)  # noqa: S603 - an interpreter
     return done.stdout.strip()
 
@@ -105,9 +106,11 @@ def python(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFact
     if interpreter == Path(sys.executable):
         pytest.skip(f"Python {request.param} runs the tests: the others are held against it")
     environment = tmp_path_factory.mktemp("environment") / "venv"
-    run(interpreter, "-m", "venv", environment)
+    # Debian's own Python has no pip of its own.
+    run(interpreter, "-m", "venv", "--without-pip", environment)
     program = environment / "bin" / "python"
-    run(program, "-m", "pip", "install", "--quiet", "--only-binary", ":all:", *pinned_libraries())
+    pip = (sys.executable, "-m", "pip", "--python", program)
+    run(*pip, "install", "--quiet", "--only-binary", ":all:", *pinned_libraries())
     assert version_of(program) == request.param
     return program
 
@@ -135,3 +138,13 @@ def test_every_python_prints_the_same(python: Path, other: Path) -> None:
     for words in PRINTED:
         call = ("-m", "archgen", *(other if word == OTHER else word for word in words))
         assert run(python, *call) == run(sys.executable, *call), words
+
+
+def test_every_python_makes_the_same_bytes_of_every_output(python: Path, tmp_path: Path) -> None:
+    made = []
+    for number, program in enumerate((python, Path(sys.executable))):
+        place = tmp_path / str(number)
+        settings = {"PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(place / "cache")}
+        made.append(run_every_output(program, make_project(place / "robot"), place / "out", settings))
+    assert sorted(made[0]) == sorted(made[1])
+    assert [name for name, data in made[1].items() if made[0][name] != data] == []

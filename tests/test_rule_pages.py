@@ -10,9 +10,9 @@ import pytest
 from archgen import resources
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.findings import rule_pages
-from archgen.findings.comparison_rules import COMPARISON_RULES, GENERATION_RULES
-from archgen.findings.rule_table import FAILED_RULE, index_rules
+from archgen.findings.rule_table import COMPARISON_RULES, FAILED_RULE, index_rules
 from archgen.pipeline import SHIPPED_RULES, check_project, check_text
+from archgen.views.generation.architecture_needs import GENERATION_RULES
 from tests.repositories import repository
 
 _LOUD = {Severity.ERROR, Severity.WARNING}

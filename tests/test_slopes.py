@@ -88,11 +88,11 @@ def make_projects(dimension: str, folder: Path) -> list[Path]:
 @pytest.mark.parametrize("dimension", ["components", "variants", "partners", "chains", "requirements", "instances"])
 def test_no_verb_calls_anything_more_than_n_log_n_times(dimension: str, tmp_path: Path) -> None:
     projects = make_projects(dimension, tmp_path)
-    steep = {}
+    steep = []
     for verb, words in _VERBS.items():
         count_calls(_fill_in(words, projects[0]))  # what is imported or made once is not counted
-        steep[verb] = find_steep([count_calls(_fill_in(words, project)) for project in projects])
-    assert not {verb: functions for verb, functions in steep.items() if functions}
+        steep += [f"{verb}: {each}" for each in find_steep([count_calls(_fill_in(words, each)) for each in projects])]
+    assert not steep, "\n".join(steep)
 
 
 def _fill_in(words: tuple[str, ...], project: Path) -> list[str]:

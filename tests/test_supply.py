@@ -12,7 +12,7 @@ import yaml
 from tests.running import ROOT
 
 WORKFLOWS = (".github/workflows/ci.yml", ".github/workflows/action.yml", ".github/workflows/supply.yml")
-LOCKS = ("run.txt", "check.txt", "supply.txt")
+LOCKS = ("run.txt", "check.txt", "supply.txt", "fuzz.txt")
 
 
 def read_lock(name: str) -> dict[str, tuple[str, list[str]]]:
@@ -43,12 +43,13 @@ def satisfies(version: str, words: str) -> bool:
 
 
 @pytest.mark.parametrize(
-    ("lock", "groups"), [("run.txt", ["build"]), ("check.txt", ["build", "check"]), ("supply.txt", ["supply"])]
+    ("lock", "groups"),
+    [("run.txt", ["build"]), ("check.txt", ["build", "check"]), ("supply.txt", ["supply"]), ("fuzz.txt", ["fuzz"])],
 )
 def test_locked_is_what_is_asked_for(lock: str, groups: list[str]) -> None:
     locked = read_lock(lock)
     wanted = [words for group in groups for words in list_wanted(group)]
-    if lock != "supply.txt":
+    if lock not in {"supply.txt", "fuzz.txt"}:
         data = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
         wanted += data["project"]["dependencies"]
     for words in wanted:

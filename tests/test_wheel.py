@@ -6,6 +6,7 @@ libraries that archgen stands on in this one, by a .pth file.
 
 from __future__ import annotations
 
+import hashlib
 import os
 import subprocess
 import sys
@@ -19,6 +20,7 @@ from pathlib import Path
 import pytest
 
 from archgen import __version__
+from tests.determined_project import make_project, run_every_output
 from tests.running import REVISION, ROOT, contents, made_once
 
 pytestmark = pytest.mark.build
@@ -92,6 +94,36 @@ def test_the_wheel_holds_what_archgen_needs_and_nothing_else(built: Path) -> Non
     assert sorted(expected - held) == []
 
 
+@pytest.mark.slow
+def test_two_builds_make_the_same_bytes(tmp_path: Path) -> None:
+    """By `make dist`, from two clones in other folders, with files of other times and permissions, at other times."""
+    digests = []
+    for name, umask in (("one", 0o022), ("zwei Ö", 0o077)):
+        clone, old = tmp_path / name / "archgen", os.umask(umask)
+        try:
+            subprocess.run(["git", "clone", "--quiet", ROOT, clone], check=True)  # noqa: S603, S607
+            for number, file in enumerate(sorted(clone.rglob("*.py"))):
+                os.utime(file, (number * 1_000_000, number * 1_000_000))
+            (clone / "archgen" / "left_over.py").write_text("not committed = 1\n")
+            (clone / ".make").mkdir()
+            (clone / ".make" / "test").touch()
+            (clone / ".venv").symlink_to(Path(sys.executable).parents[1])
+            run("make", "dist", "--old-file=.make/test", cwd=clone)
+        finally:
+            os.umask(old)
+        digests.append(
+            {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in (clone / "dist").iterdir()}
+        )
+    assert digests[0] == digests[1]
+    assert sorted(digests[0]) == [f"{NAME}-py3-none-any.whl", f"{NAME}.tar.gz"]
+    with zipfile.ZipFile(tmp_path / "one" / "archgen" / "dist" / f"{NAME}-py3-none-any.whl") as wheel:
+        assert "archgen/left_over.py" not in wheel.namelist()
+        committed = subprocess.check_output(
+            ["git", "log", "-1", "--format=%cd", "--date=format:%Y"], cwd=ROOT, text=True
+        )
+        assert {member.date_time[0] for member in wheel.infolist()} == {int(committed)}
+
+
 @pytest.mark.parametrize(
     "name",
     [
@@ -154,6 +186,16 @@ def test_it_makes_the_case_study_as_the_checkout_does(installed: Path, ramcip: P
     made, expected = contents(tmp_path / "out"), contents(ramcip)
     assert sorted(made) == sorted(expected)
     assert [path for path, data in expected.items() if made[path] != data] == []
+
+
+def test_it_makes_every_output_as_the_checkout_does(installed: Path, tmp_path: Path) -> None:
+    made = []
+    for python, path in ((installed / "python", ""), (Path(sys.executable), str(ROOT))):
+        place = tmp_path / f"{len(made)}"
+        settings = {"PYTHONPATH": path, "XDG_CACHE_HOME": str(place / "cache")}
+        made.append(run_every_output(python, make_project(place / "robot"), place / "out", settings))
+    assert sorted(made[0]) == sorted(made[1])
+    assert [name for name, data in made[1].items() if made[0][name] != data] == []
 
 
 def test_it_explains_rules_and_starts_projects(installed: Path, tmp_path: Path) -> None:

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Writes the packages that are installed where it counts, each with its version and the hashes of its files: ci/locked/.
-# run.txt is what archgen needs and what builds it, check.txt also what tests and checks it, supply.txt what looks at these two.
+# run.txt is what archgen needs and what builds it, check.txt also what tests and checks it, supply.txt what looks at these two,
+# fuzz.txt what finds its way through the readers.
 set -eu
 cd "$(dirname "$0")/.."
 lock=.make/lock
@@ -14,3 +15,4 @@ compile() {
 compile run.txt pyproject.toml --group build
 compile check.txt pyproject.toml --extra xlsx --group build --group check
 compile supply.txt --group supply
+compile fuzz.txt --group fuzz

@@ -9,9 +9,9 @@ from pathlib import Path
 from generator_table import PAGE, renew_table
 
 from archgen.findings import rule_pages
-from archgen.findings.comparison_rules import COMPARISON_RULES, GENERATION_RULES
-from archgen.findings.rule_table import FAILED_RULE, index_rules
+from archgen.findings.rule_table import COMPARISON_RULES, FAILED_RULE, index_rules
 from archgen.pipeline import SHIPPED_RULES
+from archgen.views.generation.architecture_needs import GENERATION_RULES
 
 FOLDER = Path(__file__).resolve().parent.parent / "docs" / "rules"
 

@@ -31,6 +31,7 @@ if [ "$what" = test-all ]; then
     need_command plantuml plantuml
     need_command shellcheck shellcheck
     need_command systemd-analyze systemd
+    [ -e /usr/share/i18n/locales/tr_TR ] || missing="$missing locales"
     need_command g++ g++
     need_command luac5.1 lua5.1
     need_command uncrustify uncrustify

@@ -5,22 +5,21 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
-from typing import NamedTuple
 
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.common_wording import join_first, join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.rule_options import RuleOption, format_percentage
 from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, PerformanceIndicator
 from archgen.model.deployment import Host
 from archgen.timing.analysis import Analysis, ChainTerm, ServiceLoad
 from archgen.timing.chains.chain_bounds import LateChain, find_missed_shares, find_unmet_chains
 from archgen.timing.chains.read_ages import ReadAge, find_read_ages
-from archgen.timing.chains.unfound_bounds import find_overloaded_hosts, find_unfound_places
 from archgen.timing.chains.use_case_times import WholeBound, WholeLimit, bound_wholes, list_limits
 from archgen.timing.figures import figure_wording
-from archgen.timing.figures.figure_wording import format_duration, join_first_names
+from archgen.timing.figures.figure_wording import format_duration
 from archgen.timing.figures.value_arithmetic import is_boundless, is_known_bound, is_unfound
 from archgen.timing.system.thread_pools import name_lane
 from archgen.timing.system.timing_system import Activity
@@ -129,7 +128,7 @@ def _report_slow_whole(
     shell_id: str, limit: WholeLimit, bound: WholeBound, duration: Fraction, margin: Fraction
 ) -> Diagnostic:
     known_phrase = "" if is_known_bound(bound.duration) else " and more, for not all of its figures are known"
-    way = join_first_names(tuple(f"`{name}`" for name in bound.through))
+    way = join_first(tuple(f"`{name}`" for name in bound.through))
     return Diagnostic(
         "slow-component",
         f"`{shell_id}` is to need at most {limit.duration} ({limit.name}), but the way through it takes up to {format_duration(duration)}{known_phrase}: {way}{_describe_margin(margin)}",
@@ -256,6 +255,8 @@ def late_chain(architecture: Architecture, analysis: Analysis, *, margin: Fracti
 
 def _describe_bound(analysis: Analysis, late_chain: LateChain) -> str:
     """Describe how long a chain takes, or why nobody can say."""
+    from archgen.timing.chains.unfound_bounds import find_overloaded_hosts, find_unfound_places
+
     bound, deadline = late_chain.bound, late_chain.chain.deadline
     if is_boundless(bound):
         hosts = join_words([f"`{host}`" for host in find_overloaded_hosts(analysis, late_chain.terms)])
@@ -278,6 +279,8 @@ def _label_largest_part(architecture: Architecture, analysis: Analysis, late_cha
     Where a host has too much to do, or leaves no bound to find, the label is at the host: the figures of the elements
     that happen to run there may all be innocent.
     """
+    from archgen.timing.chains.unfound_bounds import find_overloaded_hosts, find_unfound_places
+
     for host_id in find_overloaded_hosts(analysis, late_chain.terms):
         boundless_ids = [
             f"`{term.activity}`"

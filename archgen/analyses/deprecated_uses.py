@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from itertools import chain
-from typing import NamedTuple
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.component_nesting import list_described_outputs, list_relied_outputs
 from archgen.model.deprecation_lookup import find_deprecation, find_replacement

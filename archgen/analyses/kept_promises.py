@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from typing import NamedTuple
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.component_nesting import list_described_outputs
 from archgen.model.node import Endpoint

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from typing import NamedTuple
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import Span
+from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture, Policy, SourceDemand
 from archgen.model.component import Connection, Input, Output
 from archgen.model.selector_evaluation import SelectorEvaluator
@@ -20,6 +20,18 @@ class WrittenSelector(NamedTuple):
     element: str
     text: str
     span: Span
+
+
+_last_evaluators: list[SelectorEvaluator] = []
+
+
+def _share_evaluator(architecture: Architecture) -> SelectorEvaluator:
+    """Return what evaluates selectors on an architecture, with look-ups that are made once for all rules below."""
+    evaluator = next(iter(_last_evaluators), None)
+    if evaluator is None or evaluator.architecture is not architecture:
+        evaluator = SelectorEvaluator(architecture)
+        _last_evaluators[:] = [evaluator]
+    return evaluator
 
 
 def _list_written_selectors(architecture: Architecture) -> Iterator[WrittenSelector]:
@@ -41,8 +53,7 @@ def _list_written_selectors(architecture: Architecture) -> Iterator[WrittenSelec
 
 def wrong_selector(architecture: Architecture) -> Iterator[Diagnostic]:
     """A selector in a view or policy cannot be read, or names what is not there."""
-    # One evaluator for all selectors: its look-ups (paths, graphs) are made once, when first needed.
-    evaluator = SelectorEvaluator(architecture)
+    evaluator = _share_evaluator(architecture)
     for written_selector in _list_written_selectors(architecture):
         for problem in evaluator.evaluate(written_selector.text)[1]:
             if problem.severity == "warning" and "finding:" in written_selector.text[problem.start : problem.end]:
@@ -61,7 +72,7 @@ def wrong_selector(architecture: Architecture) -> Iterator[Diagnostic]:
 
 def empty_view(architecture: Architecture) -> Iterator[Diagnostic]:
     """A view shows nothing, though all that its selector names is there."""
-    evaluator = SelectorEvaluator(architecture)
+    evaluator = _share_evaluator(architecture)
     for view in architecture.views.values():
         if not view.show or not architecture.components:
             continue
@@ -120,7 +131,7 @@ def find_forbidden_flows(
 
 def forbidden_flow(architecture: Architecture) -> Iterator[Diagnostic]:
     """Data flows directly between two parts of the robot that a policy keeps apart."""
-    evaluator = SelectorEvaluator(architecture)
+    evaluator = _share_evaluator(architecture)
     for policy in architecture.policies.values():
         # A selector with an error selects nothing, and `wrong-selector` reports it.
         senders, _ = evaluator.evaluate(policy.forbid_from) if policy.forbid_from else (None, ())
@@ -150,7 +161,7 @@ def _report_forbidden_flow(
 
 def refused_source(architecture: Architecture) -> Iterator[Diagnostic]:
     """An element takes data from where a policy does not let it take any, and does not guard itself."""
-    evaluator = SelectorEvaluator(architecture)
+    evaluator = _share_evaluator(architecture)
     for policy in architecture.policies.values():
         if policy.require is None:
             continue
@@ -214,7 +225,7 @@ def _report_refused_source(policy: Policy, demand: SourceDemand, refused: _Refus
 def unneeded_exception(architecture: Architecture) -> Iterator[Diagnostic]:
     """A policy accepts an input that it does not object to."""
     policies = [policy for policy in architecture.policies.values() if policy.accepted]
-    evaluator = SelectorEvaluator(architecture)
+    evaluator = _share_evaluator(architecture)
     for policy in policies:
         if _has_wrong_selector(policy, evaluator):
             continue

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator
 from fractions import Fraction
-from typing import NamedTuple
 
 from archgen.derivation.wire.qos_overrides import (
     END_WORDS,
@@ -20,6 +19,7 @@ from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.diagnostics.suggestions import did_you_mean
+from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, Qos, Topic, UseKind
 from archgen.model.parameter import format_parameter

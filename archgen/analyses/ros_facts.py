@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN, Span, first_written_span
 from archgen.diagnostics.suggestions import find_closest
+from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.component import Input, Output
 from archgen.model.known_interfaces import KNOWN_DISTROS, Interfaces, InterfaceStatus, guess_distro

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
-from archgen.bringup.plan_shapes import DroppedWait, StartPlan
-from archgen.bringup.start_plan import make_start_plan, resolve_conditions
 from archgen.derivation.ros_names import shared_topic_names
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
@@ -15,6 +14,9 @@ from archgen.model.architecture import Architecture
 from archgen.model.node import Node, Topic
 from archgen.model.start_up import DEFAULT_PHASE, NO_START
 
+if TYPE_CHECKING:
+    from archgen.bringup.plan_shapes import DroppedWait, StartPlan
+
 _MAX_LISTED = 6
 """So many steps of a circle are named."""
 
@@ -22,6 +24,8 @@ _MAX_LISTED = 6
 def circular_start(architecture: Architecture) -> Iterator[Diagnostic]:
     """Something is to start after what starts only after it."""
     if any(node.start is not None and node.start.after for node in architecture.nodes.values()):
+        from archgen.bringup.start_plan import make_start_plan
+
         for circle in make_start_plan(architecture).circles:
             yield _diagnose_circle(architecture, circle)
 
@@ -71,6 +75,8 @@ def unmet_ready(architecture: Architecture) -> Iterator[Diagnostic]:
     for node in architecture.nodes.values():
         if node.start is None or (node.start.ready.topic is None and node.start.ready.service is None):
             continue
+        from archgen.bringup.start_plan import make_start_plan, resolve_conditions
+
         ready = resolve_conditions(node.start.ready, node, architecture.distro)
         for key, name in (("topic", ready.topic), ("service", ready.service)):
             if name is None or _is_always_there(architecture, key, name):

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator
 
-from archgen.bringup.start_plan import describes_start
 from archgen.derivation.wire.running_state import ANY_NODE, RunningStates
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import Span
@@ -42,7 +41,7 @@ def _find_port_span(node: Node) -> Span:
 
 def silent_node(architecture: Architecture) -> Iterator[Diagnostic]:
     """A lifecycle node is never activated, or stays short of it while others wait for what it sends."""
-    if not describes_start(architecture):
+    if not architecture.describes_start():
         return
     yield from _find_unactivated(architecture)
     on_chains = {point.id for chain in architecture.chains.values() for point in chain.through}
@@ -51,9 +50,9 @@ def silent_node(architecture: Architecture) -> Iterator[Diagnostic]:
         for writer in topic.writers:
             # What somebody brings into a state, he may bring further.
             if writer.runs == "inactive" and not (architecture.nodes[writer.node].start or NO_START).by_written:
-                silent[writer.node] += (
-                    (writer, each) for each in topic.readers if architecture.nodes[each.node].written
-                )
+                for reader in topic.readers:
+                    if architecture.nodes[reader.node].written:
+                        silent[writer.node].append((writer, reader))
     for node_id, ends in silent.items():
         writer, reader = ends[0]
         is_on_chain = any(not on_chains.isdisjoint((end.node, end.component, writer.port)) for writer, end in ends)
@@ -96,7 +95,7 @@ def _find_unactivated(architecture: Architecture) -> Iterator[Diagnostic]:
 
 def unstarted_program(architecture: Architecture) -> Iterator[Diagnostic]:
     """A program has no command and no package, and nothing shows that it is up."""
-    if not describes_start(architecture):
+    if not architecture.describes_start():
         return
     for node in architecture.nodes.values():
         has_command = bool(node.command or (node.package and node.executable))

@@ -18,6 +18,7 @@ from archgen.model.port_media import is_physical
 from archgen.model.quantity import Quantity
 from archgen.timing.analysis import Analysis
 from archgen.timing.chains.use_case_times import LIMIT_KEYS
+from archgen.timing.system.timing_system import Activity
 
 _NS_PER_SECOND = 10**9
 
@@ -105,6 +106,8 @@ def idle_timing(architecture: Architecture, analysis: Analysis) -> Iterator[Diag
     yield from _find_idle_inputs(architecture, analysis)
     yield from _find_idle_freshness(architecture)
     yield from _find_idle_wholes(architecture)
+    yield from _find_idle_shares(architecture)
+    yield from _find_partial_priorities(analysis)
 
 
 def _port_uses(architecture: Architecture) -> Mapping[tuple[str, str], set[str]]:
@@ -211,6 +214,44 @@ def _find_idle_freshness(architecture: Architecture) -> Iterator[Diagnostic]:
                 port.freshness_at,
                 help="write it at an input that reads a message",
                 element=port.component,
+            )
+
+
+def _find_idle_shares(architecture: Architecture) -> Iterator[Diagnostic]:
+    """Yield figures of a fair order where everything has a real-time priority, so that nothing shares a core."""
+    for host in architecture.hosts.values():
+        timings = [
+            each for node in architecture.nodes.values() if node.host == host.id for each in node.timing.values()
+        ]
+        if host.fair is None or not timings or any(timing.priority is None for timing in timings):
+            continue
+        yield Diagnostic(
+            "idle-timing",
+            f"`fair` of `{host.id}` has no effect: everything on it has a real-time priority",
+            host.fair.at,
+            labels=(Label(timings[0].places["priority"], "one of them"),),
+            help="leave it out, or take the priority from what is to share the cores",
+            element=host.id,
+        )
+
+
+def _find_partial_priorities(analysis: Analysis) -> Iterator[Diagnostic]:
+    """Yield priorities in processes on fair hosts of which something has none: a thread is a real-time one, or it is none."""
+    members: dict[str, list[Activity]] = defaultdict(list)
+    for activity in analysis.system.activities.values():
+        if activity.executor and activity.host in analysis.system.fair_shares:
+            members[activity.executor].append(activity)
+    for activities in members.values():
+        urgent = next((each for each in activities if each.priority is not None), None)
+        other = next((each for each in activities if each.priority is None), None)
+        if urgent is not None and other is not None:
+            yield Diagnostic(
+                "idle-timing",
+                f"`priority` of `{urgent.id}` has no effect: `{other.id}` has none, and its threads run both",
+                urgent.places["priority"],
+                labels=(Label(other.places.get("wcet", other.at), "has none"),),
+                help="write a priority at all that these threads run, or let them run in processes of their own",
+                element=urgent.node,
             )
 
 

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
 from math import ceil
 from typing import Literal
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.model.node import NodeStatus
 from archgen.model.quantity import Quantity
 from archgen.model.start_up import PHASES, LifecycleState, ReadyConditions, StartPhase

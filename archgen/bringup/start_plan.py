@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from heapq import heapify, heappop, heappush
 
 from archgen.bringup.plan_shapes import FIRM_NEED, AwaitedStep, DroppedWait, StartPlan, StartStep, StepKind, Wait
@@ -21,6 +20,7 @@ from archgen.bringup.start_commands import (
 from archgen.bringup.wait_circles import StartWaits, group_by_waiting, keep_acyclic, name_container
 from archgen.derivation.wire.remap_rules import NodeNames
 from archgen.derivation.wire.running_state import find_environment
+from archgen.frozen import replace
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Container
 from archgen.model.node import Node
@@ -29,11 +29,6 @@ from archgen.model.start_up import DEFAULT_PHASE, NO_START, PHASES, ReadyConditi
 
 _UNSAFE_IN_FILES = re.compile(r"[^A-Za-z0-9_.-]+")
 _MAX_FILE_NAME = 100
-
-
-def describes_start(architecture: Architecture) -> bool:
-    """Whether a project says anything about its start-up."""
-    return any(node.start is not None or node.command for node in architecture.nodes.values())
 
 
 def make_start_plan(architecture: Architecture) -> StartPlan:

@@ -12,7 +12,8 @@ import hashlib
 import os
 import tempfile
 from pathlib import Path
-from typing import NamedTuple
+
+from archgen.frozen import NamedTuple
 
 
 class FileStore(NamedTuple):
@@ -40,7 +41,7 @@ class FileStore(NamedTuple):
         if path is None:
             return
         with contextlib.suppress(OSError):
-            _replace_file(path, data)
+            _replace_file(path, data, self.suffix)
             if self.most_files is not None:
                 self.prune(self.most_files)
 
@@ -56,15 +57,17 @@ class FileStore(NamedTuple):
                 outdated_file.unlink(missing_ok=True)
 
 
-def _replace_file(path: Path, data: bytes) -> None:
+def _replace_file(path: Path, data: bytes, suffix: str) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
-    # In the same folder, since a move across file systems is not atomic; another process may store the same file.
-    with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".part", delete=False) as part:
-        part.write(data)
+    # In the same folder, since a move across file systems is not atomic; another process may store the same file. One that a
+    # killed run leaves is removed among the oldest, as it ends like all others.
+    descriptor, name = tempfile.mkstemp(suffix=suffix, dir=path.parent)
     try:
-        os.replace(part.name, path)  # noqa: PTH105 - as atomic as the system can
-    except OSError:
-        os.unlink(part.name)  # noqa: PTH108 - beside the call above
+        with os.fdopen(descriptor, "wb") as part:
+            part.write(data)
+        os.replace(name, path)  # noqa: PTH105 - as atomic as the system can
+    except BaseException:  # Ctrl-C is no Exception
+        os.unlink(name)  # noqa: PTH108 - beside the call above
         raise
 
 

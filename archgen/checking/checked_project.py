@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,7 +10,7 @@ from archgen.checking.all_rules import READING_RULES, index_all_rules
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.rule_options import OptionValues
 from archgen.diagnostics.source_span import SourceTexts
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.link.report_chapters import ReportChapters
 from archgen.model.architecture import Architecture
 from archgen.project import LoadedProject

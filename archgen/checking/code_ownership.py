@@ -6,12 +6,12 @@ Find the files in which an element is written: every slice of it, not only the f
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 
 from archgen.checking.checked_project import CheckedProject
 from archgen.emit import codeowners_file as emitter
 from archgen.emit.codeowners_file import CodeownersFile
+from archgen.frozen import replace
 from archgen.git import NoRepositoryError, find_repository
 from archgen.link import mapping_values
 from archgen.model.agreed_terms import signature_file

@@ -8,14 +8,13 @@ from pathlib import Path
 
 from archgen.checking.all_rules import index_all_rules
 from archgen.checking.checked_project import CheckedProject
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.common_wording import join_words, keep_first
 from archgen.diagnostics.diagnostic import Diagnostic, Severity, settle_diagnostics
 from archgen.diagnostics.source_span import Span
 from archgen.findings.rule_table import STALE_CODEOWNERS
 from archgen.frozen import replace
-from archgen.git import GitError, find_object_ids
-from archgen.syntax.committed_files import CommittedFiles
 from archgen.syntax.folder_files import FolderFiles
+from archgen.syntax.project_files import ProjectFiles
 
 _MAX_BYTES = 3_000_000
 """GitHub reads no larger file."""
@@ -50,9 +49,7 @@ def _judge_age(checked_project: CheckedProject, name: str, prefix: str, text: st
     missing_lines = [line for line in wanted_lines if line and line[0] != "#" and line not in present_lines]
     if not missing_lines:
         return None
-    told_lines = [f"`{line}`" for line in missing_lines[:_MAX_LINES]]
-    if len(missing_lines) > _MAX_LINES:
-        told_lines.append(f"{len(missing_lines) - _MAX_LINES} more")
+    told_lines = keep_first([f"`{line}`" for line in missing_lines], _MAX_LINES)
     return Diagnostic(
         STALE_CODEOWNERS.name,
         f"CODEOWNERS is out of date: it lacks {join_words(told_lines)}",
@@ -67,25 +64,35 @@ def _read_codeowners(checked_project: CheckedProject) -> tuple[str, str, str] | 
 
     names = list(dict.fromkeys(chain(*CODEOWNERS_PATHS.values())))
     files = checked_project.loaded_project.files
-    if isinstance(files, CommittedFiles):
-        repository = files.objects.repository
-        prefix = os.path.relpath(files.root, repository.top).replace(os.sep, "/").removeprefix(".")
-        try:
-            blobs = find_object_ids(repository, [f"{files.commit}:{name}" for name in names])
-        except GitError:
-            return None
-        found = [(name, files.objects.read_blob(blob)) for name, blob in zip(names, blobs, strict=True) if blob]
-    elif isinstance(files, FolderFiles):
+    if isinstance(files, FolderFiles):
         root = Path(os.path.realpath(files.root))
         top = next((each for each in (root, *root.parents) if os.path.lexists(each / ".git")), root)
         prefix = root.relative_to(top).as_posix().removeprefix(".")
         found = [(name, _read_unlinked(top / name)) for name in names]
+    elif (committed := _read_committed(files, names)) is not None:
+        prefix, found = committed
     else:
         return None
     return next(
         ((name, prefix, data.decode("utf-8", "replace")) for name, data in found if data and len(data) <= _MAX_BYTES),
         None,
     )
+
+
+def _read_committed(files: ProjectFiles, names: list[str]) -> tuple[str, list[tuple[str, bytes | None]]] | None:
+    # Imported here: a check of files needs no git.
+    from archgen.git import GitError, find_object_ids
+    from archgen.syntax.committed_files import CommittedFiles
+
+    if not isinstance(files, CommittedFiles):
+        return None
+    repository = files.objects.repository
+    try:
+        blobs = find_object_ids(repository, [f"{files.commit}:{name}" for name in names])
+    except GitError:
+        return None
+    found = [(name, files.objects.read_blob(blob)) for name, blob in zip(names, blobs, strict=True) if blob]
+    return os.path.relpath(files.root, repository.top).replace(os.sep, "/").removeprefix("."), found
 
 
 def _read_unlinked(path: Path) -> bytes | None:

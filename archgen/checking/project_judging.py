@@ -6,9 +6,7 @@ Guess the element whose title stands where its id is asked: `owner: LogTech GmbH
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
 from itertools import chain
-from typing import NamedTuple
 
 from archgen import analyses
 from archgen.checking.all_rules import index_all_rules, list_structural_errors
@@ -26,6 +24,7 @@ from archgen.findings import (
     instance_findings,
     rule_table,
 )
+from archgen.frozen import NamedTuple, replace
 from archgen.installed_plugins import RULES, list_entries
 from archgen.language.language_tables import PLAIN_SECTIONS
 from archgen.model.architecture import Architecture

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     metavar="NAME",
     multiple=True,
     help="Make this backend's output too (`wiki`, or one in the project's backends/); may be given several times.",
-    shell_complete=shared_options.complete_documents,
+    shell_complete=shared_options.complete_backends("documents"),
 )
 @click.option(
     "--only",

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import sys
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
@@ -13,6 +12,7 @@ import click
 from archgen.cli import command_support, finding_documents, shared_options
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.safe_text import make_visible
+from archgen.frozen import replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -116,10 +116,8 @@ def _keep_variants(checked_project: CheckedProject, text: str) -> CheckedProject
     from archgen import pipeline
 
     names = shared_options.split_variants(text)
-    try:
+    with command_support.explain_wrong_usage(pipeline.UnknownVariantError):
         return pipeline.keep_variant_findings(checked_project, names)
-    except pipeline.UnknownVariantError as error:
-        raise click.UsageError(make_visible(str(error))) from None
 
 
 def _renew_editor_schema(checked_project: CheckedProject) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,6 +9,7 @@ import click
 
 from archgen.cli import command_support, shared_options
 from archgen.diagnostics.safe_text import make_visible
+from archgen.frozen import replace
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -83,11 +83,9 @@ def _merge_requests(requests: Sequence[OpenRequest], branch: str, project: Path 
 
     names = {request.ref: f"#{request.number}" for request in requests}
     merges = []
-    try:
+    with command_support.explain_wrong_usage(GitError, ProjectNotFoundError):
         for merge in preview_merges(project, "HEAD", [*names], find_joint_breaks, leaves_out_unmergeable=True):
             merges.append(merge)
             ours, theirs = (tuple(names[ref] for ref in side) for side in merge.sides)
             print_merge(branch, replace(merge, sides=(ours, theirs)))
-    except (GitError, ProjectNotFoundError) as error:
-        raise click.UsageError(make_visible(str(error))) from None
     return merges

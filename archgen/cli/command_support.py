@@ -18,6 +18,8 @@ from archgen.diagnostics.diagnostic import Diagnostic, Severity, settle_diagnost
 if TYPE_CHECKING:
     from archgen.diagnostics.source_span import SourceTexts
     from archgen.edit.element_edit import FileEdit
+    from archgen.edit.measured_slice import MeasuredSlice
+    from archgen.edit.requirement_slice import RequirementSlice
     from archgen.model.architecture import Architecture
     from archgen.model.selector_evaluation import Selection
     from archgen.model.selector_parser import SelectorProblem
@@ -35,35 +37,28 @@ def check_or_exit(project: Path | None, version_cache: VersionCache | None = Non
     from archgen.project import ProjectNotFoundError
 
     names = find_asked_variants()
-    try:
+    with explain_wrong_usage(ProjectNotFoundError):
         checked_project = pipeline.check_project(project, version_cache, names or None)
-    except ProjectNotFoundError as error:
-        raise click.UsageError(str(error)) from None
     return stand_or_exit(checked_project, names) if names else checked_project
 
 
 def stand_or_exit(checked_project: CheckedProject, names: Sequence[str]) -> CheckedProject:
     """Return a checked project as it stands in variants. It is wrong usage if it has one of them not."""
     from archgen import pipeline
-    from archgen.diagnostics.safe_text import make_visible
 
-    try:
+    with explain_wrong_usage(pipeline.UnknownVariantError):
         return pipeline.stand_in_variants(checked_project, names)
-    except pipeline.UnknownVariantError as error:
-        raise click.UsageError(make_visible(str(error))) from None
 
 
 def find_trusted_revision(project: Path | None, revision: str | None) -> TrustedRevision | None:
     """Read what a revision says about the project's own backends; None if none is given: then all may run."""
+    if not revision:
+        return None
     from archgen import git
     from archgen.products import trusted_backends
 
-    if not revision:
-        return None
-    try:
+    with explain_wrong_usage(git.GitError):
         return trusted_backends.read_trusted_revision(project, revision)
-    except git.GitError as error:
-        raise click.UsageError(str(error)) from None
 
 
 def print_findings_above(checked_project: CheckedProject, *, lowest_severity: Severity = Severity.WARNING) -> None:
@@ -166,6 +161,17 @@ def explain_write_errors() -> Iterator[None]:
 
 
 @contextmanager
+def explain_wrong_usage(*kinds: type[Exception]) -> Iterator[None]:
+    """Turn errors of some kinds into wrong usage."""
+    from archgen.diagnostics.safe_text import make_visible
+
+    try:
+        yield
+    except kinds as error:
+        raise click.UsageError(make_visible(str(error))) from None
+
+
+@contextmanager
 def explain_missing_versions() -> Iterator[None]:
     """Turn versions that cannot be found into wrong usage."""
     from archgen.diagnostics.safe_text import make_visible
@@ -234,12 +240,37 @@ def write_edit(root: Path, edit: FileEdit, detail: str) -> None:
 
     target = (root / edit.file).resolve()
     with explain_write_errors():
-        # `write_file` puts a new file in place of the old one, which would lose its permissions.
-        mode = target.stat().st_mode if edit.old_content is not None else None
         file_tree.write_file(target, edit.new_content)
-        if mode is not None:
-            target.chmod(mode)
     print_written(root / edit.file, detail)
+
+
+def write_output(document: str | bytes, output: Path | None) -> None:
+    """Write a document to a file, all of it or nothing, or to standard output."""
+    from archgen.emit import file_tree
+
+    if output is not None:
+        # Colours depend on the terminal, and belong into no file.
+        file_tree.write_file(output, document if isinstance(document, bytes) else click.unstyle(document).encode())
+        print_written(output)
+    elif isinstance(document, bytes):
+        sys.stdout.buffer.write(document)
+    else:
+        sys.stdout.write(document)
+
+
+def write_slice(path: Path, made_slice: RequirementSlice | MeasuredSlice, advice: str, detail: str | None = "") -> None:
+    """Write a slice that was made of another file, and print that, unless `detail` is None. `advice` is for a refusal."""
+    from archgen.diagnostics.safe_text import make_visible
+    from archgen.emit.file_tree import OutputError, write_file
+
+    try:
+        write_file(path, made_slice.text.encode())
+    except OutputError as error:
+        raise click.ClickException(make_visible(f"{error.message}; nothing was changed; {advice}")) from None
+    if detail is not None:
+        print_written(path, detail)
+    if not made_slice.is_read:
+        print_warning(f"the project does not read it yet: add `{made_slice.file}` to `sources` in archgen.yaml")
 
 
 def print_written(path: Path, detail: str = "") -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,10 +16,7 @@ from archgen.diagnostics.diagnostic import sort_gravest_first
 if TYPE_CHECKING:
     from archgen.compare import Comparison
     from archgen.products.compared_versions import ProjectVersion
-    from archgen.products.output_options import OutputOptions
     from archgen.products.repository_comparison import ComparedProject, ProjectComparison
-
-ComparisonWriter = Callable[["Comparison", "ProjectVersion", "ProjectVersion"], str | bytes]
 
 
 def _read_versions(
@@ -81,39 +78,7 @@ def _select_changes(
     return select_changes(comparison, old_selection or Selection(), new_selection or Selection())
 
 
-def _write_text(comparison: Comparison, old_version: ProjectVersion, new_version: ProjectVersion) -> str:
-    from archgen.emit.terminal.findings_text import wants_colour
-    from archgen.products import comparison_documents
-
-    colour = wants_colour(sys.stdout, os.environ)
-    return comparison_documents.render_comparison_text(comparison, old_version, new_version, colour=colour)
-
-
-def _write_json(comparison: Comparison, old_version: ProjectVersion, new_version: ProjectVersion) -> str:
-    from archgen.products import comparison_documents
-
-    return comparison_documents.render_comparison_json(comparison, old_version, new_version)
-
-
-def _write_markdown(comparison: Comparison, old_version: ProjectVersion, new_version: ProjectVersion) -> str:
-    from archgen.products import comparison_documents
-
-    return comparison_documents.render_comparison_markdown(comparison, old_version, new_version)
-
-
-def _write_html(comparison: Comparison, old_version: ProjectVersion, new_version: ProjectVersion) -> bytes:
-    from archgen.products import comparison_documents
-
-    return comparison_documents.render_comparison_html(comparison, old_version, new_version, _make_output_options())
-
-
-def _write_svg(comparison: Comparison, _old_version: ProjectVersion, _new_version: ProjectVersion) -> bytes:
-    from archgen.products import comparison_documents
-
-    return comparison_documents.render_comparison_svg(comparison, _make_output_options())
-
-
-def _write_github(comparison: Comparison, _old_version: ProjectVersion, new_version: ProjectVersion) -> str:
+def _write_github(comparison: Comparison, new_version: ProjectVersion) -> str:
     from archgen.cli.finding_documents import folder_in_repository
     from archgen.emit.data.findings_data import format_github_commands
     from archgen.products.merge_breaks import find_breaks
@@ -124,21 +89,28 @@ def _write_github(comparison: Comparison, _old_version: ProjectVersion, new_vers
     return "".join(f"{line}\n" for line in format_github_commands(findings, folder=folder))
 
 
-def _make_output_options() -> OutputOptions:
+COMPARISON_FORMATS = ("text", "json", "markdown", "html", "github", "svg")
+
+
+def _write_comparison(
+    form: str, comparison: Comparison, old_version: ProjectVersion, new_version: ProjectVersion
+) -> str | bytes:
+    from archgen.emit.terminal.findings_text import wants_colour
+    from archgen.products import comparison_documents as documents
     from archgen.products.output_options import OutputOptions
 
-    return OutputOptions(warn=command_support.print_warning)
-
-
-COMPARISON_WRITERS: Mapping[str, ComparisonWriter] = {
-    "text": _write_text,
-    "json": _write_json,
-    "markdown": _write_markdown,
-    "html": _write_html,
-    "github": _write_github,
-    "svg": _write_svg,
-}
-"""The functions that write a comparison, by the name of the format."""
+    if form == "github":
+        return _write_github(comparison, new_version)
+    options = OutputOptions(warn=command_support.print_warning)
+    if form == "svg":
+        return documents.render_comparison_svg(comparison, options)
+    versions = comparison, old_version, new_version
+    if form == "html":
+        return documents.render_comparison_html(*versions, options)
+    if form == "text":
+        return documents.render_comparison_text(*versions, colour=wants_colour(sys.stdout, os.environ))
+    render = documents.render_comparison_json if form == "json" else documents.render_comparison_markdown
+    return render(*versions)
 
 
 def _find_unpushed_base(project: Path | None) -> str:
@@ -200,34 +172,14 @@ def _print_comparisons(comparisons: Sequence[ProjectComparison]) -> None:
         click.echo("\n`archgen diff -C FOLDER` says what changed in a project.")
 
 
-def _write_output(document: str | bytes, output: Path | None) -> None:
-    """Write a document to a file, all of it or nothing, or to standard output."""
-    from archgen.emit import file_tree
-
-    if output is not None:
-        # Colours depend on the terminal, and belong into no file.
-        file_tree.write_file(output, document if isinstance(document, bytes) else click.unstyle(document).encode())
-        command_support.print_written(output)
-    elif isinstance(document, bytes):
-        sys.stdout.buffer.write(document)
-    else:
-        sys.stdout.write(document)
-
-
 @click.command("diff")
 @click.argument("before", required=False, metavar="[A]")
 @click.argument("after", required=False, metavar="[B]")
-@click.option("--format", "form", type=click.Choice(list(COMPARISON_WRITERS)), default="text", show_default=True)
+@click.option("--format", "form", type=click.Choice(COMPARISON_FORMATS), default="text", show_default=True)
 @click.option(
     "--breaking", is_flag=True, help="Show only what breaks another partner; end with 1 where the project forbids it."
 )
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    callback=shared_options.take_dash,
-    help="The file to write.  [default: standard output]",
-)
+@shared_options.file_option("The file to write.  [default: standard output]")
 @click.option(
     "--variant",
     "variants",
@@ -299,5 +251,5 @@ def command(  # noqa: PLR0913 - the options of the verb, each by its name
     if breaking:
         comparison = keep_breaking_only(comparison)
     with command_support.explain_write_errors():
-        _write_output(COMPARISON_WRITERS[form](comparison, old_version, new_version), output)
+        command_support.write_output(_write_comparison(form, comparison, old_version, new_version), output)
     sys.exit(1 if (exit_code and not comparison.is_empty) or (breaking and comparison.is_refused) else 0)

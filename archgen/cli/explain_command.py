@@ -31,8 +31,8 @@ def command(rule: str | None, distro: str | None) -> None:
     from archgen.diagnostics.text_columns import align_rows, find_width
     from archgen.emit.terminal.findings_text import wants_colour
     from archgen.findings import rule_pages
-    from archgen.findings.comparison_rules import COMPARISON_RULES, GENERATION_RULES
-    from archgen.findings.rule_table import index_rules
+    from archgen.findings.rule_table import COMPARISON_RULES, index_rules
+    from archgen.views.generation.architecture_needs import GENERATION_RULES
 
     rules = index_rules((*pipeline.index_all_rules().values(), *COMPARISON_RULES, *GENERATION_RULES))
     width = find_width(sys.stdout)

@@ -20,8 +20,7 @@ def render_findings(
 ) -> str:
     """Render findings as json, GitHub's commands, sarif or junit. With `strict`, warnings are failures too."""
     from archgen.emit.data import findings_data, junit_results, sarif_document
-    from archgen.findings.comparison_rules import COMPARISON_RULES
-    from archgen.findings.rule_table import index_rules
+    from archgen.findings.rule_table import COMPARISON_RULES, index_rules
     from archgen.pipeline import index_all_rules
     from archgen.project import PROJECT_FILE
 

@@ -186,26 +186,20 @@ def _refuse_existing_project(target: Path) -> None:
 
 
 def _gather_answers(target: Path, **flags: Any) -> StartAnswers:  # noqa: ANN401 - as `gathered` takes them
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.start import start_answers
 
-    try:
+    with command_support.explain_wrong_usage(ValueError):
         return start_answers.collect_answers(target.resolve().name, **flags)
-    except ValueError as error:
-        raise click.UsageError(make_visible(str(error))) from None
 
 
 def _parse_headings(headings: tuple[str, ...]) -> Mapping[str, str]:
-    from archgen.diagnostics.safe_text import make_visible
 
     if not headings:
         return {}
     from archgen.installed_plugins import load_reader
 
-    try:
+    with command_support.explain_wrong_usage(ValueError):
         heading_map: Mapping[str, str] = load_reader("headings")(headings)
-    except ValueError as error:
-        raise click.UsageError(make_visible(str(error))) from None
     return heading_map
 
 

@@ -5,11 +5,11 @@ behind.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import TypeVar
 
 import click
 
+from archgen.frozen import replace
 from archgen.start import start_answers
 from archgen.start.start_answers import ForgeName, GroupAnswer, PartnerAnswer, StartAnswers
 

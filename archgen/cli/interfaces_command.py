@@ -26,13 +26,9 @@ _AGREEMENT_FORMATS = ("markdown", "html", "docx", "json")
 @click.option(
     "--between", "pair", nargs=2, metavar="PARTNER PARTNER", required=True, help="The ids of the two partners."
 )
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    callback=shared_options.take_dash,
-    help="The file to write; its ending (.docx, .md, .html, .json) says the format.  [default: Markdown to the terminal, else "
-    "archgen-out/interfaces/ in the project]",
+@shared_options.file_option(
+    "The file to write; its ending (.docx, .md, .html, .json) says the format.  [default: Markdown to the terminal, else "
+    "archgen-out/interfaces/ in the project]"
 )
 @click.option(
     "--format",
@@ -80,7 +76,7 @@ def command(  # noqa: PLR0913 - one for each option
     Each topic, service and action with its version, its message, what is promised and what is only expected of it, chains,
     requirements, open points, and who serves and who reads it. `archgen interfaces --between certh sssa -o certh-sssa.docx`
     """
-    from archgen.products import agreement_documents, leaving_links
+    from archgen.products import agreement_documents, product_writing
     from archgen.products.output_options import OutputOptions
 
     if since and signed:
@@ -94,7 +90,7 @@ def command(  # noqa: PLR0913 - one for each option
     if signed:
         earlier_version = _read_earlier(signed, "--signed", checked_project, project)
     observations = measured_recordings.read_recorded_files(checked_project, recordings) if recordings else ()
-    try:
+    with command_support.explain_wrong_usage(agreement_documents.PartnersError):
         agreement = agreement_documents.make_project_agreement(
             checked_project,
             *pair,
@@ -104,8 +100,6 @@ def command(  # noqa: PLR0913 - one for each option
             signed_version=earlier_version if signed else None,
             observations=observations,
         )
-    except agreement_documents.PartnersError as error:
-        raise click.UsageError(make_visible(str(error))) from None
     output_options = OutputOptions(progress=command_support.make_progress_printer(), warn=command_support.print_warning)
     with command_support.explain_write_errors():
         if form in {"markdown", "json"} and output is None:
@@ -113,7 +107,7 @@ def command(  # noqa: PLR0913 - one for each option
             _exit_by_terms(checked_project, agreement, earlier_version if signed else None)
         endings = {"markdown": "md", "html": "html", "docx": "docx", "json": "json"}
         target = output or checked_project.output_folder / "interfaces" / f"{pair[0]}-{pair[1]}.{endings[form]}"
-        leaving_links.refuse_leaving_links(checked_project, target)
+        product_writing.refuse_leaving_links(checked_project, target)
         agreement_documents.write_agreement(agreement, form, target, output_options)
     command_support.print_written(
         target, f"{agreement.interface_count} interfaces" if agreement.interface_count != 1 else "1 interface"

@@ -86,11 +86,8 @@ def _read_recordings(
     from archgen.installed_plugins import load_reader
 
     read_measured = load_reader("recordings")
-    with command_support.explain_write_errors():
-        try:
-            recordings: ReadRecordings = read_measured(paths, architecture, analysis, chains)
-        except RecordingRefusedError as error:
-            raise click.UsageError(make_visible(str(error))) from None
+    with command_support.explain_write_errors(), command_support.explain_wrong_usage(RecordingRefusedError):
+        recordings: ReadRecordings = read_measured(paths, architecture, analysis, chains)
     return recordings
 
 
@@ -158,24 +155,13 @@ def _name_slice(root: Path, slice_path: Path) -> str:
 def _write_slice(
     checked_project: CheckedProject, measured_slice: MeasuredSlice, slice_path: Path, *, as_json: bool
 ) -> None:
-    from archgen.emit.file_tree import OutputError, write_file
-
     if not measured_slice.adopted:
         click.echo("Nothing was written: there is nothing to adopt.", err=True)
         return
-    path = _find_slice(checked_project.root, slice_path)
-    try:
-        write_file(path, measured_slice.text.encode())
-    except OutputError as error:
-        msg = f"{error.message}; nothing was changed; name another file behind --adopt, or move that one away"
-        raise click.ClickException(make_visible(msg)) from None
-    if not as_json:
-        count = len(measured_slice.adopted)
-        command_support.print_written(path, f"{count} figure{'s' if count != 1 else ''}, measured and not proven")
-    if not measured_slice.is_read:
-        command_support.print_warning(
-            f"the project does not read it yet: add `{measured_slice.file}` to `sources` in archgen.yaml"
-        )
+    path, count = _find_slice(checked_project.root, slice_path), len(measured_slice.adopted)
+    detail = None if as_json else f"{count} figure{'s' if count != 1 else ''}, measured and not proven"
+    advice = "name another file behind --adopt, or move that one away"
+    command_support.write_slice(path, measured_slice, advice, detail)
 
 
 def _list_left_out(measured_slice: MeasuredSlice) -> Iterator[str]:

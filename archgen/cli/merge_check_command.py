@@ -40,10 +40,8 @@ def command(main_line: str, branches: tuple[str, ...], form: str, *, strict: boo
         msg = f"this folder only holds projects: name one with -C, such as `-C {folders[0]}`"
         raise click.UsageError(msg)
     paths = [(project or Path()) / folder for folder in folders] if folders else [project]
-    try:
+    with command_support.explain_wrong_usage(GitError, ProjectNotFoundError):
         merges_by_project = [list(preview_merges(path, main_line, branches, find_joint_breaks)) for path in paths]
-    except (GitError, ProjectNotFoundError) as error:
-        raise click.UsageError(make_visible(str(error))) from None
     if form == "json":
         from archgen.merge.merge_sentences import format_merges_json
 

@@ -26,13 +26,7 @@ _TEXT_WIDTH = 96
 @shared_options.project_argument
 @shared_options.variant_option
 @click.option("--format", "form", type=click.Choice(["text", "codeowners"]), default="text", show_default=True)
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    callback=shared_options.take_dash,
-    help="The file to write.  [default: the terminal]",
-)
+@shared_options.file_option("The file to write.  [default: the terminal]")
 @shared_options.keep_going_option
 def command(project: Path | None, form: str, output: Path | None, *, keep_going: bool) -> None:
     """Show which partner of PROJECT owns which elements and files, and what nobody owns.
@@ -54,14 +48,8 @@ def command(project: Path | None, form: str, output: Path | None, *, keep_going:
         text = _format_ownership(
             code_ownership.find_ownership(checked_project), find_width(sys.stdout) if output is None else None
         )
-    if output is None:
-        sys.stdout.write(text)
-    else:
-        from archgen.emit import file_tree
-
-        with command_support.explain_write_errors():
-            file_tree.write_file(output, text.encode())
-        command_support.print_written(output)
+    with command_support.explain_write_errors():
+        command_support.write_output(text, output)
     command_support.exit_by_findings(checked_project)
 
 

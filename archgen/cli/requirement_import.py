@@ -40,7 +40,8 @@ def import_requirements(
     for line in _summarise_slice(requirement_slice):
         click.echo(make_visible(line))
     if not dry_run:
-        _write_slice(checked_project, requirement_slice, into)
+        target = _find_target(checked_project, into)
+        command_support.write_slice(target, requirement_slice, "name another file behind --into")
 
 
 def _refuse_single_file(checked_project: CheckedProject) -> None:
@@ -121,19 +122,3 @@ def _summarise_slice(requirement_slice: RequirementSlice) -> Iterator[str]:
     yield from (f"  said otherwise in another file, kept: {key}" for key in requirement_slice.written_elsewhere)
     if requirement_slice.is_rewritten:
         yield "  written anew: comments could not stay in their places, and stand at the beginning"
-
-
-def _write_slice(checked_project: CheckedProject, requirement_slice: RequirementSlice, into: Path | None) -> None:
-    from archgen.emit.file_tree import OutputError, write_file
-
-    target = _find_target(checked_project, into)
-    try:
-        write_file(target, requirement_slice.text.encode())
-    except OutputError as error:
-        msg = f"{error.message}; nothing was changed; name another file behind --into"
-        raise click.ClickException(make_visible(msg)) from None
-    command_support.print_written(target)
-    if not requirement_slice.is_read:
-        command_support.print_warning(
-            f"the project does not read it yet: add `{requirement_slice.file}` to `sources` in archgen.yaml"
-        )

@@ -6,7 +6,6 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,6 +14,7 @@ import click
 from archgen.cli import command_support, finding_documents
 from archgen.diagnostics.diagnostic import Severity, sort_gravest_first
 from archgen.diagnostics.safe_text import make_visible
+from archgen.frozen import replace
 
 if TYPE_CHECKING:
     from archgen.pipeline import CheckedProject, VersionCache
@@ -157,10 +157,8 @@ def _find_merge_target(project: Path | None, base: str | None) -> str | None:
     from archgen.forge.reviewed_request import find_reviewed_request
     from archgen.products.reviewed_change import find_merge_target
 
-    try:
+    with command_support.explain_wrong_usage(git.GitError):
         return find_merge_target(project, base, find_reviewed_request()) if base else None
-    except git.GitError as error:
-        raise click.UsageError(make_visible(str(error))) from None
 
 
 def _compare_change(

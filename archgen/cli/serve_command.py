@@ -59,10 +59,8 @@ def command(  # noqa: PLR0913 - one for each option
     from archgen.serve.live_site import LiveSite
 
     options = OutputOptions(selector_text=select or "", level=level, warn=command_support.print_warning)
-    try:
+    with command_support.explain_wrong_usage(ProjectNotFoundError):
         live_site = LiveSite(project, options, since, shared_options.find_asked_variants())
-    except ProjectNotFoundError as error:
-        raise click.UsageError(str(error)) from None
     server = _open_port(live_site, host, port)
     try:
         _serve(live_site, server, opens=opens)
@@ -117,15 +115,12 @@ def _serve(live_site: LiveSite, server: SiteServer, *, opens: bool) -> None:
 
 def _start_site(live_site: LiveSite) -> None:
     """Read the project. What is not there to select, or to compare with, is wrong usage."""
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.pipeline import UnknownVariantError
     from archgen.serve.project_state import SelectionError
 
-    try:
-        with command_support.explain_missing_versions():
-            live_site.start()
-    except (SelectionError, UnknownVariantError) as error:
-        raise click.UsageError(make_visible(str(error))) from None
+    refused = command_support.explain_wrong_usage(SelectionError, UnknownVariantError)
+    with refused, command_support.explain_missing_versions():
+        live_site.start()
 
 
 def _print_state(live_site: LiveSite) -> None:

@@ -128,19 +128,11 @@ def _list_backend_ids(makes: str) -> list[str]:
     return [name for name, backend in backends.items() if backend.emitter in CALLED_EMITTERS and backend.makes == makes]
 
 
-def complete_documents(_context: click.Context, _parameter: click.Parameter, incomplete: str) -> list[str]:
-    """Complete the name of a backend that makes documents."""
-    return [name for name in _list_backend_ids("documents") if name.startswith(incomplete)]
-
-
-def complete_workspaces(_context: click.Context, _parameter: click.Parameter, incomplete: str) -> list[str]:
-    """Complete the name of a backend that makes a workspace."""
-    return [name for name in _list_backend_ids("workspace") if name.startswith(incomplete)]
-
-
-def complete_files(_context: click.Context, _parameter: click.Parameter, incomplete: str) -> list[str]:
-    """Complete the name of a backend that makes a single file."""
-    return [name for name in _list_backend_ids("file") if name.startswith(incomplete)]
+def complete_backends(makes: str) -> Callable[[click.Context, click.Parameter, str], list[str]]:
+    """Return what completes the name of a backend that makes this: documents, a workspace, or a file."""
+    return lambda _context, _parameter, incomplete: [
+        name for name in _list_backend_ids(makes) if name.startswith(incomplete)
+    ]
 
 
 def complete_products(_context: click.Context, _parameter: click.Parameter, incomplete: str) -> list[str]:
@@ -152,9 +144,15 @@ def complete_products(_context: click.Context, _parameter: click.Parameter, inco
     return [f"{head}{comma}{name}" for name in names if name.startswith(last_name)]
 
 
-def take_dash(_context: click.Context, _parameter: click.Parameter, output: Path | None) -> Path | None:
-    """Return no file for `-`, of a verb that writes to standard output where no file is named."""
-    return None if output == Path("-") else output
+def file_option(help_text: str) -> Callable[[CommandFunction], CommandFunction]:
+    """Make the option `-o` of a verb that writes to standard output where no file is named; `-` names none."""
+    return click.option(
+        "-o",
+        "--output",
+        type=click.Path(path_type=Path),
+        callback=lambda _context, _parameter, output: None if output == Path("-") else output,
+        help=help_text,
+    )
 
 
 def _refuse_dash(context: click.Context, _parameter: click.Parameter, output: Path | None) -> Path | None:

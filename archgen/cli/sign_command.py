@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from archgen.cli import command_support, shared_options
-
-if TYPE_CHECKING:
-    from archgen.products.agreement_signing import PreparedSignature
 
 
 @click.command("sign")
@@ -52,13 +48,15 @@ def command(  # noqa: PLR0913 - one for each option
 
     from archgen.diagnostics.safe_text import make_visible
     from archgen.git import GitError
-    from archgen.products import agreement_documents, agreement_signing, leaving_links
+    from archgen.products import agreement_documents, agreement_signing, product_writing
     from archgen.products.output_options import OutputOptions
 
     form = command_support.choose_format(None, output, agreement_documents.FORMAT_BY_ENDING, "docx")
     checked_project = command_support.check_before_writing(project, keep_going=False)
     options = OutputOptions(progress=command_support.make_progress_printer(), warn=command_support.print_warning)
-    try:
+    with command_support.explain_wrong_usage(
+        agreement_documents.PartnersError, agreement_signing.SigningError, GitError, ValueError
+    ):
         day = agreement_documents.parse_issue_date(day) if day else datetime.now().astimezone().date().isoformat()
         agreement = agreement_documents.make_project_agreement(
             checked_project, first, second, issue_date=day, signers=dict(signers)
@@ -68,20 +66,14 @@ def command(  # noqa: PLR0913 - one for each option
         )
         target = output or checked_project.output_folder / "interfaces" / f"{prepared.agreement.id}.{form}"
         with command_support.explain_write_errors():
-            leaving_links.refuse_leaving_links(checked_project, target)
+            product_writing.refuse_leaving_links(checked_project, target)
             agreement_documents.write_agreement(agreement, form, target, options)
             agreement_signing.record_signature(checked_project, prepared)
-    except (agreement_documents.PartnersError, agreement_signing.SigningError, GitError, ValueError) as error:
-        raise click.UsageError(make_visible(str(error))) from None
     command_support.print_written(target)
     command_support.print_written(checked_project.root / prepared.file)
-    for line in _list_next_steps(prepared):
-        click.echo(make_visible(line), err=True)
-
-
-def _list_next_steps(prepared: PreparedSignature) -> list[str]:
     tag = prepared.signature.tag
     lines = [f"made the tag {tag}: commit {prepared.file}, and `git push origin {tag}`"]
     if prepared.missing_partners:
         lines.append(f"it binds nobody before `{prepared.missing_partners[0]}` has signed, too")
-    return lines
+    for line in lines:
+        click.echo(make_visible(line), err=True)

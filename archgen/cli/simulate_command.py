@@ -67,7 +67,10 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     analysis = analyse_architecture(architecture)
     # Events that trigger one another in a ring: their simulation would not come to an end.
     if analysis.endless:
-        raise click.ClickException(make_visible(_describe_endless(analysis.endless)))
+        ways = "; ".join(" > ".join((*ring, ring[0])) for ring in analysis.endless)
+        raise click.ClickException(
+            make_visible(f"events would go round for ever in {ways}: see `archgen explain endless-trigger`")
+        )
     chain_results = {
         key: one for key, one in bound_all_chains(analysis, architecture).items() if not asked or key in asked
     }
@@ -123,11 +126,6 @@ def _write_trace(
     click.echo(f"wrote {command_support.shorten_path(target)}", err=True)
 
 
-def _describe_endless(rings: tuple[tuple[str, ...], ...]) -> str:
-    ways = "; ".join(" > ".join((*ring, ring[0])) for ring in rings)
-    return f"events would go round for ever in {ways}: see `archgen explain endless-trigger`"
-
-
 def _describe_flood(time: Fraction) -> str:
     from archgen.timing.figures.figure_wording import format_duration
 
@@ -138,11 +136,11 @@ def _describe_flood(time: Fraction) -> str:
 
 
 def _require_chains(asked_ids: tuple[str, ...], chain_ids: tuple[str, ...]) -> None:
+    from archgen.diagnostics.common_wording import join_first
     from archgen.diagnostics.suggestions import did_you_mean
-    from archgen.timing.figures.figure_wording import join_first_names
 
     for name in asked_ids:
         if name not in chain_ids:
             guess = did_you_mean(name, chain_ids)
-            existing = f"the chains are {join_first_names(chain_ids)}" if chain_ids else "the project has no chains"
+            existing = f"the chains are {join_first(chain_ids)}" if chain_ids else "the project has no chains"
             raise click.UsageError(make_visible(f"there is no chain '{name}'; {guess or existing}"))

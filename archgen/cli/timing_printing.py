@@ -233,12 +233,12 @@ def _analyse_chains(architecture: Architecture) -> tuple[Analysis, dict[str, Cha
 
 
 def _find_chain(chain_results: dict[str, ChainResult], chain_id: str) -> ChainResult:
+    from archgen.diagnostics.common_wording import join_first
     from archgen.diagnostics.suggestions import did_you_mean
-    from archgen.timing.figures.figure_wording import join_first_names
 
     if chain_id not in chain_results:
         existing = (
-            f"there are: {join_first_names(tuple(chain_results), 12)}"
+            f"there are: {join_first(tuple(chain_results), 12)}"
             if chain_results
             else "the project has none: write it under `chains`"
         )

@@ -60,9 +60,13 @@ def command(  # noqa: PLR0913 - one for each option
     transformed_project = _transform_or_exit(
         checked_project, names, command_support.find_trusted_revision(project, trust)
     )
-    _report_further_passes(names, transformed_project)
+    ran = transformed_project.transformed.passes if transformed_project.transformed else ()
+    further = [name for name in dict.fromkeys(ran) if name not in names]
+    if further:
+        click.echo(f"Ran before, since they are needed: {', '.join(further)}.", err=True)
     command_support.print_findings_above(transformed_project)
-    if _is_stopped(transformed_project):
+    findings = transformed_project.transformed.findings if transformed_project.transformed else ()
+    if any(each.rule == "wrong-pass" for each in findings):
         click.echo("Nothing was written.", err=True)
         sys.exit(1)
     if command_support.exit_status(transformed_project.findings) and not keep_going:
@@ -82,15 +86,11 @@ def command(  # noqa: PLR0913 - one for each option
 def _transform_or_exit(
     checked_project: CheckedProject, names: tuple[str, ...], trusted_revision: TrustedRevision | None
 ) -> CheckedProject:
-    from archgen.diagnostics.safe_text import make_visible
     from archgen.passes import UnknownPassError
     from archgen.products import project_passes
 
-    with command_support.explain_write_errors():
-        try:
-            passes = project_passes.choose_passes(checked_project, names, trusted_revision)
-        except UnknownPassError as error:
-            raise click.UsageError(make_visible(str(error))) from None
+    with command_support.explain_write_errors(), command_support.explain_wrong_usage(UnknownPassError):
+        passes = project_passes.choose_passes(checked_project, names, trusted_revision)
     dropping = [each.name for each in passes.ordered if not each.keeps_variants]
     if checked_project.variants and dropping:
         variant_names = ", ".join(checked_project.variants)
@@ -100,20 +100,6 @@ def _transform_or_exit(
             err=True,
         )
     return project_passes.transform_by_name(checked_project, passes)
-
-
-def _is_stopped(transformed_project: CheckedProject) -> bool:
-    """Whether a pass of rules came to no end, or could not be read: what it makes is nothing."""
-    findings = transformed_project.transformed.findings if transformed_project.transformed else ()
-    return any(each.rule == "wrong-pass" for each in findings)
-
-
-def _report_further_passes(names: tuple[str, ...], transformed_project: CheckedProject) -> None:
-    """Say which passes ran that others needed."""
-    ran = transformed_project.transformed.passes if transformed_project.transformed else ()
-    further = [name for name in dict.fromkeys(ran) if name not in names]
-    if further:
-        click.echo(f"Ran before, since they are needed: {', '.join(further)}.", err=True)
 
 
 def _print_passes(project: Path | None) -> None:

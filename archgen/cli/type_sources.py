@@ -26,15 +26,11 @@ def list_source_lines(name: str, distro: str | None) -> Iterator[str]:
         for source in read_shipped_sources(each).get(type_name, ()):
             yield f"{each}: {_describe_source(source)}"
             if distro:
-                yield from _list_facts(source)
+                for file, facts in source.files.items():
+                    for fact, line in facts.items():
+                        yield f"  {fact}: {source.format_link(file, line)}"
 
 
 def _describe_source(source: ShippedSource) -> str:
     released = "" if source.version == source.released else f" ({source.released} is released)"
     return f"{source.kind} of version {source.version}{released}, {source.date}, {source.format_link()}"
-
-
-def _list_facts(source: ShippedSource) -> Iterator[str]:
-    for file, facts in source.files.items():
-        for fact, line in facts.items():
-            yield f"  {fact}: {source.format_link(file, line)}"

@@ -10,14 +10,14 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Literal, NamedTuple
+from typing import Literal
 
 from archgen.compare.comparison import Change, Comparison, PartnerBreak
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.normal_values import to_plain_data
 from archgen.compare.review_facts import ReviewFacts
 from archgen.compare.version_pair import VersionPair
-from archgen.frozen import dataclass, replace
+from archgen.frozen import NamedTuple, dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.review_settings import AcceptedChange
 

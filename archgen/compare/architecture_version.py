@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
 
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.model.architecture import Architecture
 from archgen.model.component import TypePatterns
 from archgen.timing.analysis import Analysis

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
 
 from archgen.analyses.kept_promises import PROMISED_WORDS, judge_promises, judge_sent_limits, list_sent_limits
 from archgen.compare.comparison import LimitChange
 from archgen.compare.key_phrases import tick_names
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.timing_pair import TimingPair
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component_nesting import list_described_outputs, list_relied_outputs
 from archgen.model.promise import FIGURE_KEYS, Promise

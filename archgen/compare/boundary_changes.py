@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
 
 from archgen.analyses.qos_compatibility import find_qos_conflicts
 from archgen.compare.architecture_version import ArchitectureVersion
@@ -19,7 +18,7 @@ from archgen.compare.interface_figures import (
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.timing_pair import TimingPair
 from archgen.compare.version_pair import VersionPair
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.model.node import Qos
 from archgen.model.partner_interfaces import PartnerPair, find_all_interfaces
 from archgen.timing.figures.timing_values import TimingValue

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 
 from archgen.compare.agreements import AgreementJudge, names_change
 from archgen.compare.comparison import ChainChange, Change, Comparison, LimitChange, PartnerBreak
 from archgen.compare.concerned_owners import find_concerned_owners
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss
 from archgen.compare.losses.changed_definitions import (
+    find_changed_distro,
     find_deprecated_types,
     find_redefined_messages,
     find_retyped_outputs,
 )
-from archgen.compare.losses.changed_distro import find_changed_distro
 from archgen.compare.losses.changed_meanings import find_changed_frames, find_changed_meanings
 from archgen.compare.losses.changed_parameters import find_changed_parameters
 from archgen.compare.losses.cut_steps import find_cut_steps
@@ -41,6 +40,7 @@ from archgen.compare.losses.weakened_outputs import find_weakened_outputs, find_
 from archgen.compare.losses.weakened_words import find_weakened_words
 from archgen.compare.timing_pair import TimingPair
 from archgen.diagnostics.diagnostic import Severity
+from archgen.frozen import replace
 from archgen.model.review_settings import AcceptedChange, BreakPolicy, ReviewSettings
 
 _LOSS_FINDERS = (

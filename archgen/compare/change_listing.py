@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
 
 from archgen.compare import change_sentences, changed_keys, connection_sentences, element_sentences
 from archgen.compare.architecture_version import ArchitectureVersion
@@ -16,6 +15,7 @@ from archgen.compare.kinds import KIND_ORDER
 from archgen.compare.match_elements import match_elements
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.version_pair import ComparedElement, ElementKey, VersionPair
+from archgen.frozen import dataclass, field, replace
 from archgen.model.architecture import Architecture
 
 

@@ -8,7 +8,7 @@ from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 from archgen.model.declared_timing import Timing
-from archgen.model.node import Node, PortUse
+from archgen.model.node import Node
 
 
 def find_change_span(change: Change, comparison: Comparison) -> Span:
@@ -36,17 +36,12 @@ def _find_element(kind: str, element_id: str, comparison: Comparison) -> object 
     if kind == "project":
         return architecture.project
     if kind == "port":
-        return _find_port_use(element_id, architecture)
+        node = architecture.nodes.get(element_id.partition(".")[0])
+        names = {element_id.rpartition(".")[2]}
+        uses = (use for use in node.uses if f".{use.use}." in element_id) if node else ()
+        return next((use for use in uses if names & {use.key, (use.port or "").rpartition(".")[2]}), node)
     spec = ELEMENT_KINDS.get(kind)
     return spec.elements(comparison.after).get(element_id) if spec and spec.elements else None
-
-
-def _find_port_use(port_id: str, architecture: Architecture) -> PortUse | Node | None:
-    """Return what `camera.publishes.image` names: the entry below the node, or the node if it writes none."""
-    node = architecture.nodes.get(port_id.partition(".")[0])
-    names = {port_id.rpartition(".")[2]}
-    uses = (use for use in node.uses if f".{use.use}." in port_id) if node else ()
-    return next((use for use in uses if names & {use.key, (use.port or "").rpartition(".")[2]}), node)
 
 
 def _find_agreement_span(key: str, comparison: Comparison) -> Span:

@@ -22,7 +22,14 @@ def is_consequence(
     """
     old_value, new_value = old_element.values.get(key), new_element.values.get(key)
     if isinstance(old_value, ElementTitle) and isinstance(new_value, ElementTitle):
-        return _is_same_title(old_value, new_value, old_element, new_element)
+        # After a rename a written title that merely repeats the id follows it; with the same id only generated or equal
+        # titles are the same.
+        both_follow_id = (
+            old_element.own_id != new_element.own_id
+            and _follows_id(old_element, old_value)
+            and _follows_id(new_element, new_value)
+        )
+        return both_follow_id or old_value.text == new_value.text or (old_value.generated and new_value.generated)
     if key == "timing.behaviour" and {old_value, new_value} == {None, "periodic"}:
         # What has a rate is periodic, whether or not somebody writes it down.
         return all(element.values.get("timing.rate") is not None for element in (old_element, new_element))
@@ -97,20 +104,6 @@ def _follows_definition(
 def _list_field_lines(field_name: str, message: ComparedElement | None) -> list[str]:
     lines = message.values.get("fields") if message else None
     return [line for line in lines if line.endswith(f" {field_name}")] if isinstance(lines, tuple) else []
-
-
-def _is_same_title(
-    old_title: ElementTitle, new_title: ElementTitle, old_element: ComparedElement, new_element: ComparedElement
-) -> bool:
-    """Whether both titles are the same, or both are the id in words, be it written or generated."""
-    # After a rename a written title that merely repeats the id follows it; with the same id only generated or equal
-    # titles are the same.
-    both_follow_id = (
-        old_element.own_id != new_element.own_id
-        and _follows_id(old_element, old_title)
-        and _follows_id(new_element, new_title)
-    )
-    return both_follow_id or old_title.text == new_title.text or (old_title.generated and new_title.generated)
 
 
 def _follows_id(element: ComparedElement, title: ElementTitle) -> bool:

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import field
-from typing import Literal, NamedTuple
+from typing import Literal
 
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.review_facts import ReviewFacts
 from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass, field
 from archgen.model.node import Qos
 from archgen.model.quantity import Quantity
 from archgen.model.review_settings import BREAK_CATEGORIES, AcceptedChange, BreakCategory, BreakPolicy

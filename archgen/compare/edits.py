@@ -15,9 +15,8 @@ from archgen.compare.key_phrases import tick_names
 from archgen.compare.kinds import ELEMENT_KINDS
 from archgen.compare.left_out_files import find_left_out
 from archgen.compare.reshaped_components import find_reshapings
-from archgen.compare.reshaping import Reshaping
 from archgen.compare.type_edits import find_type_edits
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.common_wording import join_words, keep_first
 from archgen.frozen import dataclass
 from archgen.model.review_settings import BREAK_CATEGORIES, BreakCategory
 
@@ -86,7 +85,14 @@ def _find_joint_edits(comparison: Comparison, left_changes: Sequence[Change]) ->
     for reshaping in find_reshapings(comparison):
         members = tuple(change for change in left_changes if reshaping.brought_about(change))
         if members:
-            yield _join_reshaping(reshaping, members)
+            confidence = reshaping.confidence
+            text = reshaping.text + note_confidence(confidence)
+            if reshaping.kind == "copied":
+                sentence, _, effects = members[0].text.partition("; ")
+                text = "; ".join(filter(None, (f"{sentence}, {text}", effects)))
+            yield Edit(
+                reshaping.kind, "component", reshaping.component_id, text, members, confidence, reshaping.related_ids
+            )
     yield from _renames_in_instances(comparison, left_changes)
     yield from _exchanged_ids(left_changes)
     yield from _other_numbers(left_changes)
@@ -95,15 +101,6 @@ def _find_joint_edits(comparison: Comparison, left_changes: Sequence[Change]) ->
     yield from _follow_ups_of_renames(left_changes)
     yield from _new_fields(left_changes)
     yield from _keys_of_one_element(left_changes)
-
-
-def _join_reshaping(reshaping: Reshaping, members: tuple[Change, ...]) -> Edit:
-    confidence = reshaping.confidence
-    text = reshaping.text + note_confidence(confidence)
-    if reshaping.kind == "copied":
-        sentence, _, effects = members[0].text.partition("; ")
-        text = "; ".join(filter(None, (f"{sentence}, {text}", effects)))
-    return Edit(reshaping.kind, "component", reshaping.component_id, text, members, confidence, reshaping.related_ids)
 
 
 def _renames_in_instances(comparison: Comparison, changes: Sequence[Change]) -> Iterator[Edit]:
@@ -157,15 +154,9 @@ def _other_numbers(changes: Iterable[Change]) -> Iterator[Edit]:
         renames = [change for change in changes if _is_rename(change, {kind}) and change.confidence >= SURE_CONFIDENCE]
         if len(renames) > 1:
             pairs = [f"`{change.old_id}` → `{change.element_id}`" for change in renames]
-            text = f"{len(renames)} {ELEMENT_KINDS[kind].kind_word}s got other ids: {_join_pairs(pairs)}"
+            text = f"{len(renames)} {ELEMENT_KINDS[kind].kind_word}s got other ids: {join_words(keep_first(pairs, _MAX_PAIRS))}"
             confidence = min(change.confidence for change in renames)
             yield Edit("renamed", kind, renames[0].element_id, text, tuple(renames), confidence)
-
-
-def _join_pairs(pairs: Sequence[str]) -> str:
-    """Join pairs of names for a sentence; the surplus is counted."""
-    surplus = len(pairs) - _MAX_PAIRS
-    return join_words(pairs if surplus <= 0 else [*pairs[:_MAX_PAIRS], f"{surplus} more"])
 
 
 def _is_rename(change: Change, kinds: Iterable[str]) -> bool:
@@ -211,7 +202,7 @@ def _other_namespaces(changes: Iterable[Change]) -> Iterator[Edit]:
             ]
             if followers:
                 pairs = [each.text.partition(": ")[2].partition("; ")[0].partition(" ")[2] for each in followers]
-                text = f"{change.text}; its names follow: {_join_pairs(pairs)}"
+                text = f"{change.text}; its names follow: {join_words(keep_first(pairs, _MAX_PAIRS))}"
                 yield Edit("changed", "node", change.element_id, text, (change, *followers))
 
 

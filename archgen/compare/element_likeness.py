@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterator, Mapping
-from typing import NamedTuple
+
+from archgen.frozen import NamedTuple
 
 MIN_LIKENESS = 0.6
 """Below this likeness an element was not renamed or moved: one was removed, and another one added."""

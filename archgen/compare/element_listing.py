@@ -71,7 +71,9 @@ def _list_node_ports(context: ReadContext) -> Iterator[ComparedElement]:
         name = context.matched_ids.common_id("node", node.id)
         owner = NODE.owner(node, context)
         for use in (*node.uses, *_implied_uses(context.architecture, node, untold_components)):
-            is_stated = use.internal or not _is_port_of(use, context.told_components)
+            is_stated = use.internal or not (
+                use.port is not None and use.port.rpartition(".")[0] in context.told_components
+            )
             values = drop_unset_values(key_values(port_keys, NodePort(use, node, is_stated), context))
             if values:
                 key, own_key = _port_ids(use, node, context.matched_ids)
@@ -97,10 +99,6 @@ def _implied_uses(architecture: Architecture, node: Node, components: frozenset[
             and endpoint.port.rpartition(".")[0] in components
         ):
             yield PortUse(endpoint.use, endpoint.port.rpartition(".")[2], endpoint.port)
-
-
-def _is_port_of(use: PortUse, components: frozenset[str]) -> bool:
-    return use.port is not None and use.port.rpartition(".")[0] in components
 
 
 def _port_ids(use: PortUse, node: Node, matched_ids: MatchedIds) -> tuple[str, str]:

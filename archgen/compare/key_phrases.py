@@ -8,10 +8,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from archgen.compare.comparison import Change
 from archgen.compare.field_changes import compare_field_lines
 from archgen.compare.kinds import ELEMENT_KINDS, find_key
-from archgen.compare.kinds.promise_keys import NO_DAY
+from archgen.compare.kinds.component_keys import NO_DAY
 from archgen.compare.text_meaning import cut_text, describe_text_difference
 from archgen.compare.version_pair import VersionPair
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.common_wording import fit_lines, join_words, keep_first
 from archgen.model.architecture import Architecture
 from archgen.model.start_up import DEFAULT_PHASE, PHASES
 
@@ -166,7 +166,7 @@ def _key_noun(key: str) -> str:
     if section in _PARTS_OF and name.rpartition(":")[2] in _PARTS_OF[section]:
         element_name, _, part = name.rpartition(":")
         return f"{_spell_out(part)} of the {_NAMED_SECTIONS[section]} `{shorten_text(element_name)}`"
-    if section in _NAMED_SECTIONS and name:
+    if section in _NAMED_SECTIONS and name and (section, name[:5]) != ("scheduling", "fair."):
         return f"{_NAMED_SECTIONS[section]} `{shorten_text(name)}`"
     return _spell_out(key.removeprefix("timing.").replace(".", " "))
 
@@ -234,13 +234,15 @@ def _list_phrase(noun: str, verbs: tuple[str, str] | None, before: object, after
         return f"{name} are now {join_words([format_value(item) for item in new_items])}, in this order"
     if verbs:
         words = [
-            f" {verb} {join_words(_limit_items(items))}"
+            f" {verb} {join_words(keep_first(items, _MAX_NAMES))}"
             for verb, items in zip(verbs, (gained, lost), strict=True)
             if items
         ]
         return " and".join(words)
     words = [
-        f" {join_words(_limit_items(items))} {verb}" for verb, items in (("added", gained), ("removed", lost)) if items
+        f" {join_words(keep_first(items, _MAX_NAMES))} {verb}"
+        for verb, items in (("added", gained), ("removed", lost))
+        if items
     ]
     return name + ",".join(words)
 
@@ -253,15 +255,10 @@ def _fields_phrase(before: object, after: object) -> str:
         for name, (old_type, new_type) in changes.retyped.items()
     ]
     phrases += [f"{format_value(name)} is called {format_value(new)} now" for name, new in changes.renamed.items()]
-    phrases = _limit_items(phrases)
+    phrases = keep_first(phrases, _MAX_NAMES)
     if changes.added or changes.removed:
         phrases.append(_list_phrase("fields", None, changes.removed, changes.added).removeprefix(": "))
     return f": {', '.join(phrases)}" if phrases else ""
-
-
-def _limit_items(items: Sequence[str]) -> list[str]:
-    limit = 6
-    return [*items] if len(items) <= limit else [*items[:limit], f"{len(items) - limit} more"]
 
 
 def format_value(value: object) -> str:
@@ -290,12 +287,8 @@ _MAX_NAMES = 6
 
 def limit_effects(effects: Sequence[str]) -> Sequence[str]:
     """Return the first effects, and how many more there are."""
-    surplus = len(effects) - _MAX_EFFECTS
-    return (
-        effects
-        if surplus <= 0
-        else (*effects[:_MAX_EFFECTS], f"and {surplus} more such effect{'s' if surplus > 1 else ''}")
-    )
+    plural = "s" if len(effects) > _MAX_EFFECTS + 1 else ""
+    return keep_first(effects, _MAX_EFFECTS, f"and {{}} more such effect{plural}")
 
 
 def shown_id(kind: str, name: str, versions: VersionPair) -> str:
@@ -306,12 +299,7 @@ def shown_id(kind: str, name: str, versions: VersionPair) -> str:
 
 def tick_names(names: Iterable[str], max_names: int = _MAX_NAMES) -> str:
     """Return element names in backticks, the surplus counted."""
-    ticked_names = [f"`{shorten_text(name)}`" for name in names]
-    return (
-        join_words(ticked_names)
-        if len(ticked_names) <= max_names
-        else join_words([*ticked_names[: max_names - 1], f"{len(ticked_names) - max_names + 1} more"])
-    )
+    return join_words(fit_lines([f"`{shorten_text(name)}`" for name in names], max_names, "{} more"))
 
 
 def name_partner(partner: str, partner_names: Mapping[str, str]) -> str:

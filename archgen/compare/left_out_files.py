@@ -29,7 +29,11 @@ def find_left_out(comparison: Comparison, changes: Sequence[Change]) -> Iterator
     elements = comparison.versions.elements_before.values()
     file_of_element = {(element.kind, element.own_id): element.file for element in elements}
     for setting in ("sources", "ros.interfaces"):
-        files = [file for file in comparison.left_out_files if _name_setting(file) == setting]
+        files = [
+            file
+            for file in comparison.left_out_files
+            if ("ros.interfaces" if file.endswith(_INTERFACE_ENDINGS) else "sources") == setting
+        ]
         removals = tuple(
             change
             for change in changes
@@ -45,22 +49,14 @@ def find_left_out(comparison: Comparison, changes: Sequence[Change]) -> Iterator
         if removals:
             counts = _count_elements(removals)
             is_one = len(removals) == 1
-            text = f"`{setting}` no longer names {_name_files(files)}: {counts} {'is' if is_one else 'are'} not read any more"
+            text = f"`{setting}` no longer names {tick_names(files, _MAX_FILES)}: {counts} {'is' if is_one else 'are'} not read any more"
             yield LeftOutFiles(text, removals)
-
-
-def _name_setting(file: str) -> str:
-    return "ros.interfaces" if file.endswith(_INTERFACE_ENDINGS) else "sources"
 
 
 def _defines_message(file: str, message: str) -> bool:
     """Whether a file is that of a message `package/msg/Name`: the package may be named elsewhere."""
     stem, _, ending = file.rpartition(".")
     return message.split("/")[1:] == [ending, stem.rpartition("/")[2]]
-
-
-def _name_files(files: Sequence[str]) -> str:
-    return tick_names(files, _MAX_FILES)
 
 
 def _count_elements(removals: Iterable[Change]) -> str:

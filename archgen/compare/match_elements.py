@@ -7,7 +7,7 @@ them.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from typing import Any
 
 from archgen.compare.architecture_version import ArchitectureVersion
@@ -140,11 +140,9 @@ def look_up_pair(
     before: Architecture, after: Architecture, matched_ids: MatchedIds
 ) -> tuple[ElementRelations, ElementRelations]:
     """Return both versions with what describing their elements has to look up, under common ids."""
-    return ElementRelations(before, matched_ids.find_new_id), ElementRelations(after, _matched_or_none(matched_ids))
-
-
-def _matched_or_none(matched_ids: MatchedIds) -> Callable[[str, str], str | None]:
-    return lambda kind, name: name if matched_ids.is_matched(kind, name) else None
+    return ElementRelations(before, matched_ids.find_new_id), ElementRelations(
+        after, lambda kind, name: name if matched_ids.is_matched(kind, name) else None
+    )
 
 
 class _Matcher:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+
+from archgen.frozen import dataclass, field
 
 _BACKTICKED = re.compile(r"`[^`]*`")
 _ID_PATH = re.compile(r"[A-Za-z0-9_]+(?:[./-][A-Za-z0-9_]+)*")

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import field
 
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.model.architecture import Partner
 
 Author = frozenset[str]

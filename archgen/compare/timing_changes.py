@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from fractions import Fraction
 from typing import Literal
 
@@ -15,6 +14,7 @@ from archgen.compare.losses.change_context import ChangeContext
 from archgen.compare.losses.timing_causes import TimingCauses
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.timing_pair import TimingPair, can_affect_timing, find_activity_owners
+from archgen.frozen import replace
 from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains import chain_bounds as timing_chains

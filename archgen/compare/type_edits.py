@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import NamedTuple
 
 from archgen.compare.change_sentences import describe_change
 from archgen.compare.comparison import Change, Comparison
@@ -14,6 +12,7 @@ from archgen.compare.kinds.component_type_kind import OWN_KEYS, PART_MARK
 from archgen.compare.normal_values import to_plain_data
 from archgen.compare.version_pair import VersionPair
 from archgen.diagnostics.common_wording import join_words
+from archgen.frozen import NamedTuple, dataclass, field, replace
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 
@@ -246,14 +245,9 @@ def _tell_instances(edit: TypeEdit, comparison: Comparison) -> TypeEdit:
         count = len(edit.instances)
         lead = f"in {count} instances: " if count > 1 else "in its instance "
         edit.texts.append(lead + tick_names(edit.instances, _MAX_INSTANCES))
-        owners = _list_owners(edit.instances, comparison)
+        components = (comparison.after.architecture.find_component(each) for each in edit.instances)
+        owners = sorted({component.owner for component in components if component and component.owner})
         names = [name_partner(owner, comparison.versions.partner_names) for owner in owners]
         if len(comparison.versions.partner_names) > 1 and names:
             edit.texts.append(f"of {join_words(names)}")
     return edit
-
-
-def _list_owners(component_ids: Iterable[str], comparison: Comparison) -> list[str]:
-    """Return the partners whose components these are, sorted by id."""
-    components = (comparison.after.architecture.find_component(each) for each in component_ids)
-    return sorted({component.owner for component in components if component and component.owner})

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
 
 from archgen.compare.connection_maps import ConnectionMap
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 
 SOME_PORTS = "some"
 """Value of the keys "inputs" and "outputs" of a component that has ports: these are elements of their own."""

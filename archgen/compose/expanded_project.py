@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
 from archgen.compose.type_expressions import TypeExpression
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
+from archgen.frozen import dataclass, field
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from archgen.model.derived_names import derive_node_ids
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, list_entries
 
 
 def make_instance_containers(
@@ -32,8 +32,7 @@ def make_instance_containers(
 
 def _list_containers(bodies: Mapping[str, MappingEntry]) -> Iterator[tuple[str, MappingEntry]]:
     for component_id, entry in bodies.items():
-        containers = entry.value.get("containers") if isinstance(entry.value, MappingNode) else None
-        for container in containers if isinstance(containers, MappingNode) else ():
+        for container in list_entries(entry.value, "containers"):
             yield f"{component_id}.{container.key}", container
 
 

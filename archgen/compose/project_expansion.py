@@ -10,15 +10,18 @@ What a reference (`same_as`) may say: it is its type exactly, and has only a pla
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from archgen.compose.expanded_project import ComponentShell, ExpandedProject, Expansion, InstanceOrigin
 from archgen.compose.instance_containers import make_instance_containers
 from archgen.compose.instance_overlay import InstanceOverlay
 from archgen.compose.library_types import library_of_type, list_type_entries
 from archgen.compose.type_expressions import TypeExpression
-from archgen.compose.type_table import MissingTypeDescriber, TypeTable, diagnose_circle, list_generic_names
 from archgen.diagnostics.diagnostic import Diagnostic, Label
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, list_entries
+
+if TYPE_CHECKING:
+    from archgen.compose.type_table import MissingTypeDescriber
 
 MAX_ELEMENTS = 100_000
 """So many components a project may have when everything is written out: ten times the largest that people describe."""
@@ -49,17 +52,8 @@ def _uses_composition(groups: MappingNode) -> bool:
     return any(
         isinstance(component.value, MappingNode) and not _COMPOSING_KEYS.isdisjoint(component.value.entries)
         for group in groups
-        for component in _list_components(group.value)
+        for component in list_entries(group.value, "components")
     ) or any("autoconnect" in group.value.entries for group in groups if isinstance(group.value, MappingNode))
-
-
-def _list_entries(node: object) -> Iterator[MappingEntry]:
-    return iter(node) if isinstance(node, MappingNode) else iter(())
-
-
-def _list_components(body: object) -> Iterator[MappingEntry]:
-    components = body.get("components") if isinstance(body, MappingNode) else None
-    return iter(components) if isinstance(components, MappingNode) else iter(())
 
 
 class _ProjectExpander:
@@ -71,6 +65,8 @@ class _ProjectExpander:
         incomplete_libraries: frozenset[str],
         describe_missing_type: MissingTypeDescriber | None,
     ) -> None:
+        from archgen.compose.type_table import TypeTable
+
         self._root = root
         self._diagnostics: list[Diagnostic] = []
         self._types = TypeTable(list_type_entries(root), self._diagnostics, incomplete_libraries, describe_missing_type)
@@ -86,7 +82,10 @@ class _ProjectExpander:
         sized_groups = [
             (
                 group,
-                [(part, self._expand(part.value, f"{group.key}.{part.key}")) for part in _list_components(group.value)],
+                [
+                    (part, self._expand(part.value, f"{group.key}.{part.key}"))
+                    for part in list_entries(group.value, "components")
+                ],
             )
             for group in groups
         ]
@@ -96,9 +95,7 @@ class _ProjectExpander:
         self._result.parts = {group.key: parts for group, parts in sized_groups}
         group_entries = {group.key: self._flatten_group(group, parts) for group, parts in sized_groups}
         if group_entries:
-            section = MappingEntry(
-                "groups", self._root.entries["groups"].key_span, MappingNode(group_entries, groups.span)
-            )
+            section = self._root.entries["groups"].with_value(MappingNode(group_entries, groups.span))
             self._result.root = MappingNode({**self._root.entries, "groups": section}, self._root.span)
         self._add_containers()
         self._judge_types()
@@ -109,8 +106,8 @@ class _ProjectExpander:
     def _add_containers(self) -> None:
         leaves = {
             f"{group.key}.{leaf.key}": leaf
-            for group in _list_entries(self._result.root.get("groups"))
-            for leaf in _list_components(group.value)
+            for group in list_entries(self._result.root, "groups")
+            for leaf in list_entries(group.value, "components")
         }
         shells = {shell.id: shell.entry for shell in self._result.shells.values()}
         containers, holders = make_instance_containers(self._root, {**leaves, **shells}, self._result.parents)
@@ -135,13 +132,15 @@ class _ProjectExpander:
                 self._judge_type(name)
 
     def _judge_type(self, name: str) -> None:
+        from archgen.compose.type_table import list_generic_names
+
         entry = self._types.entries[name]
         body = self._types.get_body(TypeExpression(name, list_generic_names(entry)))
         self._result.type_bodies[name] = body or MappingNode({}, entry.key_span)
         self._result.type_entries[name] = entry
         self._types.ask_replacement(name)
         self._open_types.append(name)
-        for part in _list_components(body):
+        for part in list_entries(body, "components"):
             self._expand(part.value, f"{name}.{part.key}")
         self._open_types.pop()
 
@@ -156,22 +155,22 @@ class _ProjectExpander:
     def _make_expansion(self, body: MappingNode, component_id: str) -> Expansion:
         if component_id.count(".") > MAX_DEPTH:
             self._report_depth(body, component_id)
-            return Expansion(body, _drop_components(body), None, {}, 1)
+            return Expansion(body, body.without("components"), None, {}, 1)
         origin, full_body = self._lay_over_type(body, component_id)
         if origin:
             if origin.expression.name in self._open_types:
                 self._report_circle(origin.expression.name)
-                return Expansion(body, _drop_components(body), origin, {}, 1)
+                return Expansion(body, body.without("components"), origin, {}, 1)
             self._open_types.append(origin.expression.name)
         parts = {
             part.key: (part, self._expand(part.value, f"{component_id}.{part.key}"))
-            for part in _list_components(full_body)
+            for part in list_entries(full_body, "components")
         }
         if origin:
             self._open_types.pop()
         return Expansion(
             body,
-            _drop_components(full_body) if parts else full_body,
+            full_body.without("components") if parts else full_body,
             origin,
             parts,
             1 + sum(expansion.size for _, expansion in parts.values()),
@@ -204,6 +203,8 @@ class _ProjectExpander:
         )
 
     def _report_circle(self, name: str) -> None:
+        from archgen.compose.type_table import diagnose_circle
+
         if name not in self._circular_types:
             self._circular_types.add(name)
             start = self._open_types.index(name)
@@ -238,7 +239,7 @@ class _ProjectExpander:
             self._flatten_part(group.key, part, expansion, part.key, None, leaves)
         components = group.value.entries["components"]
         components_entry = MappingEntry("components", components.key_span, MappingNode(leaves, components.value.span))
-        return group.with_value(MappingNode({**group.value.entries, "components": components_entry}, group.value.span))
+        return group.with_entries({**group.value.entries, "components": components_entry})
 
     def _flatten_part(  # noqa: PLR0913, PLR0917 - what the recursion carries
         self,
@@ -268,7 +269,7 @@ class _ProjectExpander:
             self._flatten_part(group_id, inner_part, inner_expansion, f"{path}.{name}", component_id, leaves)
 
     def _report_duplicates(self, component_id: str, expansion: Expansion) -> None:
-        for output in _list_entries(expansion.body.get("outputs")):
+        for output in list_entries(expansion.body, "outputs"):
             if output.key in expansion.parts:
                 self._diagnostics.append(
                     Diagnostic(
@@ -280,10 +281,6 @@ class _ProjectExpander:
                         element=component_id,
                     )
                 )
-
-
-def _drop_components(body: MappingNode) -> MappingNode:
-    return MappingNode({e.key: e for e in body if e.key != "components"}, body.span)
 
 
 def _list_changed_keys(changes: list[Diagnostic], body: MappingNode) -> set[str]:
@@ -316,7 +313,7 @@ def find_same_as_changes(body: MappingNode, component_id: str, type_name: str) -
     """Return what a reference says that its type decides."""
     changed = [entry for entry in body if entry.key not in _OWN_KEYS]
     inputs, node = body.get("inputs"), body.get("node")
-    for port in inputs if isinstance(inputs, MappingNode) else ():
+    for port in list_entries(inputs):
         changed += (
             [e for e in port.value if e.key not in _OWN_INPUT_KEYS] if isinstance(port.value, MappingNode) else []
         )

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import NamedTuple
 
+from archgen.frozen import NamedTuple
 from archgen.model.generic_names import MAX_NAME_LENGTH, read_generic_name
 
 MAX_TYPE_LENGTH = 2 * MAX_NAME_LENGTH

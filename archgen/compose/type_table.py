@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
 
 from archgen.compose.instance_overlay import InstanceOverlay
 from archgen.compose.library_types import library_of_type
@@ -12,11 +11,20 @@ from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
+from archgen.frozen import dataclass, field
+from archgen.syntax.yaml_tree import (
+    MappingEntry,
+    MappingNode,
+    ScalarNode,
+    SequenceNode,
+    YamlNode,
+    find_value,
+    list_entries,
+)
 
 MAX_BASES = 60
 """So many types a type may be made from, one of the other."""
-_TYPE_KEYS = frozenset({"generic", "abstract", "title", "owner", "version", "deprecated"})
+_TYPE_KEYS = ("generic", "abstract", "title", "owner", "version", "deprecated")
 """Keys of a type that its instances do not have: they are about the type itself."""
 _NAMING_KEYS = frozenset({"type", "is", "same_as"})
 """Keys whose values name types."""
@@ -78,8 +86,7 @@ class TypeTable:
     def ask_replacement(self, name: str) -> None:
         """Report what replaces a deprecated type where there is no such type; one of a library counts as used."""
         body = self.entries[name].value
-        deprecated = body.get("deprecated") if isinstance(body, MappingNode) else None
-        reference = deprecated.get("use") if isinstance(deprecated, MappingNode) else None
+        reference = find_value(body, "deprecated", "use")
         if not isinstance(reference, ScalarNode) or reference.value is None:
             return
         library = library_of_type(reference.text)
@@ -98,16 +105,10 @@ class TypeTable:
     def may_replace(self, replaced: ScalarNode, replacing: ScalarNode, component_id: str) -> bool:
         """Whether a type may stand in the place of another: it has all of its ports. Reports why not."""
         old, new = parse_type_expression(replaced.text), self.find_type(replacing, component_id)
-        old_body = self.get_body(old) if old and old.name in self.entries else None
-        new_body = self.get_body(new) if new else None
-        if old is None or old_body is None or new_body is None:
-            return old_body is None
-        missing_ports = [
-            port.key
-            for side in ("inputs", "outputs")
-            for port in _list_entries(old_body.get(side))
-            if port.key not in {entry.key for entry in _list_entries(new_body.get(side))}
-        ]
+        if old is None or old.name not in self.entries or new is None:
+            return old is None or old.name not in self.entries
+        own_ports = self._list_ports(new)
+        missing_ports = [name for side, name in self._list_ports(old) if (side, name) not in own_ports]
         if missing_ports:
             names = join_words([f"`{port}`" for port in missing_ports])
             self.diagnostics.append(
@@ -122,6 +123,16 @@ class TypeTable:
             )
         return not missing_ports
 
+    def _list_ports(self, expression: TypeExpression) -> list[tuple[str, str]]:
+        """Return the ports of a type and of what it is made from, each with its side: its body may be in the making just now."""
+        bodies: dict[str, YamlNode | None] = {}
+        base: TypeExpression | None = expression
+        while base and base.name in self.entries and base.name not in bodies:
+            bodies[base.name] = self.entries[base.name].value
+            base = _read_base(bodies[base.name])
+        sides = [(side, body) for side in ("inputs", "outputs") for body in reversed(bodies.values())]
+        return list(dict.fromkeys((side, port.key) for side, body in sides for port in list_entries(body, side)))
+
     def _make_body(self, expression: TypeExpression) -> MappingNode | None:
         entry = self.entries[expression.name]
         # By name, not by expression: `chain<T>` made from `chain<pair<T>>` would never come to the same expression again.
@@ -131,7 +142,7 @@ class TypeTable:
             return None
         body = entry.value if isinstance(entry.value, MappingNode) else MappingNode({}, entry.key_span)
         bindings = dict(zip(list_generic_names(entry), expression.arguments, strict=True))
-        own_body = bind_type_body(_drop_type_keys(body), bindings) if bindings else _drop_type_keys(body)
+        own_body = bind_type_body(body.without(*_TYPE_KEYS), bindings) if bindings else body.without(*_TYPE_KEYS)
         base_reference = own_body.get("is")
         # The base is laid under the body: from here on nothing is left to be made from.
         own_body.entries.pop("is", None)
@@ -154,8 +165,7 @@ class TypeTable:
 
     def _list_derived(self, name: str) -> Iterator[str]:
         for entry in self.entries.values():
-            reference = entry.value.get("is") if isinstance(entry.value, MappingNode) else None
-            base = parse_type_expression(reference.text) if isinstance(reference, ScalarNode) else None
+            base = _read_base(entry.value)
             if base and base.name == name and not is_abstract(entry):
                 yield entry.key
 
@@ -201,21 +211,22 @@ def _diagnose_in_library(reference: ScalarNode, library: str, library_names: lis
     )
 
 
+def _read_base(body: YamlNode | None) -> TypeExpression | None:
+    reference = find_value(body, "is")
+    return parse_type_expression(reference.text) if isinstance(reference, ScalarNode) else None
+
+
 def list_generic_names(entry: MappingEntry) -> tuple[str, ...]:
     """Return the names of a type that stand for conceptual types; none where it is not generic."""
-    names = entry.value.get("generic") if isinstance(entry.value, MappingNode) else None
+    names = find_value(entry.value, "generic")
     items = names.items if isinstance(names, SequenceNode) else []
     return tuple(dict.fromkeys(item.text for item in items if isinstance(item, ScalarNode)))
 
 
 def is_abstract(entry: MappingEntry) -> bool:
     """Whether there is no instance of a type."""
-    flag = entry.value.get("abstract") if isinstance(entry.value, MappingNode) else None
+    flag = find_value(entry.value, "abstract")
     return isinstance(flag, ScalarNode) and flag.value is True
-
-
-def _list_entries(node: YamlNode | None) -> list[MappingEntry]:
-    return list(node) if isinstance(node, MappingNode) else []
 
 
 def diagnose_circle(entry: MappingEntry, names: list[str], verb: str) -> Diagnostic:
@@ -264,10 +275,6 @@ def _diagnose_abstract(
         help=help_line,
         element=element_id,
     )
-
-
-def _drop_type_keys(body: MappingNode) -> MappingNode:
-    return MappingNode({e.key: e for e in body if e.key not in _TYPE_KEYS}, body.span)
 
 
 def bind_type_body(node: MappingNode, bindings: Mapping[str, str], *, has_ids: bool = False) -> MappingNode:

@@ -6,13 +6,16 @@ Neither tree is changed, and what only one of them has is shared: the variants o
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from archgen.compose.instance_overlay import InstanceOverlay, lay_mapping, lay_node
 from archgen.compose.library_types import list_type_entries
-from archgen.compose.type_table import TypeTable
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.schema.schema_wording import SECTIONS_BY_ID
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
+from archgen.language.language_tables import SECTION_KINDS
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode, find_value
+
+if TYPE_CHECKING:
+    from archgen.compose.type_table import TypeTable
 
 _JOINED_LISTS = ("requirements", "tags")
 """Lists that are added to, as by instances."""
@@ -40,6 +43,8 @@ class _ChangeLayer:
 
     def _may_replace(self, replaced: ScalarNode, replacing: ScalarNode, component_id: str) -> bool:
         if self._types is None:
+            from archgen.compose.type_table import TypeTable
+
             root = MappingNode(self._entries, self._span)
             self._types = TypeTable(list_type_entries(root), self._diagnostics, self._incomplete_libraries)
         return self._types.may_replace(replaced, replacing, component_id)
@@ -61,14 +66,16 @@ class _ChangeLayer:
         for entry in types:
             library_id, dot, type_id = entry.key.partition(".")
             library = bodies.get(library_id)
-            library_types = _get_mapping(library.value, "component_types") if dot and library else None
+            library_types = find_value(library.value, "component_types") if dot and library else None
             if library is None or not isinstance(library_types, MappingNode) or type_id not in library_types.entries:
                 continue
             del own_types[entry.key]
             below = library_types.entries[type_id]
             laid = MappingEntry(type_id, below.key_span, self._lay_type(below, entry.value))
             filled = MappingNode({**library_types.entries, type_id: laid}, library_types.span)
-            bodies[library_id] = _replace_key(library, "component_types", filled)
+            bodies[library_id] = library.change_keys(
+                {"component_types": lambda section, filled=filled: section.with_value(filled)}  # type: ignore[misc]
+            )
         laid_libraries = MappingNode(bodies, libraries.value.span)
         self._entries["libraries"] = MappingEntry("libraries", libraries.key_span, laid_libraries)
         return section.with_value(MappingNode(own_types, types.span))
@@ -78,7 +85,7 @@ class _ChangeLayer:
             return section
         if section.key == "ros":
             value = lay_node(below.value, section.value)  # its parameters are data, too
-        elif section.key not in SECTIONS_BY_ID:
+        elif section.key not in SECTION_KINDS:
             value = lay_mapping(below.value, section.value)
         else:
             elements = dict(below.value.entries)
@@ -111,7 +118,7 @@ class _ChangeLayer:
         )
 
     def _lay_group(self, base: MappingNode, over: MappingNode, group_id: str) -> MappingNode:
-        rest = MappingNode({e.key: e for e in over if e.key != "components"}, over.span)
+        rest = over.without("components")
         group = _join_lists(lay_mapping(base, rest), base, rest)
         written = over.entries.get("components")
         if written is not None and isinstance(written.value, MappingNode):
@@ -122,19 +129,6 @@ class _ChangeLayer:
             below = base.entries.get("components", written)
             group.entries["components"] = MappingEntry("components", below.key_span, laid)
         return group
-
-
-def _get_mapping(node: YamlNode, key: str) -> YamlNode | None:
-    return node.get(key) if isinstance(node, MappingNode) else None
-
-
-def _replace_key(entry: MappingEntry, key: str, value: MappingNode) -> MappingEntry:
-    """Return an entry with another value at a key that its mapping has."""
-    mapping = entry.value
-    if not isinstance(mapping, MappingNode):
-        return entry
-    inner = MappingEntry(key, mapping.entries[key].key_span, value)
-    return entry.with_value(MappingNode({**mapping.entries, key: inner}, mapping.span))
 
 
 def _join_lists(laid: MappingNode, base: MappingNode, over: MappingNode) -> MappingNode:

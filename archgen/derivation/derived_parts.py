@@ -7,10 +7,9 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
 
-from archgen.derivation.reading_endpoints import WriterIndex, derive_reading_endpoints
-from archgen.derivation.writing_endpoints import NodePart, derive_writing_endpoints
+from archgen.derivation.port_endpoints import NodePart, WriterIndex, derive_reading_endpoints, derive_writing_endpoints
+from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 from archgen.model.known_parts import KnownParts

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
 
 from archgen.derivation import ros_names
 from archgen.derivation.derived_parts import DerivedParts
@@ -11,10 +10,16 @@ from archgen.derivation.frame_endpoints import derive_frame_endpoints, index_wri
 from archgen.derivation.inner_memory import mark_inner_memory
 from archgen.derivation.media_channels import derive_channels
 from archgen.derivation.parameter_names import name_ports_by_parameters
+from archgen.derivation.port_endpoints import (
+    NodePart,
+    derive_reading_endpoints,
+    derive_writing_endpoints,
+    find_node_parts,
+    index_writers,
+)
 from archgen.derivation.portless_endpoints import complete_message, count_shared_keys, derive_portless_endpoints
-from archgen.derivation.reading_endpoints import derive_reading_endpoints, index_writers
 from archgen.derivation.wire.running_state import complete_states
-from archgen.derivation.writing_endpoints import NodePart, derive_writing_endpoints, find_node_parts
+from archgen.frozen import dataclass, field, replace
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 from archgen.model.derived_names import derive_node_ids

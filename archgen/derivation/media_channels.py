@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
 
-from archgen.derivation.writing_endpoints import NodePart, filter_uses
+from archgen.derivation.port_endpoints import NodePart, filter_uses
+from archgen.frozen import dataclass, field
 from archgen.model.architecture import Architecture, PortEdge
 from archgen.model.component import Input, Output
 from archgen.model.node import Endpoint, FlowKind, Topic

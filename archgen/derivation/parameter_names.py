@@ -7,10 +7,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 
 from archgen.diagnostics.source_span import Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.node import PortUse
 from archgen.model.parameter import format_parameter

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 
 from archgen.derivation import ros_names
-from archgen.derivation.reading_endpoints import WriterIndex
+from archgen.derivation.port_endpoints import DEFAULT_QOS, WriterIndex, flow_of_use
 from archgen.derivation.wire.remap_rules import NodeNames
-from archgen.derivation.writing_endpoints import DEFAULT_QOS, flow_of_use
+from archgen.frozen import replace
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, FlowKind, Node, PortUse, UseKind
 

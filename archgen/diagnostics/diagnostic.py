@@ -5,10 +5,10 @@ from __future__ import annotations
 import enum
 import inspect
 from collections import Counter
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from archgen.diagnostics.source_span import Span
-from archgen.frozen import dataclass, replace
+from archgen.frozen import NamedTuple, dataclass, replace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from archgen.diagnostics.source_span import Span
+from archgen.frozen import NamedTuple
 
 TreePath = tuple[str | int, ...]
 """The keys, and positions in lists, that lead to a value of a project."""

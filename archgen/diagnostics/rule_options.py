@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from fractions import Fraction
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass
 
 if TYPE_CHECKING:
     from archgen.diagnostics.source_span import Span

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 
 from archgen import pipeline
@@ -19,12 +18,13 @@ from archgen.edit.element_edit import (
     parse_text,
     read_editable,
 )
+from archgen.frozen import dataclass
 from archgen.model.node import Node
 from archgen.pipeline import CheckedProject
 from archgen.project.project_loading import load_from_files
 from archgen.syntax import yaml_parser
 from archgen.syntax.project_files import OverlaidFiles
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, YamlNode, node_to_data
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, find_value, node_to_data
 from archgen.syntax.yaml_writer import format_flow, format_scalar
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.figures.figure_wording import format_duration
@@ -132,13 +132,7 @@ class _PatchPlanner:
 
     def _follow(self, path: _Path) -> str | None:
         """Return the file in which something is written at a path."""
-        for document in self._documents:
-            node: YamlNode | None = document.root
-            for key in path:
-                node = node.get(key) if isinstance(node, MappingNode) else None
-            if node is not None:
-                return document.file
-        return None
+        return next((each.file for each in self._documents if find_value(each.root, *path) is not None), None)
 
 
 def _list_component_paths(component: str) -> Iterator[_Path]:

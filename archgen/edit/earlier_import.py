@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass
 from archgen.merge.slice_merge import SliceVersions, merge_slices
 from archgen.project.slice_parsing import parse_slice
 from archgen.syntax.file_patterns import YAML_ENDINGS

@@ -8,7 +8,6 @@ The element to be written, as the lines of a block or in braces.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 
 from archgen import pipeline
 from archgen.compare.architecture_version import ArchitectureVersion
@@ -16,6 +15,7 @@ from archgen.compare.element_listing import list_elements
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.version_pair import MAPPED_KEY, ComparedElement
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.frozen import dataclass, field
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node
 from archgen.pipeline import CheckedProject

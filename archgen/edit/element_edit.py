@@ -10,13 +10,13 @@ import difflib
 import posixpath
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.edit import edit_proof
 from archgen.edit.edit_proof import NewElement
 from archgen.edit.element_place import ElementPlace
+from archgen.frozen import dataclass
 from archgen.pipeline import CheckedProject
 from archgen.syntax import yaml_parser
 from archgen.syntax.project_files import FileRefusal

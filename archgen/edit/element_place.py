@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 from collections import Counter
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from archgen.edit.edit_proof import first_file_of, list_written_nodes
+from archgen.frozen import NamedTuple
 from archgen.pipeline import CheckedProject
 from archgen.project import PROJECT_FILE
 from archgen.syntax import file_patterns
-from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, YamlNode
+from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, YamlNode, find_value, list_entries
 
 
 class ElementPlace(NamedTuple):
@@ -71,11 +71,11 @@ def _follow_ids(groups: MappingNode, ids: tuple[str, ...]) -> Iterator[YamlNode]
     """Yield a group and the components inside of one another that a file writes, from the outside to the inside."""
     table: YamlNode | None = groups
     for element_id in ids:
-        part = table.get(element_id) if isinstance(table, MappingNode) else None
+        part = find_value(table, element_id)
         if part is None:
             return
         yield part
-        table = part.get("components") if isinstance(part, MappingNode) else None
+        table = find_value(part, "components")
 
 
 def place_for_node(checked_project: CheckedProject, components: tuple[str, ...]) -> ElementPlace:
@@ -108,8 +108,7 @@ def _section_tables(checked_project: CheckedProject, section: str) -> Iterator[t
 
 def _weigh_slice(holder: YamlNode) -> tuple[int, int]:
     """Return how much a file says about a group or component: first its components' keys, then its own."""
-    components = holder.get("components") if isinstance(holder, MappingNode) else None
-    component_values = [entry.value for entry in components] if isinstance(components, MappingNode) else []
+    component_values = [entry.value for entry in list_entries(holder, "components")]
     keys = sum(len(value.entries) for value in component_values if isinstance(value, MappingNode))
     return len(component_values) + keys, len(holder.entries) if isinstance(holder, MappingNode) else 0
 

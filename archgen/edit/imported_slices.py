@@ -6,7 +6,6 @@ An update puts what the model says into what stands there. All else stays: what 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +21,7 @@ from archgen.edit.earlier_import import (
     read_earlier_import,
 )
 from archgen.edit.edit_proof import list_new_errors
+from archgen.frozen import dataclass, field
 from archgen.importers.foreign_import import ForeignImport
 from archgen.model import element_ids
 from archgen.pipeline import CheckedProject
@@ -173,6 +173,8 @@ def _plan_slice(  # noqa: PLR0913 - what, where and how
         raise ImportRefusedError(msg)
     if files is None or not files.has_path(file):
         return PlannedSlice(file, new_text, record=new_text)
+    if not merge and not files.has_path(record_path(file)) and read_text_file(files, file).text == new_text:
+        return PlannedSlice(file, new_text, record=new_text)  # left by an import that was killed: its record comes last
     if not merge:
         msg = f"{file} is there already; nothing was written; `--merge` brings it up to date, `-o` names another folder"
         raise ImportRefusedError(msg)

@@ -8,7 +8,6 @@ Sort measured execution times: which of them a slice may hold, and which of them
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import field, replace
 from fractions import Fraction
 from typing import Any
 
@@ -18,7 +17,7 @@ from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.edit.edit_proof import list_new_errors, list_written_nodes, load_with_text
 from archgen.emit.own_file_marks import MEASURED_HEADER
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field, replace
 from archgen.model.declared_timing import Timing
 from archgen.model.node import Node
 from archgen.model.quantity import parse_quantity
@@ -167,43 +166,30 @@ class FigureSorter:
             yield from self._leave_out_homeless(times)
             return
         timing = node.timing.get(component or "", Timing())
-        written_span = timing.places.get
-        yield from self._add_longest(times, path, timing, written_span("wcet"))
-        yield from self._add_shortest(times, path, timing, written_span("bcet"))
+        for key in ("wcet", "bcet"):
+            yield from self._add_time(times, path, timing, key)
 
-    def _add_longest(
-        self, times: AdoptedTimes, path: ElementPath, timing: Timing, written_at: Span | None
-    ) -> Iterator[tuple[str, str]]:
-        if times.longest is None:
+    def _add_time(self, times: AdoptedTimes, path: ElementPath, timing: Timing, key: str) -> Iterator[tuple[str, str]]:
+        """Add the longest time (`wcet`) or the shortest (`bcet`), unless what is written says it, or says otherwise."""
+        is_longest = key == "wcet"
+        measured = times.longest if is_longest else times.shortest
+        if measured is None:
             return
-        value = _write_longest(times)
-        if written_at is not None:
-            self._leave_out(times, "wcet", f"written already: {timing.wcet or 'without a maximum'}", value, written_at)
-        elif timing.bcet is not None and timing.bcet.value > times.longest:
-            self._leave_out(
-                times, "wcet", f"the bcet that is written, {timing.bcet}, is longer", value, timing.places["bcet"]
-            )
+        value = _write_longest(times) if is_longest else _write_down(measured)
+        own, other, other_key = timing.wcet, timing.bcet, "bcet"
+        if not is_longest:
+            own, other, other_key = timing.bcet, timing.wcet, "wcet"
+        if (written_at := timing.places.get(key)) is not None:
+            why = f"written already: {own or ('without a maximum' if is_longest else 'nothing')}"
+            self._leave_out(times, key, why, value, written_at)
+        elif other is not None and (other.value > measured if is_longest else other.value < measured):
+            why = f"the {other_key} that is written, {other}, is {'longer' if is_longest else 'shorter'}"
+            self._leave_out(times, key, why, value, timing.places[other_key])
         else:
             body = self._find_body(path)
-            body["wcet"] = _extend_longest(body.get("wcet"), value)
-            yield times.element, "wcet"
-
-    def _add_shortest(
-        self, times: AdoptedTimes, path: ElementPath, timing: Timing, written_at: Span | None
-    ) -> Iterator[tuple[str, str]]:
-        if times.shortest is None:
-            return
-        value = _write_down(times.shortest)
-        if written_at is not None:
-            self._leave_out(times, "bcet", f"written already: {timing.bcet or 'nothing'}", value, written_at)
-        elif timing.wcet is not None and timing.wcet.value < times.shortest:
-            self._leave_out(
-                times, "bcet", f"the wcet that is written, {timing.wcet}, is shorter", value, timing.places["wcet"]
-            )
-        else:
-            body = self._find_body(path)
-            body["bcet"] = _choose_text(min, body.get("bcet"), value)
-            yield times.element, "bcet"
+            old = body.get(key)
+            body[key] = _extend_longest(old, value) if isinstance(value, dict) else _choose_text(min, old, value)
+            yield times.element, key
 
     def _add_input_times(self, times: AdoptedTimes) -> Iterator[tuple[str, str]]:
         port = self._architecture.inputs.get(times.element)

@@ -6,13 +6,13 @@ What the other tool does not say stays as it is written, in the slice and in all
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from typing import Any
 
 from archgen import pipeline
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.edit import earlier_import
 from archgen.edit.edit_proof import list_new_errors, load_with_text
+from archgen.frozen import dataclass, field
 from archgen.link import mapping_values
 from archgen.pipeline import CheckedProject
 from archgen.project.slice_parsing import parse_slice

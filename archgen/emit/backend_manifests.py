@@ -7,7 +7,6 @@ untrusted input, so only the emitter `text` is open to it: its templates run in 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import field
 from pathlib import Path
 from typing import Any, Literal
 
@@ -22,7 +21,7 @@ from archgen.emit.manifest_parsing import (
     read_valid_manifest,
     refuse_manifest,
 )
-from archgen.frozen import dataclass, replace
+from archgen.frozen import dataclass, field, replace
 from archgen.installed_backends import BACKENDS_FOLDER, list_installed_backends
 
 

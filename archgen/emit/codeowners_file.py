@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import posixpath
 import re
-from dataclasses import dataclass
 
+from archgen.frozen import dataclass
 from archgen.views.partner_ownership import Ownership
 
 REVIEWER_HANDLE = re.compile(

@@ -13,15 +13,19 @@ import os
 import shutil
 import stat
 import tempfile
+import time
 import weakref
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from pathlib import Path
-from typing import IO
+from typing import IO, Literal
 
 from archgen.emit.own_file_marks import explain_refusal
 from archgen.emit.safe_names import is_safe_path
 from archgen.frozen import dataclass
+
+with contextlib.suppress(ImportError):  # Windows has none
+    import fcntl
 
 TREE_MANIFEST = ".archgen-files"
 _MANIFEST_HEADER = "# archgen wrote these files. It removes those that it no longer writes, and touches no others."
@@ -34,6 +38,9 @@ _MAX_MANIFEST_BYTES = 64_000_000
 """More than the manifest of 500,000 files has."""
 _FILE_MANAGER_DEBRIS = frozenset({".DS_Store", "Thumbs.db", "desktop.ini"})
 """What file managers leave behind. It is nobody's work, so it is no obstacle."""
+_STAGING_PREFIX = ".archgen-new-"
+_LOCK_TRIES = 600
+_SECONDS_BETWEEN_TRIES = 0.1
 
 
 class OutputError(Exception):
@@ -122,12 +129,9 @@ def write_tree(files: FileTree, folder: Path) -> WriteResult:
 
     Raise OutputError, before anything was changed, where the folder holds what archgen did not write.
     """
-    # Everything is read and compared first. Only `_replace_files` changes the disk.
-    with _explain_os_errors(folder):
-        folder = folder.resolve()
-        if folder.exists() and not folder.is_dir():
-            msg = f"{folder} is a file, not a folder"
-            raise OutputError(msg, "give another folder with `-o`")
+    # Everything is read and compared first. Only `_replace_files` changes what is there.
+    with _explain_os_errors(folder), lock_folder(folder := folder.resolve()):
+        _remove_leftovers(folder)
         old_manifest = _read_tree_manifest(folder)
         own_digests = _find_own_files(folder, old_manifest)
         new_digests = {path: hashlib.sha256(data).hexdigest() for path, data in files.files.items()}
@@ -156,14 +160,93 @@ def write_file(path: Path, data: bytes) -> None:
 
 
 def replace_file(path: Path, data: bytes) -> None:
-    """Put a file in the place of another one, whatever that holds: afterwards it is complete, or as it was."""
-    staging_folder = Path(tempfile.mkdtemp(prefix=f".{path.name}.", dir=path.parent))
-    try:
+    """Put a file in the place of another one, whatever that holds: afterwards it is complete, or as it was.
+
+    It has the permissions of the one that was there.
+    """
+    with open_staging_folder(path.parent) as staging_folder:
         # A file in a new folder gets the permissions that the user's umask asks for; mkstemp's own files have 0600.
-        (staging_folder / path.name).write_bytes(data)
-        os.replace(staging_folder / path.name, path)  # noqa: PTH105 - says what it does on every system
+        staged_file = staging_folder / "new"
+        staged_file.write_bytes(data)
+        if path.is_file() and not path.is_symlink():
+            staged_file.chmod(stat.S_IMODE(path.stat().st_mode))
+        os.replace(staged_file, path)  # noqa: PTH105 - says what it does on every system
+
+
+@contextlib.contextmanager
+def lock_folder(folder: Path) -> Iterator[None]:
+    """Keep other runs of archgen out of a folder: they wait. One that is made for that goes again if it stays empty.
+
+    Raise OutputError where another run does not come to its end, and for a file.
+    """
+    refuse_file(folder)
+    new_folders = [each for each in (folder, *folder.parents) if not each.exists()]
+    try:
+        for _ in range(_LOCK_TRIES):
+            folder.mkdir(parents=True, exist_ok=True)
+            with _try_lock(folder) as lock:
+                if lock != "held":
+                    yield
+                    return
+            time.sleep(_SECONDS_BETWEEN_TRIES)
+        msg = f"another archgen is writing into {folder}"
+        raise OutputError(msg, "wait until it is done, and run this again")
     finally:
-        shutil.rmtree(staging_folder, ignore_errors=True)
+        with contextlib.suppress(OSError):
+            for each in new_folders:
+                each.rmdir()
+
+
+def refuse_file(folder: Path) -> None:
+    """Raise OutputError where a file stands in the place of a folder."""
+    if folder.exists() and not folder.is_dir():
+        msg = f"{folder} is a file, not a folder"
+        raise OutputError(msg, "give another folder with `-o`")
+
+
+@contextlib.contextmanager
+def open_staging_folder(parent: Path) -> Iterator[Path]:
+    """Give a folder in which files are made until they are whole, on the file system that they are for."""
+    _remove_leftovers(parent)
+    while True:
+        staging_folder = Path(tempfile.mkdtemp(prefix=_STAGING_PREFIX, dir=parent))
+        try:
+            with _try_lock(staging_folder) as lock:
+                if lock != "held":  # else another run takes it for a leftover
+                    yield staging_folder
+                    return
+        finally:
+            shutil.rmtree(staging_folder, ignore_errors=True)
+
+
+def _remove_leftovers(parent: Path) -> None:
+    """Remove the staging folders of runs that were killed: nobody holds their locks any more."""
+    for left_over in parent.glob(f"{_STAGING_PREFIX}{'?' * 8}"):
+        with contextlib.suppress(OSError), _try_lock(left_over) as lock:
+            if lock == "ours":
+                shutil.rmtree(left_over)
+
+
+@contextlib.contextmanager
+def _try_lock(folder: Path) -> Iterator[Literal["ours", "held", "none"]]:
+    """Hold the lock of a folder, unless another run has it or has removed the folder; `none` where the system has no locks."""
+    descriptor = None
+    try:
+        try:
+            descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY) if "fcntl" in globals() else None
+            if descriptor is not None:
+                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            lock: Literal["ours", "held", "none"] = "none" if descriptor is None else "ours"
+        except (BlockingIOError, FileNotFoundError):
+            lock = "held"
+        except OSError:
+            if descriptor is None:
+                raise
+            lock = "none"
+        yield lock if folder.exists() else "held"
+    finally:
+        if descriptor is not None:
+            os.close(descriptor)
 
 
 def digest_manifest(folder: Path, *, just_written: bool = False) -> str | None:
@@ -207,14 +290,12 @@ def _replace_files(  # noqa: PLR0913 - what the folder holds, and what it shall 
     old_manifest: set[tuple[str, str]],
     new_digests: Mapping[str, str],
 ) -> None:
-    """Write what changed beside the folder, then move it in.
+    """Write what changed aside, then move it in.
 
     While files are moved, the manifest names the old and the new digests, so a run that was cut off is no obstacle.
     """
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    staging_folder = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
     final_manifest = {(digest, path) for path, digest in new_digests.items()}
-    try:
+    with open_staging_folder(folder) as staging_folder:
         changed_folders = sorted({path.rpartition("/")[0] for path in changed})
         for name in changed_folders:
             (staging_folder / name).mkdir(parents=True, exist_ok=True)
@@ -223,7 +304,6 @@ def _replace_files(  # noqa: PLR0913 - what the folder holds, and what it shall 
         # From here on each step leaves a folder that the next run can take over: both digests of a changed file are
         # known.
         _write_bytes(staging_folder / TREE_MANIFEST, _format_manifest(final_manifest | old_manifest))
-        folder.mkdir(exist_ok=True)
         os.replace(staging_folder / TREE_MANIFEST, folder / TREE_MANIFEST)  # noqa: PTH105
         for path in stale:
             _remove_file(folder, path)
@@ -233,8 +313,6 @@ def _replace_files(  # noqa: PLR0913 - what the folder holds, and what it shall 
             os.replace(f"{staging_folder}/{path}", f"{folder}/{path}")  # noqa: PTH105
         _write_bytes(staging_folder / TREE_MANIFEST, _format_manifest(final_manifest))
         os.replace(staging_folder / TREE_MANIFEST, folder / TREE_MANIFEST)  # noqa: PTH105
-    finally:
-        shutil.rmtree(staging_folder, ignore_errors=True)
 
 
 def _write_bytes(path: Path, data: bytes) -> None:
@@ -288,7 +366,8 @@ def _find_foreign_files(folder: Path, manifest: set[tuple[str, str]], own_digest
             if digest and (digest, path) in manifest:
                 own_digests[path] = digest
                 continue
-        if path != TREE_MANIFEST and path.rpartition("/")[2] not in _FILE_MANAGER_DEBRIS:
+        is_at_work = path == TREE_MANIFEST or path.startswith(_STAGING_PREFIX)
+        if not is_at_work and path.rpartition("/")[2] not in _FILE_MANAGER_DEBRIS:
             yield path
 
 

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import errno
 import os
-import shutil
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
-from archgen.emit.file_tree import OutputError
+from archgen.emit.file_tree import OutputError, open_staging_folder
 
 MARKER = "archgen.yaml"
 """The file that makes a folder a project."""
@@ -25,16 +23,13 @@ def write_new_files(files: Mapping[Path, bytes], top: Path) -> None:
     created_paths: list[Path] = []
     try:
         staging_parent = next(folder for folder in (top, *top.parents) if folder.is_dir())
-        staging_folder = Path(tempfile.mkdtemp(prefix=".archgen-", dir=staging_parent))
-        try:
+        with open_staging_folder(staging_parent) as staging_folder:
             for number, (folder, members) in enumerate(_group_by_new_folder(files)):
                 staged_top = staging_folder / str(number)
                 if folder is None:
                     _place_loose_files(members, staged_top, top, created_paths)
                 else:
                     _place_new_folder(folder, members, staged_top, top, created_paths)
-        finally:
-            shutil.rmtree(staging_folder, ignore_errors=True)
     except OSError as error:
         _undo_creation(created_paths)
         msg = f"cannot write {error.filename2 or error.filename or top}: {error.strerror or error}"
@@ -74,19 +69,15 @@ def _place_new_folder(
         staged_file = staged_top / path.relative_to(folder)
         staged_file.parent.mkdir(parents=True, exist_ok=True)
         staged_file.write_bytes(data)
-    staged_top.chmod(0o777 & ~_read_umask())
+    umask = os.umask(0)
+    os.umask(umask)
+    staged_top.chmod(0o777 & ~umask)
     _refuse_outside(folder.parent, top if top.is_dir() else folder.parent)
     if os.path.lexists(folder):  # since it was looked for
         raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(folder))
     staged_top.rename(folder)
     created_paths.append(folder)
     created_paths += sorted(folder.rglob("*"))
-
-
-def _read_umask() -> int:
-    umask = os.umask(0)
-    os.umask(umask)
-    return umask
 
 
 def _refuse_outside(folder: Path, top: Path) -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
-from typing import NamedTuple
 
+from archgen.frozen import NamedTuple
 from archgen.views.shapes import split_anchor
 
 TERM_KIND = "term"

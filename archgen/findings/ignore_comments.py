@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import fields
 from typing import Protocol
 
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean
+from archgen.frozen import fields
 from archgen.model.architecture import Architecture
 
 

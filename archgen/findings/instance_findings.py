@@ -5,12 +5,12 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
 
 from archgen.analyses import NO_LONGER_LOOKED_FOR
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.common_wording import join_words, keep_first
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import Span
+from archgen.frozen import replace
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 
@@ -59,7 +59,8 @@ def gather_instance_findings(
         if diagnostic.span in type_places and _find_component(architecture, diagnostic.element):
             gathered.setdefault((diagnostic.rule, diagnostic.span), []).append(diagnostic)
         else:
-            others.append(_drop_repeated_labels(diagnostic))
+            labels = tuple(dict.fromkeys(label for label in diagnostic.labels if label.span != diagnostic.span))
+            others.append(replace(diagnostic, labels=labels) if len(labels) < len(diagnostic.labels) else diagnostic)
     return [*others, *(_join_findings(same, architecture, type_places) for same in gathered.values())]
 
 
@@ -82,16 +83,8 @@ def _join_findings(same: Sequence[Diagnostic], architecture: Architecture, type_
     first, further = instances[0], instances[1:]
     text = f"in the instance `{first.id}`"
     if further:
-        names = [f"`{each.id}`" for each in further[:_MAX_NAMED]]
-        rest = [f"{len(further) - _MAX_NAMED} more"] if len(further) > _MAX_NAMED else []
-        text += f", and in {join_words([*names, *rest])}"
+        text += f", and in {join_words(keep_first([f'`{each.id}`' for each in further], _MAX_NAMED))}"
     return replace(same[0], labels=(*same[0].labels, Label(first.at, text)))
-
-
-def _drop_repeated_labels(diagnostic: Diagnostic) -> Diagnostic:
-    """Return a finding without labels at one place: each instance of a type would bring the same."""
-    labels = tuple(dict.fromkeys(label for label in diagnostic.labels if label.span != diagnostic.span))
-    return replace(diagnostic, labels=labels) if len(labels) < len(diagnostic.labels) else diagnostic
 
 
 def _list_instances(

@@ -7,11 +7,11 @@ from __future__ import annotations
 import re
 import textwrap
 from collections.abc import Iterable, Mapping
-from typing import NamedTuple
 
 from archgen import resources
 from archgen.diagnostics.diagnostic import Rule
 from archgen.diagnostics.text_columns import wrap_line
+from archgen.frozen import NamedTuple
 
 _TEXT_WIDTH = 100
 _SECTION_PATTERN = re.compile(

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.diagnostics.suggestions import did_you_mean
-from archgen.findings.comparison_rules import COMPARISON_RULES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -54,6 +53,14 @@ STALE_CODEOWNERS = Rule(
     "A CODEOWNERS file that archgen wrote is no longer what follows from the owners in the architecture.",
     setting="rules: {stale-codeowners: note}  # off, note, warning or error",
 )
+BREAKING_CHANGE = Rule(
+    "breaking-change",
+    Severity.WARNING,
+    "A change takes something from a partner who does not own what was changed, and nobody accepted that.",
+    setting="review: {breaking: {wire: error}}  # off, note, warning or error for each category, or one for all",
+)
+COMPARISON_RULES = (BREAKING_CHANGE,)
+"""The rules about two versions, which no project breaks by itself: reviews report them."""
 _REVIEW_RULES = index_rules(COMPARISON_RULES)
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any, Literal
 
 from archgen.forge.forge_api import ForgeApi, ForgeError
+from archgen.frozen import dataclass
 
 CommentOutcome = Literal["created", "updated", "unchanged"]
 _KEY_PATTERN = re.compile(r"[A-Za-z0-9_./-]+")

@@ -7,11 +7,12 @@ import os
 import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 from urllib.parse import urlencode
 
 from archgen.forge.comment_post import CommentTarget
 from archgen.forge.forge_api import ForgeApi, ForgeError, run_within
+from archgen.frozen import NamedTuple
 
 _REF_FOLDER = "refs/archgen/requests"
 """Where a clone keeps what it fetched: no branch and no tag is called so, whatever a stranger calls his."""

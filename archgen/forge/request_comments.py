@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.safe_text import format_json
@@ -14,6 +14,7 @@ from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE, LimitedComme
 from archgen.forge.comment_post import CommentOutcome, put_comment
 from archgen.forge.forge_api import ForgeError, run_within
 from archgen.forge.pull_request import OpenRequest, find_request
+from archgen.frozen import NamedTuple
 from archgen.merge.branch_merge import BranchMerge
 from archgen.merge.merge_sentences import describe_conflict
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import NamedTuple
 
+from archgen.frozen import NamedTuple
 from archgen.git.git_errors import GitError
 
 SAFE_COMMAND = (

@@ -10,9 +10,9 @@ import os
 import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 
+from archgen.frozen import dataclass
 from archgen.git.git_call import GitResult, run_git
 from archgen.git.git_errors import GitError
 from archgen.git.object_reader import GitObjects

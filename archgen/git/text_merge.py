@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import tempfile
-from dataclasses import dataclass
 from pathlib import Path
 
+from archgen.frozen import dataclass
 from archgen.git.git_call import run_git
 from archgen.git.git_errors import GitError
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from archgen.cache.file_store import FileStore, digest_text
 from archgen.cache.program_stamp import stamp_program
+from archgen.frozen import replace
 from archgen.history import workers
 from archgen.history.history_points import point_from_data, point_to_data
 from archgen.history.project_commits import HistoryInterval, ProjectCommit, list_commits

@@ -18,11 +18,11 @@ import sys
 import threading
 from collections.abc import Callable, Hashable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import replace
 from pathlib import Path
 
 from archgen import pipeline, project
 from archgen.cache.file_store import digest_text
+from archgen.frozen import replace
 from archgen.history.history_points import count_point, point_from_data, point_to_data
 from archgen.history.project_commits import ProjectCommit
 from archgen.model.project_history import HistoryPoint

@@ -115,7 +115,7 @@ class _TreeBuilder:
         declared = {
             attribute.partition(":")[2]: value
             for attribute, value in attributes.items()
-            if _declares_namespace(attribute)
+            if attribute == "xmlns" or attribute.startswith("xmlns:")
         }
         namespaces = {**namespaces, **declared} if declared else namespaces
         place = (self._parser.CurrentLineNumber, self._parser.CurrentColumnNumber + 1)
@@ -141,10 +141,6 @@ class _TreeBuilder:
         element, _, texts = self._open.pop()
         # Text comes in pieces between the children; added up piece by piece it would take the square of its length.
         element.text = "".join(texts)
-
-
-def _declares_namespace(attribute: str) -> bool:
-    return attribute == "xmlns" or attribute.startswith("xmlns:")
 
 
 _ENCODING_HELP = "save it as UTF-8, and let its first line say so"

@@ -290,7 +290,7 @@ KEY_FACTS: Mapping[str, Mapping[str, KeyFacts]] = {
     "host": {
         "title": {"form": "title", "effect": "text"},
         "cores": {"worse": "less"},
-        "scheduling": {"worse": "always"},
+        "scheduling": {"default": "fair", "worse": "always"},
         "scheduling.": {"form": "mapping", "worse": "always"},
         "description": {"form": "prose", "effect": "text"},
         "environment.": {"form": "mapping", "effect": "system"},

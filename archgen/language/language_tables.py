@@ -16,9 +16,9 @@ KindName = Literal[
     "use_case", "actor", "step", "requirement", "property_declaration", "view", "group", "component", "component_type",
     "component_node", "input", "output", "type_input", "performance", "indicator", "operation", "parameter",
     "parameter_declaration", "type", "field", "constant", "frame", "promise", "deprecation", "node", "internal",
-    "topic_use", "call_use", "qos", "host", "container", "resource", "link", "start", "start_ready", "policy",
-    "require", "forbid", "timing", "timing_input", "timing_output", "timing_use", "trigger", "execution_time",
-    "latency", "chain",
+    "topic_use", "call_use", "qos", "host", "host_scheduling", "fair_scheduling", "container", "resource", "link",
+    "start", "start_ready", "policy", "require", "forbid", "timing", "timing_input", "timing_output", "timing_use",
+    "trigger", "execution_time", "latency", "chain",
 ]
 SectionName = Literal[
     "archgen", "project", "sources", "partners", "agreements", "ros", "rules", "layout", "report", "use_cases",
@@ -298,6 +298,12 @@ KEYS: Mapping[str, Mapping[str, str]] = {
         "title": "text", "cores": "count", "scheduling": "host_scheduling", "description": "prose",
         "environment": "start_environment", "tags": "tags", "properties": "properties", "hints": "hints",
     },
+    "host_scheduling": {
+        "fair": "fair_scheduling",
+    },
+    "fair_scheduling": {
+        "slice": "duration", "tick": "duration", "lead": "count", "other_load": "fair_scheduling.other_load",
+    },
     "container": {
         "title": "text", "namespace": "text", "name": "text", "package": "text", "executable": "text",
         "parameters": "container.parameters", "host": "container.host", "threads": "count",
@@ -367,8 +373,8 @@ ENTRIES: Mapping[str, str] = {
     "chain_deadline": "duration", "chains": "chain", "changed_component_types": "component_type",
     "component_parameters": "parameter", "component_types": "component_type", "components": "component",
     "constants": "constant", "containers": "container", "definitions": "definitions.*", "fields": "field",
-    "frames": "frame", "glossary": "text", "groups": "group", "host_scheduling": "host_order", "hosts": "host",
-    "inputs": "input", "inner_nodes": "inner_nodes.*", "internal_calls": "call_use", "internal_topics": "topic_use",
+    "frames": "frame", "glossary": "text", "groups": "group", "hosts": "host", "inputs": "input",
+    "inner_nodes": "inner_nodes.*", "internal_calls": "call_use", "internal_topics": "topic_use",
     "libraries": "library", "links": "link", "message_part": "field", "nodes": "node",
     "operation_fields": "operation_fields.*", "operations": "operation", "outputs": "output",
     "parameter_commands": "parameter_commands.*", "parameter_set": "parameter", "parameter_texts": "parameter_texts.*",
@@ -382,6 +388,7 @@ ENTRIES: Mapping[str, str] = {
     "rules": "rules.*", "report.abbreviations": "text", "report.texts": "report.texts.*",
     "report.pictures": "report.pictures.*", "review.accepted": "accepted", "performance": "indicator",
     "operation.request": "operation.request.*", "operation.response": "operation.response.*", "parameter": "parameter",
+    "host_scheduling": "host_order",
 }
 """Mappings by id: the part of their values."""
 ITEMS: Mapping[str, str] = {
@@ -509,7 +516,7 @@ ATTRIBUTES: Mapping[str, tuple[str, ...]] = {
     "input.medium": ("medium", "medium_written"), "output.medium": ("medium", "medium_written"),
     "parameter_declaration.from": ("handed_from",), "parameter_declaration.hints": ("hints", "hint_places"),
     "frame.by": ("by", "by_kind", "by_written"), "node.kind": ("kinds",),
-    "host.scheduling": ("scheduling", "core_scheduling", "core_places"),
+    "host.scheduling": ("scheduling", "core_scheduling", "core_places", "fair"),
     "host.environment": ("environment", "environment_places"), "link.connects": ("connects", "devices", "unresolved"),
     "link.latency": ("best", "worst"), "start.by": ("by", "by_written"),
     "policy.forbid": ("forbid_from", "forbid_to", "from_at", "to_at"),

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from archgen.diagnostics.common_wording import join_words
-from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.link import mapping_values
 from archgen.link.element_outline import ElementOutline
@@ -143,26 +142,22 @@ class _AutomaticConnections:
             self._sources.ambiguous_ports.add(port)
             # Any of them may be what was meant: rules on what nobody reads keep quiet about all of them.
             self._resolver.suspect_ids.update(each[1] for each in candidates)
-            self._resolver.diagnostics.append(
-                Diagnostic(
-                    "ambiguous-connection",
-                    f"`{port[1]}` can be joined to {join_words([*names, *rest], 'or')}",
-                    self._place_of(port),
-                    help="write `from` at it: where several fit, nothing is joined",
-                    element=port[1].rpartition(".")[0],
-                )
+            self._resolver.report(
+                "ambiguous-connection",
+                f"`{port[1]}` can be joined to {join_words([*names, *rest], 'or')}",
+                self._place_of(port),
+                help_line="write `from` at it: where several fit, nothing is joined",
+                element=port[1].rpartition(".")[0],
             )
 
     def _warn_several(self, port: PortKey, output_ids: Sequence[str], feeder: PortSource) -> None:
         names = join_words([f"`{each}`" for each in output_ids[:_MAX_NAMED]])
-        self._resolver.diagnostics.append(
-            Diagnostic(
-                "several-sources",
-                f"`{port[1]}` takes {len(output_ids)} outputs of its type: {names}",
-                feeder.at,
-                help="write `from` at the input if it is one of them, or a list there if it is all",
-                element=port[1].rpartition(".")[0],
-            )
+        self._resolver.report(
+            "several-sources",
+            f"`{port[1]}` takes {len(output_ids)} outputs of its type: {names}",
+            feeder.at,
+            help_line="write `from` at the input if it is one of them, or a list there if it is all",
+            element=port[1].rpartition(".")[0],
         )
 
     def _place_of(self, port: PortKey) -> Span:

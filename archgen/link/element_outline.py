@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, field
 
 from archgen.compose import ExpandedProject
 from archgen.compose.expanded_project import ComponentShell
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.suggestions import did_you_mean
+from archgen.frozen import dataclass, field
 from archgen.link import mapping_values
 from archgen.link.link_memory import LinkMemory, OutlinedPorts
 from archgen.link.promise_reading import read_deprecation, read_promise

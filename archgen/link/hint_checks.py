@@ -10,13 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from decimal import Decimal
-from typing import NamedTuple
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Rule, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean
-from archgen.frozen import dataclass, replace
+from archgen.frozen import NamedTuple, dataclass, replace
 from archgen.installed_backends import InstalledBackend, list_installed_backends
 from archgen.link import mapping_values
 from archgen.model.annotated_elements import list_annotated_elements

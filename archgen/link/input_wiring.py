@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
-from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
+from archgen.frozen import dataclass, field
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.element_outline import ElementOutline
-from archgen.link.port_sources import PortSources
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.link.value_readers import read_values
 from archgen.model.architecture import PortEdge
@@ -18,6 +17,9 @@ from archgen.model.message_types import ConceptualType
 from archgen.model.path_resolver import ElementRef
 from archgen.model.port_media import PHYSICAL, flow_of_port, is_physical
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode
+
+if TYPE_CHECKING:
+    from archgen.link.port_sources import PortSources
 
 _SOURCE_KINDS = ("group", "component", "output")
 MAX_PAIRS = 500_000
@@ -175,9 +177,7 @@ class InputWiring:
                 f"up to here references make more than {MAX_PAIRS:,} pairs of output and input; the rest is left out"
             )
             help_line = "name single outputs or components where whole groups are named"
-            self.resolver.diagnostics.append(
-                Diagnostic("too-large", message, place, help=help_line, element=component_id)
-            )
+            self.resolver.report("too-large", message, place, help_line=help_line, element=component_id)
 
     def _list_output_ids(self, target: ElementRef, reader_id: str) -> Iterator[str]:
         """Yield the outputs that a reference stands for: one, or all that carry messages except the reader's own."""

@@ -8,20 +8,22 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from functools import lru_cache
-from typing import NamedTuple
+from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import find_closest
+from archgen.frozen import NamedTuple, replace
 from archgen.link.data_types.field_types import UNKNOWN_FIELD_TYPE, TypeMention
-from archgen.link.data_types.message_definitions import CONFLICTING_MESSAGE, TypeDefinition
 from archgen.link.shipped_interfaces import LazyInterfaces, list_answering_distros, load_shipped_interfaces
 from archgen.model.graph_search import find_rings
 from archgen.model.known_interfaces import Interface, Interfaces
 from archgen.model.ros_distro import is_ros_1
 from archgen.syntax.interface_definitions import INVALID_INTERFACE, InterfaceDefinition, parse_interface_definition
+
+if TYPE_CHECKING:
+    from archgen.link.data_types.message_definitions import TypeDefinition
 
 _DEFINITION_PATH = re.compile(
     r"(?:.*/)?([A-Za-z][A-Za-z0-9_]*)/(msg|srv|action)/([A-Za-z][A-Za-z0-9_]*)\.(\w+)\Z", re.ASCII
@@ -108,6 +110,8 @@ def _find_conflict(
     type_definition: TypeDefinition, shipped: Interfaces, spans: Mapping[str, Span], *, ros1: bool
 ) -> Diagnostic | None:
     """Return why a type does not define its message: there is one already, or it is none in ROS 2."""
+    from archgen.link.data_types.message_definitions import CONFLICTING_MESSAGE
+
     name, type_name = type_definition.definition.interface.name, type_definition.type_name
     name_problems = list[Diagnostic]()
     if not _check_name(name, type_definition.span, name_problems, ros1=ros1):

@@ -34,7 +34,7 @@ def merge_libraries(
             body = MappingNode({**package, **entry.value.entries, **content.entries}, entry.value.span)
             bodies[library.id] = entry.with_value(body)
     section = root.entries["libraries"]
-    filled_section = section.with_value(MappingNode(bodies, section.value.span))
+    filled_section = section.with_entries(bodies)
     return MappingNode({**root.entries, "libraries": filled_section}, root.span), tuple(diagnostics)
 
 
@@ -88,7 +88,7 @@ def _keep_used_types(library: MappingEntry, architectures: Sequence[Architecture
         )
     ]
     used_entries = {
-        name: MappingEntry(name, body.entries[name].key_span, MappingNode({e.key: e for e in entries}, body.span))
+        name: body.entries[name].with_value(MappingNode({e.key: e for e in entries}, body.span))
         for name, entries in (("component_types", component_types), ("types", types))
         if entries
     }

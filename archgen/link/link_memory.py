@@ -7,8 +7,8 @@ entry is the same object, and whose references mean what they meant, is the same
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import NamedTuple
 
+from archgen.frozen import NamedTuple
 from archgen.link.reference_resolution import Answer, NameList
 from archgen.model.component import Component, Output
 from archgen.model.known_parts import KnownParts

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import fields, replace
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, fields, replace
 from archgen.link import sanity_checks
 from archgen.model.component import Component
 from archgen.model.declared_timing import Timing

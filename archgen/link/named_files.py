@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
 
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.diagnostics.suggestions import did_you_mean
+from archgen.frozen import NamedTuple
 from archgen.link import mapping_values
 from archgen.link.report_chapters import ReportChapters
 from archgen.model.known_parts import KnownParts

@@ -9,11 +9,10 @@ import posixpath
 import re
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
-from dataclasses import field, replace
 
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.diagnostics.source_span import Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field, replace
 from archgen.link import mapping_values
 from archgen.link.parameter_texts import ParameterText, find_node_values, read_parameter_text
 from archgen.model.architecture import Architecture

@@ -6,10 +6,9 @@ Nested parameters in YAML as values by their dotted names, each with its place.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import field, replace
 
 from archgen.diagnostics.source_span import Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field, replace
 from archgen.model.node import Node
 from archgen.model.parameter import MAX_NAME_LENGTH, FileRemark, ParameterValue
 from archgen.syntax.yaml_parser import parse_yaml

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, field
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.suggestions import find_closest
+from archgen.frozen import dataclass, field
 from archgen.model.path_resolver import PathResolver
 
 # How many parts the complete path of each kind has where no component holds others: a reference with more parts cannot

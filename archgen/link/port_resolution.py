@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from itertools import chain
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import Span
+from archgen.frozen import dataclass
 from archgen.link.path_guesses import take_path_end
-from archgen.link.reference_resolution import ReferenceResolver
-from archgen.link.unknown_references import list_known_names
+from archgen.link.reference_resolution import ReferenceResolver, list_known_names
 from archgen.model.path_resolver import ElementRef, PathMatch, PathResolver
 
 

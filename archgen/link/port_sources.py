@@ -7,11 +7,9 @@ components pass on what stands inside. `outputs_behind` follows all of these dow
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
 
-from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
-from archgen.frozen import replace
+from archgen.frozen import NamedTuple, replace
 from archgen.link import mapping_values
 from archgen.link.element_outline import ElementOutline
 from archgen.link.reference_resolution import ReferenceResolver
@@ -96,14 +94,12 @@ class PortSources:
             if target is not None and target.kind in {"component", "group"}:
                 yield PortSource(target, reference.text, reference.span)
             elif target is not None:
-                self._resolver.diagnostics.append(
-                    Diagnostic(
-                        "unknown-reference",
-                        f"`from` of an instance names components: `{reference.text}` is an output",
-                        reference.span,
-                        help="write the output at the input that reads it",
-                        element=component_id,
-                    )
+                self._resolver.report(
+                    "unknown-reference",
+                    f"`from` of an instance names components: `{reference.text}` is an output",
+                    reference.span,
+                    help_line="write the output at the input that reads it",
+                    element=component_id,
                 )
 
     def outputs_behind(self, target: ElementRef, reader_id: str) -> tuple[str, ...]:

@@ -6,16 +6,17 @@ Read the values of overrides, and say what is wrong with them.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
 
 from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.rule_options import parse_percentage
 from archgen.diagnostics.suggestions import did_you_mean
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
-from archgen.model.declared_timing import EXECUTOR_ORDERS, HOST_ORDERS, RESOURCE_ORDERS
+from archgen.model.declared_timing import EXECUTOR_ORDERS, HOST_ORDERS, RESOURCE_ORDERS, FairScheduling
 from archgen.model.deployment import Container, Host
 from archgen.model.node import Node
+from archgen.model.quantity import parse_quantity
 
 _ORDERS = {"nodes": EXECUTOR_ORDERS, "containers": EXECUTOR_ORDERS, "hosts": HOST_ORDERS, "resources": RESOURCE_ORDERS}
 _KEYS: Mapping[str, tuple[str, ...]] = {
@@ -82,6 +83,8 @@ def _parse_value(  # noqa: PLR0913, PLR0917 - the parts of one override
         expected = f"components of `{element_id}`, as in callback_groups.GROUP={components[0] if components else 'a'}"
     elif part and (section, key) != ("hosts", "scheduling"):
         value, expected = None, "a value of its own, without a part below it"
+    elif key == "scheduling" and part.startswith("fair."):
+        value, expected = _parse_fair_figure(part.removeprefix("fair."), text)
     elif key == "scheduling":
         is_core = not part or parse_count(part) is not None
         value = text if text in _ORDERS[section] and is_core else None
@@ -98,6 +101,19 @@ def _parse_value(  # noqa: PLR0913, PLR0917 - the parts of one override
     else:
         value, expected = parse_count(text) or None, "a whole number from 1"
     return require_value(name, text, value, expected)
+
+
+def _parse_fair_figure(name: str, text: str) -> tuple[object | None, str]:
+    """Return a figure of a fair order, None where it is none, and what is expected."""
+    if name in {"slice", "tick"}:
+        return parse_quantity(text, "duration"), "a duration, such as 3 ms"
+    if name == "lead":
+        return parse_count(text) or None, "a whole number from 1"
+    share = parse_percentage(text) if name == "other_load" else None
+    expected = (
+        "a share below 100 %" if name == "other_load" else "one of fair.slice, fair.tick, fair.lead, fair.other_load"
+    )
+    return share if share is not None and share < 1 else None, expected
 
 
 def _find_members(components: tuple[str, ...], names: list[str]) -> tuple[str, ...] | None:
@@ -141,6 +157,9 @@ def apply_process_override(architecture: Architecture, override: ProcessOverride
 def _change_orders(host: Host, override: ProcessOverride) -> dict[str, Any]:
     if not override.part:
         return {"scheduling": override.value}
+    if override.part.startswith("fair."):
+        figure = {override.part.removeprefix("fair."): override.value}
+        return {"scheduling": "fair", "fair": replace(host.fair or FairScheduling(), **figure)}
     return {"core_scheduling": {**host.core_scheduling, int(override.part): override.value}}
 
 

@@ -11,17 +11,15 @@ from collections.abc import Mapping
 
 from archgen.compose import ExpandedProject, expand_project, list_type_entries
 from archgen.compose.type_expressions import TypeExpression
-from archgen.compose.type_table import TypeTable
 from archgen.derivation.wire.remap_rules import apply_launch_names
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.link import mapping_values
 from archgen.link.declare import element_declaration, section_declaration
+from archgen.link.declare.component_declaration import declare_component_types, declare_groups
 from archgen.link.declare.component_nodes import declare_component_nodes
-from archgen.link.declare.component_type_declaration import declare_component_types
 from archgen.link.declare.element_declaration import declare_elements, declare_sections
 from archgen.link.declare.frame_declaration import declare_frames
-from archgen.link.declare.group_declaration import declare_groups
 from archgen.link.declare.handed_parameters import HandedParameters
 from archgen.link.declare.node_declaration import NodeContext, declare_nodes, resolve_implements
 from archgen.link.declare.section_declaration import declare_variants
@@ -181,6 +179,8 @@ def link_type_patterns(merged_table: MappingNode, architecture: Architecture) ->
     """
     if not architecture.component_types:
         return TypePatterns()
+    from archgen.compose.type_table import TypeTable
+
     outer_entries = {name: entry for name, entry in merged_table.entries.items() if name in _OUTER_SECTIONS}
     table = TypeTable(list_type_entries(merged_table), [])
     type_bodies = {
@@ -191,7 +191,7 @@ def link_type_patterns(merged_table: MappingNode, architecture: Architecture) ->
     patterns = _link_expansion(expansion, architecture)
     components = {**patterns.components, **patterns.shells}
     return TypePatterns(
-        {_drop_group(component_id): component for component_id, component in components.items()},
+        {component_id.removeprefix(f"{PATTERN_GROUP}."): component for component_id, component in components.items()},
         {node.implements[0]: node for node in patterns.nodes.values() if len(node.implements) == 1},
     )
 
@@ -217,7 +217,3 @@ def _link_expansion(expansion: ExpandedProject, architecture: Architecture) -> A
         interfaces=architecture.interfaces,
     )
     return patterns
-
-
-def _drop_group(component_id: str) -> str:
-    return component_id.removeprefix(f"{PATTERN_GROUP}.")

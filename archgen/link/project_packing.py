@@ -9,11 +9,10 @@ import base64
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
-from dataclasses import field
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.language.key_paths import OWN_DATA, SLICE, find_inner_part
 from archgen.language.language_tables import BARE_PARTS, DATA_PARTS
 from archgen.link.library_merging import keep_used_libraries

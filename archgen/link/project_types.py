@@ -8,15 +8,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
 from functools import cache
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any
 
 from archgen import resources
 from archgen.compose import ExpandedProject
 from archgen.compose.library_types import list_libraries
 from archgen.diagnostics.diagnostic import Diagnostic, diagnose_repetition
+from archgen.frozen import NamedTuple, replace
 from archgen.link import mapping_values
 from archgen.link.data_types.field_types import TypeSources
 from archgen.link.declare.section_declaration import declare_project

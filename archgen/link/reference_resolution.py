@@ -1,22 +1,56 @@
-"""Resolve references: which element a dotted path means, and what to report if it means none, or several."""
+"""Resolve references: which element a dotted path means, and what to report if it means none, or several.
+
+Say that a reference names nothing, and what it may have meant.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
 from types import MappingProxyType
-from typing import NamedTuple
 
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import AskedName, Diagnostic, Label
 from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.frozen import NamedTuple, dataclass, field, replace
 from archgen.language.language_tables import PLAIN_SECTIONS
 from archgen.link import mapping_values
 from archgen.link.path_guesses import PathGuesser, list_possible_kinds
-from archgen.link.unknown_references import diagnose_unknown_reference
 from archgen.model.path_resolver import NO_MATCH, ElementRef, PathIndex, PathMatch, PathResolver
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
+
+_MAX_LISTED = 6
+"""So many names are listed where no name resembles an unknown one."""
+
+
+def diagnose_unknown_reference(  # noqa: PLR0913 - what it says
+    reference: ScalarNode,
+    kind_phrase: str,
+    guess: str | None,
+    declared_span: Span,
+    element_id: str,
+    *,
+    known_names: Sequence[str] = (),
+    asked_name: AskedName | None = None,
+) -> Diagnostic:
+    """Report that there is no such element, with what may have been meant, or all that there are if they are few."""
+    return Diagnostic(
+        "unknown-reference",
+        f"no {kind_phrase} named `{reference.text}`",
+        reference.span,
+        labels=(Label(declared_span, "declared here"),) if guess and declared_span != NO_SPAN else (),
+        help=f"did you mean `{guess}`?" if guess else list_known_names(known_names),
+        element=element_id,
+        asked_name=None if guess else asked_name,
+    )
+
+
+def list_known_names(names: Sequence[str]) -> str | None:
+    """Return a help line with all names that could be meant, if there are few; else None."""
+    if not 0 < len(names) <= _MAX_LISTED:
+        return None
+    return f"there {'are' if len(names) > 1 else 'is'} {join_words([f'`{name}`' for name in names], 'and')}"
+
 
 SECTIONS_OF_PLAIN_NAMES = {kind.replace("_", " "): section for kind, section in PLAIN_SECTIONS.items()}
 """The sections that declare what is named by its id alone, by the word of their kind."""
@@ -75,6 +109,19 @@ class ReferenceResolver:
         # Components inside of components have longer ids.
         extra_depth = max((path.count(".") for path in self.spans.get("component", ())), default=1) - 1
         self.guesser = PathGuesser(self.names, extra_depth)
+
+    def report(  # noqa: PLR0913 - what a diagnostic has
+        self,
+        rule: str,
+        message: str,
+        span: Span,
+        *,
+        labels: tuple[Label, ...] = (),
+        help_line: str | None = None,
+        element: str | None = None,
+    ) -> None:
+        """Add a diagnostic."""
+        self.diagnostics.append(Diagnostic(rule, message, span, labels=labels, help=help_line, element=element))
 
     def resolve_reference(  # noqa: PLR0913 - the last two by name
         self,
@@ -287,15 +334,13 @@ class ReferenceResolver:
     def _warn_hidden(
         self, reference: ScalarNode, visible: ElementRef, hidden: Sequence[ElementRef], element_id: str
     ) -> None:
-        self.diagnostics.append(
-            Diagnostic(
-                "hidden-reference",
-                f"`{reference.text}` is the {visible.kind} `{visible.id}`, which hides the {hidden[0].kind} `{hidden[0].id}`",
-                reference.span,
-                labels=tuple(Label(self._span_of(element), "hidden") for element in hidden),
-                help=f"write `{hidden[0].id}` if that is meant",
-                element=element_id,
-            )
+        self.report(
+            "hidden-reference",
+            f"`{reference.text}` is the {visible.kind} `{visible.id}`, which hides the {hidden[0].kind} `{hidden[0].id}`",
+            reference.span,
+            labels=tuple(Label(self._span_of(element), "hidden") for element in hidden),
+            help_line=f"write `{hidden[0].id}` if that is meant",
+            element=element_id,
         )
 
     def _span_of(self, element: ElementRef) -> Span:

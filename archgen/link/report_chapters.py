@@ -14,20 +14,18 @@ import binascii
 import posixpath
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import field
-from typing import NamedTuple
 from urllib.parse import quote, unquote
 
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.diagnostics.suggestions import did_you_mean
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass, field
 from archgen.link import mapping_values
 from archgen.link.value_readers import read_values
 from archgen.model.document_chapters import GENERATED_CHAPTERS, Chapter
 from archgen.model.report_settings import HistoryEntry, ReportSettings
 from archgen.syntax.project_files import ProjectFiles, read_binary_file, read_text_file
-from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode
+from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, YamlNode, list_entries
 
 MISSING_CHAPTER = Rule(
     "missing-chapter",
@@ -150,17 +148,16 @@ def read_chapters(root: MappingNode, files: ProjectFiles) -> tuple[ReportChapter
 def locate_packed_texts(root: MappingNode) -> dict[str, Span]:
     """Return the places of the chapters' texts that a packed project holds itself, by chapter."""
     report = root.get("report")
-    texts = report.get("texts") if isinstance(report, MappingNode) else None
-    return {entry.key: entry.key_span for entry in (texts if isinstance(texts, MappingNode) else ())}
+    return {entry.key: entry.key_span for entry in list_entries(report, "texts")}
 
 
-def _list_texts(node: object) -> Iterator[tuple[str, str]]:
-    for entry in node if isinstance(node, MappingNode) else ():
+def _list_texts(node: YamlNode | None) -> Iterator[tuple[str, str]]:
+    for entry in list_entries(node):
         if isinstance(entry.value, ScalarNode):
             yield entry.key, entry.value.text
 
 
-def _decode_pictures(node: object) -> Iterator[tuple[str, bytes]]:
+def _decode_pictures(node: YamlNode | None) -> Iterator[tuple[str, bytes]]:
     for path, text in _list_texts(node):
         try:
             yield path, base64.b64decode(text, validate=True)

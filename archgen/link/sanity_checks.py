@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.frozen import replace
 from archgen.link import mapping_values
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.declared_timing import Timing

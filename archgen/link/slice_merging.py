@@ -11,11 +11,10 @@ from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity, diagnose_
 from archgen.diagnostics.source_span import NO_SPAN
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.language.language_tables import SUPPORTING_KEYS
-from archgen.schema import element_of_path
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, SequenceNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, SequenceNode, find_value, list_entries
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
 
     from archgen.syntax.yaml_tree import YamlDocument, YamlNode
 
@@ -91,6 +90,8 @@ def _is_parameter(path: KeyPath) -> bool:
 
 
 def _diagnose_conflict(entry: MappingEntry, first_entry: MappingEntry, path: KeyPath) -> Diagnostic:
+    from archgen.schema.schema_wording import element_of_path
+
     owner = element_of_path(path[:-1])
     owner_phrase = f" of `{owner}`" if owner else ""
     if path[0] == "groups" and path[-3:-2] == ("parameters",):
@@ -139,7 +140,7 @@ def _list_element_paths(groups: MappingNode) -> Iterator[KeyPath]:
 
 
 def _list_paths_below(path: KeyPath, holder: YamlNode) -> Iterator[KeyPath]:
-    for component in _components_of(holder):
+    for component in list_entries(holder, "components"):
         yield (*path, component.key)
         yield from _list_paths_below((*path, component.key), component.value)
 
@@ -150,14 +151,14 @@ def list_supported_elements(groups: MappingNode) -> Iterator[KeyPath]:
         if (
             isinstance(group.value, MappingNode)
             and "title" not in group.value.entries
-            and not any(_components_of(group.value))
+            and not any(list_entries(group.value, "components"))
         ):
             yield (group.key,)
         yield from _list_supported_below((group.key,), group.value)
 
 
 def _list_supported_below(path: KeyPath, holder: YamlNode) -> Iterator[KeyPath]:
-    for component in _components_of(holder):
+    for component in list_entries(holder, "components"):
         if not declares_itself(component.value):
             yield (*path, component.key)
         # What an instance has inside is declared by its type: writing out types judges that.
@@ -170,31 +171,23 @@ def declares_itself(body: YamlNode) -> bool:
     if not isinstance(body, MappingNode):
         return True
     own_keys = body.entries.keys() - _SUPPORTING_KEYS
-    return (bool(own_keys) and body.declares) or any(declares_itself(inner.value) for inner in _components_of(body))
-
-
-def _components_of(group: YamlNode) -> Iterable[MappingEntry]:
-    components = group.get("components") if isinstance(group, MappingNode) else None
-    return components if isinstance(components, MappingNode) else ()
+    return (bool(own_keys) and body.declares) or any(
+        declares_itself(inner.value) for inner in list_entries(body, "components")
+    )
 
 
 def _is_empty_somewhere(path: KeyPath, documents: Sequence[YamlDocument]) -> bool:
     """Whether some document declares an element by its bare id."""
     full_path = ("groups", path[0], *(key for name in path[1:] for key in ("components", name)))
-    return any(_is_empty_at(document.root, full_path) for document in documents)
-
-
-def _is_empty_at(node: YamlNode | None, path: KeyPath) -> bool:
-    for key in path:
-        node = node.get(key) if isinstance(node, MappingNode) else None
-    return isinstance(node, MappingNode) and not node.entries and node.declares
+    found = (find_value(document.root, *full_path) for document in documents)
+    return any(isinstance(node, MappingNode) and not node.entries and node.declares for node in found)
 
 
 def _diagnose_undeclared(groups: MappingNode, path: KeyPath, declared_paths: Sequence[KeyPath]) -> Diagnostic:
     kind = "group" if len(path) == 1 else "component"
     entry = groups.entries[path[0]]
     for name in path[1:]:
-        entry = next(component for component in _components_of(entry.value) if component.key == name)
+        entry = next(component for component in list_entries(entry.value, "components") if component.key == name)
     name = ".".join(path)
     guess = did_you_mean(
         name, (".".join(declared_path) for declared_path in declared_paths if len(declared_path) == len(path))
@@ -214,7 +207,11 @@ def _remove_paths(groups: MappingNode, removed_paths: frozenset[KeyPath]) -> Map
             continue
         kept_group = _remove_components((group.key,), group, removed_paths)
         # A group of which nothing is left goes too.
-        if kept_group is group or "title" in _entries_of(kept_group) or any(_components_of(kept_group.value)):
+        if (
+            kept_group is group
+            or "title" in _entries_of(kept_group)
+            or any(list_entries(kept_group.value, "components"))
+        ):
             kept_groups[group.key] = kept_group
     return MappingNode(kept_groups, groups.span)
 
@@ -225,7 +222,7 @@ def _entries_of(entry: MappingEntry) -> dict[str, MappingEntry]:
 
 def _remove_components(path: KeyPath, holder: MappingEntry, removed_paths: frozenset[KeyPath]) -> MappingEntry:
     """Return what holds components without those at some paths: itself if there are none, since documents must not change."""
-    components = list(_components_of(holder.value))
+    components = list(list_entries(holder.value, "components"))
     kept = [
         _remove_components((*path, component.key), component, removed_paths)
         for component in components
@@ -236,7 +233,7 @@ def _remove_components(path: KeyPath, holder: MappingEntry, removed_paths: froze
     entry = _entries_of(holder)["components"]
     kept_components = MappingNode({component.key: component for component in kept}, entry.value.span)
     entries = {**_entries_of(holder), "components": entry.with_value(kept_components)}
-    return holder.with_value(MappingNode(entries, holder.value.span))
+    return holder.with_entries(entries)
 
 
 RULES: tuple[Rule, ...] = (
@@ -270,11 +267,10 @@ _STEP_ENDS = ("from", "to")
 def find_incomplete(root: MappingNode) -> Iterator[Diagnostic]:
     """Report elements that lack a key without which they mean nothing, in all slices together."""
     for section, needed_paths in _NEEDED_KEYS.items():
-        section_node = _node_at(root, section)
-        for entry in section_node if isinstance(section_node, MappingNode) else ():
+        for entry in list_entries(root, *section):
             nodes = entry.value.items if isinstance(entry.value, SequenceNode) else (entry.value,)
             for path in needed_paths:
-                if not all(_has_path(node, path) for node in nodes):
+                if not all(_has_path(node, *path) for node in nodes):
                     message = f"`{entry.key}` lacks `{'.'.join(path)}`"
                     yield Diagnostic(
                         "missing-key", message, entry.key_span, help=_MISSING_KEY_HELP[section[-1]], element=entry.key
@@ -285,15 +281,14 @@ def find_incomplete(root: MappingNode) -> Iterator[Diagnostic]:
 
 def _find_open_policies(root: MappingNode) -> Iterator[Diagnostic]:
     """Report the policies that say neither what they forbid nor what they require, or only half of it."""
-    policies = _node_at(root, ("policies",))
-    for entry in policies if isinstance(policies, MappingNode) else ():
-        requires = _has_path(entry.value, ("require",))
+    for entry in list_entries(root, "policies"):
+        requires = _has_path(entry.value, "require")
         parts = [("require", ("of", "inputs_from"))] if requires else []
-        if not requires or _has_path(entry.value, ("forbid",)):
+        if not requires or _has_path(entry.value, "forbid"):
             parts.append(("forbid", ("from", "to")))
         for part, keys in parts:
             for key in keys:
-                if not _has_path(entry.value, (part, key)):
+                if not _has_path(entry.value, part, key):
                     message = f"`{entry.key}` lacks `{part}.{key}`"
                     yield Diagnostic(
                         "missing-key", message, entry.key_span, help=_MISSING_KEY_HELP[part], element=entry.key
@@ -302,12 +297,11 @@ def _find_open_policies(root: MappingNode) -> Iterator[Diagnostic]:
 
 def _find_open_steps(root: MappingNode) -> Iterator[Diagnostic]:
     """Report the steps of use cases that do not say where they begin or end."""
-    use_cases = _node_at(root, ("use_cases",))
-    for entry in use_cases if isinstance(use_cases, MappingNode) else ():
-        steps = _node_at(entry.value, ("steps",))
+    for entry in list_entries(root, "use_cases"):
+        steps = find_value(entry.value, "steps")
         for number, step in enumerate(steps.items if isinstance(steps, SequenceNode) else (), 1):
             for key in _STEP_ENDS:
-                if not _has_path(step, (key,)):
+                if not _has_path(step, key):
                     message = f"step {number} of `{entry.key}` lacks `{key}`"
                     help_line = "say between whom it happens: `{from: speech, to: dialogue, say: passes on the words}`"
                     yield Diagnostic("missing-key", message, step.span, help=help_line, element=entry.key)
@@ -322,11 +316,5 @@ _MISSING_KEY_HELP = {
 }
 
 
-def _has_path(node: YamlNode, path: _KeyPath) -> bool:
-    return _node_at(node, path) is not None
-
-
-def _node_at(node: YamlNode | None, path: _KeyPath) -> YamlNode | None:
-    for key in path:
-        node = node.get(key) if isinstance(node, MappingNode) else None
-    return node
+def _has_path(node: YamlNode, *path: str) -> bool:
+    return find_value(node, *path) is not None

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cached_property
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label
+from archgen.diagnostics.diagnostic import Label
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.link.element_outline import ElementOutline
 from archgen.link.reference_resolution import ReferenceResolver
@@ -57,15 +57,13 @@ class SourceReferences:
             return self._settle_match(reference, match, shell_id)
         children = self._outline.shells[shell_id].children
         words = [f"{child.rpartition('.')[2]}.{name}" for child in children for name in self._outline.outputs[child]]
-        self._resolver.diagnostics.append(
-            Diagnostic(
-                "unknown-reference",
-                f"no output `{reference.text}` directly inside of `{shell_id}`",
-                reference.span,
-                help=did_you_mean(reference.text, words)
-                or "name an output of a component inside, or `self.` and an input",
-                element=shell_id,
-            )
+        self._resolver.report(
+            "unknown-reference",
+            f"no output `{reference.text}` directly inside of `{shell_id}`",
+            reference.span,
+            help_line=did_you_mean(reference.text, words)
+            or "name an output of a component inside, or `self.` and an input",
+            element=shell_id,
         )
         return None
 
@@ -112,9 +110,7 @@ class SourceReferences:
                 did_you_mean(name, self._outline.inputs[shell_id])
                 or "`self` means the component around: name one of its inputs"
             )
-        self._resolver.diagnostics.append(
-            Diagnostic("unknown-reference", message, reference.span, help=help_line, element=writer_id)
-        )
+        self._resolver.report("unknown-reference", message, reference.span, help_line=help_line, element=writer_id)
         return None
 
     def _resolve_outside(self, reference: ScalarNode, writer_id: str) -> ElementRef | None:
@@ -132,9 +128,7 @@ class SourceReferences:
         if target is not None and self._is_around(target, writer_id):
             message = f"`{path}` is a component around `{writer_id}`"
             help_line = "a reference never means what it stands in: `self.` and a name is an input of that component"
-            self._resolver.diagnostics.append(
-                Diagnostic("unknown-reference", message, reference.span, help=help_line, element=writer_id)
-            )
+            self._resolver.report("unknown-reference", message, reference.span, help_line=help_line, element=writer_id)
             return None
         return target
 
@@ -153,30 +147,26 @@ class SourceReferences:
 
     def _diagnose_inside(self, reference: ScalarNode, target: ElementRef, writer_id: str) -> None:
         self._resolver.suspect_ids.add(target.id)
-        self._resolver.diagnostics.append(
-            Diagnostic(
-                "unknown-reference",
-                f"`{reference.text}` lies inside of a composed component: only its ports are seen from here",
-                reference.span,
-                labels=(Label(self._resolver.spans[target.kind][target.id], f"`{target.id}`"),),
-                help=f"give it on at an output of the composed component, or write all of its path: `{target.id}`",
-                element=writer_id,
-            )
+        self._resolver.report(
+            "unknown-reference",
+            f"`{reference.text}` lies inside of a composed component: only its ports are seen from here",
+            reference.span,
+            labels=(Label(self._resolver.spans[target.kind][target.id], f"`{target.id}`"),),
+            help_line=f"give it on at an output of the composed component, or write all of its path: `{target.id}`",
+            element=writer_id,
         )
 
     def _warn_inside(self, reference: ScalarNode, path: str, writer_id: str) -> None:
         ids = path.split(".")
         outer_paths = (".".join(ids[:length]) for length in range(1, len(ids)))
         shell_id = next(each for each in outer_paths if each in self._outline.shells)
-        self._resolver.diagnostics.append(
-            Diagnostic(
-                "reaches-inside",
-                f"`{path}` lies inside of `{shell_id}`, whose ports are what others may count on",
-                reference.span,
-                labels=(Label(self._outline.shells[shell_id].entry.key_span, "composed"),),
-                help=f"give it on: an output of `{shell_id}` with `from`",
-                element=writer_id,
-            )
+        self._resolver.report(
+            "reaches-inside",
+            f"`{path}` lies inside of `{shell_id}`, whose ports are what others may count on",
+            reference.span,
+            labels=(Label(self._outline.shells[shell_id].entry.key_span, "composed"),),
+            help_line=f"give it on: an output of `{shell_id}` with `from`",
+            element=writer_id,
         )
 
     def _diagnose_closed(self, reference: ScalarNode, shell_id: str, writer_id: str) -> None:
@@ -193,7 +183,7 @@ class SourceReferences:
         else:
             rule, message = "unknown-reference", f"nothing inside of the type `{type_name}` is named `{reference.text}`"
             help_line = did_you_mean(reference.text.partition(".")[0], children)
-        self._resolver.diagnostics.append(Diagnostic(rule, message, reference.span, help=help_line, element=writer_id))
+        self._resolver.report(rule, message, reference.span, help_line=help_line, element=writer_id)
 
     @cached_property
     def _open_names(self) -> PathResolver:

@@ -7,12 +7,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import replace
 from typing import Any, get_args
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.suggestions import NAMES_HELP, did_you_mean
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.link import process_overrides
 from archgen.link.process_overrides import OverrideError, ProcessOverride
 from archgen.link.sanity_checks import drop_senseless

@@ -7,17 +7,17 @@ reader that finds nothing it can use returns None: then the default of the class
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import fields
 from fractions import Fraction
 from functools import cache, partial
 from typing import Any
 
 from archgen.diagnostics.rule_options import parse_percentage
 from archgen.diagnostics.source_span import Span
+from archgen.frozen import fields
 from archgen.language.language_tables import ATTRIBUTES, DATA_PARTS, KEYS, PART_TYPES, PLACED_KEYS, WORDS
 from archgen.link import mapping_values
 from archgen.model.component import PerformanceIndicator, RequirementUse
-from archgen.model.declared_timing import SchedulingOrder
+from archgen.model.declared_timing import FairScheduling, SchedulingOrder
 from archgen.model.element_annotations import ElementAnnotations
 from archgen.model.parameter import Operation
 from archgen.model.path_resolver import title_from_id
@@ -187,8 +187,8 @@ def _read_placed_texts(mapping: MappingNode, key: str) -> tuple[tuple[str, ...],
 
 def _read_host_orders(
     mapping: MappingNode, key: str
-) -> tuple[SchedulingOrder | None, Mapping[int, SchedulingOrder], Mapping[int, Span]]:
-    """Return the order on all cores; that on single cores, and where these are written."""
+) -> tuple[SchedulingOrder | None, Mapping[int, SchedulingOrder], Mapping[int, Span], FairScheduling | None]:
+    """Return the order on all cores; that on single cores, and where these are written; and the figures of `fair`."""
     orders = mapping_values.get_mapping(mapping, key)
     # A key that is no number is reported by the schema.
     entries = {
@@ -196,10 +196,21 @@ def _read_host_orders(
         for entry in orders
         if entry.key.isascii() and entry.key.isdigit() and (order := mapping_values.get_order(orders, entry.key))
     }
+    is_fair = "fair" in orders.entries
+    figures = mapping_values.get_mapping(orders, "fair")
     return (
-        mapping_values.get_order(mapping, key),
+        "fair" if is_fair else mapping_values.get_order(mapping, key),
         {core: order for core, (order, _) in entries.items()},
         {core: span for core, (_, span) in entries.items()},
+        FairScheduling(
+            mapping_values.get_quantity(figures, "slice", "duration"),
+            mapping_values.get_quantity(figures, "tick", "duration"),
+            mapping_values.get_integer(figures, "lead"),
+            _read_percentage(figures, "other_load"),
+            orders.entries["fair"].key_span,
+        )
+        if is_fair
+        else None,
     )
 
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from archgen import git, pipeline, project
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.finding_identity import FindingIdentity, identify_finding
+from archgen.frozen import dataclass, field, replace
 from archgen.git import GitError
 from archgen.git.merged_trees import MergeFolder, PathConflict, open_merge_folder
 from archgen.git.repository_lookup import look_up_tree
@@ -22,7 +22,7 @@ from archgen.pipeline import CheckedProject, VersionCache
 from archgen.project import TrackedProject
 from archgen.syntax.file_patterns import YAML_ENDINGS
 from archgen.syntax.project_files import MAX_BYTES
-from archgen.syntax.yaml_tree import MappingNode, YamlNode
+from archgen.syntax.yaml_tree import find_value
 
 
 @dataclass(frozen=True, slots=True)
@@ -273,7 +273,10 @@ class BranchMerger:
         """
         base_project = self._check_base(ours, theirs)
         projects = base_project, ours.checked_project, theirs.checked_project
-        nodes = [_find_node(project, path) if project and not project.reading_errors else None for project in projects]
+        nodes = [
+            find_value(project.merged_table, *path) if project and not project.reading_errors else None
+            for project in projects
+        ]
         places = [self._path_in_repository(node.span.file) if node else "" for node in nodes]
         new_place = next((place for place in places[1:] if place != conflict.path), "")
         if not all(places) or not new_place:
@@ -321,14 +324,6 @@ class BranchMerger:
 
 def _identify_findings(checked_project: CheckedProject | None) -> frozenset[FindingIdentity]:
     return frozenset(identify_finding(finding) for finding in (checked_project.findings if checked_project else ()))
-
-
-def _find_node(checked_project: CheckedProject, path: Sequence[str]) -> YamlNode | None:
-    """Return what stands at a path of keys in the whole project, in whichever file."""
-    node: YamlNode | None = checked_project.merged_table
-    for key in path:
-        node = node.get(key) if isinstance(node, MappingNode) else None
-    return node
 
 
 def preview_merges(

@@ -8,12 +8,20 @@ from __future__ import annotations
 import re
 import textwrap
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
 
+from archgen.frozen import dataclass, field
 from archgen.merge.renamed_keys import KeyRename
 from archgen.merge.slice_reading import TreeReader, convert_lines, find_line_end
 from archgen.merge.tree_merge import ItemSet, merge_values, read_merged_value
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode, node_to_data
+from archgen.syntax.yaml_tree import (
+    MappingEntry,
+    MappingNode,
+    ScalarNode,
+    SequenceNode,
+    YamlNode,
+    find_value,
+    node_to_data,
+)
 from archgen.syntax.yaml_writer import format_flow, format_scalar
 
 _LINE_BREAK = re.compile(r"\r\n?|\n")
@@ -262,9 +270,7 @@ def rename_keys(text: str, root: MappingNode, renames: Iterable[KeyRename]) -> s
     placed = _PlacedText(text, root)
     replacements = []
     for rename in renames:
-        mapping: YamlNode | None = root
-        for key in rename.path:
-            mapping = mapping.get(key) if isinstance(mapping, MappingNode) else None
+        mapping = find_value(root, *rename.path)
         entry = mapping.entries.get(rename.old_key) if isinstance(mapping, MappingNode) else None
         if entry is not None:
             start = placed.offset_of(entry.key_span.line, entry.key_span.column)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from archgen.frozen import dataclass
 from archgen.git.text_merge import merge_lines
 from archgen.merge.slice_merge import SliceVersions, UnmergedSlice, merge_slices
 from archgen.merge.slice_reading import read_tree

@@ -6,9 +6,9 @@ Within one file, and by what stands below the id: a file alone cannot be linked,
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 from archgen.compare.element_likeness import CERTAIN, Feature, FeatureMap, find_likely_pairs
+from archgen.frozen import NamedTuple
 from archgen.language.key_paths import find_part
 from archgen.language.language_tables import ENTRIES
 from archgen.merge.tree_merge import FIELD_ORDER, MappingValue, MergeConflictError, MergedValue, ScalarValue

@@ -10,9 +10,9 @@ import itertools
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 
+from archgen.frozen import dataclass
 from archgen.git import GitError
 from archgen.git.text_merge import merge_lines
 from archgen.merge.change_transfer import rename_keys, transfer_changes

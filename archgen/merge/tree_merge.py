@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
 
+from archgen.frozen import NamedTuple
 from archgen.language.key_paths import find_list_order
 from archgen.merge.sequence_merge import MergedRun, merge_sequences
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, YamlNode

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
 from archgen.diagnostics.source_span import Span
+from archgen.frozen import NamedTuple
 from archgen.language.language_tables import ANNOTATED_KINDS, SECTION_KINDS
 from archgen.model.architecture import Architecture
 from archgen.model.element_annotations import ElementAnnotations, PropertyDeclaration

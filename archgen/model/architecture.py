@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import field
 from typing import Literal
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.model import port_media
 from archgen.model.agreed_terms import Agreement
 from archgen.model.component import Component, ComponentType, Connection, DiagramLayout, Group, Input, Output
@@ -292,6 +291,10 @@ class Architecture:
     def find_component(self, component_id: str) -> Component | None:
         """Return a composed component or a leaf; of what is both, with ports that nothing inside carries, the composed one."""
         return self.shells.get(component_id) or self.components.get(component_id)
+
+    def describes_start(self) -> bool:
+        """Whether a project says anything about its start-up."""
+        return any(node.start is not None or node.command for node in self.nodes.values())
 
     def list_described_components(self) -> Iterator[Component]:
         """Yield the composed components, then the leaves; what is not designed yet of a composed one is not told twice."""

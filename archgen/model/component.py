@@ -6,11 +6,10 @@ What component types say to their instances, as components that say nothing of t
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import field
 from typing import Literal
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.model.coordinate_frames import Frame
 from archgen.model.declared_timing import Timing
 from archgen.model.element_annotations import NO_ANNOTATIONS, ElementAnnotations

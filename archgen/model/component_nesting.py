@@ -6,8 +6,8 @@ Which output a reader counts on: that of a leaf, or the port of the composed com
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from typing import NamedTuple
 
+from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Connection, Input, Output
 

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
 from fractions import Fraction
 from typing import Literal
 
+from archgen.diagnostics.rule_options import format_percentage
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.model.quantity import Quantity
 
 ActivityBehaviour = Literal["periodic", "event", "on_demand", "once"]
-SchedulingOrder = Literal["fixed_priority", "non_preemptive", "fifo", "round_robin", "ros2_executor", "edf"]
+SchedulingOrder = Literal["fair", "fixed_priority", "non_preemptive", "fifo", "round_robin", "ros2_executor", "edf"]
 """In which order the cores of a host, or the threads of a container, take what is ready."""
 
-HOST_ORDERS: tuple[SchedulingOrder, ...] = ("fixed_priority", "non_preemptive", "fifo", "round_robin", "edf")
+HOST_ORDERS: tuple[SchedulingOrder, ...] = ("fair", "fixed_priority", "non_preemptive", "fifo", "round_robin", "edf")
 """The orders of a host's cores."""
 EXECUTOR_ORDERS: tuple[SchedulingOrder, ...] = ("ros2_executor", "fifo", "non_preemptive", "round_robin", "edf")
 """The orders of callbacks: those of one thread never preempt one another."""
@@ -27,6 +27,34 @@ InputMemory = Literal["each_source"]
 """Whose messages an input keeps, where it is not the last one of each topic."""
 PERCENTILES = ("p50", "p90", "p95", "p99")
 """The percentiles of execution times that can be written, the lowest first."""
+
+
+@dataclass(frozen=True, slots=True)
+class FairScheduling:
+    """What is written of how Linux shares cores among threads without a real-time priority; None is assumed.
+
+    The names are the keys of the YAML; `slice` and `tick` are durations (ns), `other_load` is a share of each core.
+    """
+
+    slice: Quantity | None = None
+    tick: Quantity | None = None
+    lead: int | None = None
+    other_load: Fraction | None = None
+    at: Span = field(default=NO_SPAN, compare=False, repr=False)
+
+
+ASSUMED_SLICE, ASSUMED_TICK = Quantity(Fraction(3 * 10**6), "3 ms"), Quantity(Fraction(10**6), "1 ms")
+ASSUMED_LEAD = 5
+"""What is assumed of a fair order where it is not written: the lead of EEVDF, which keeps the lag of who sleeps."""
+
+
+def list_fair_figures(fair: FairScheduling | None) -> list[tuple[str, str]]:
+    """Return the figures of a fair order that are written, as text by their keys."""
+    if fair is None:
+        return []
+    share = None if fair.other_load is None else format_percentage(fair.other_load)
+    figures = {"slice": fair.slice, "tick": fair.tick, "lead": fair.lead, "other_load": share}
+    return [(name, str(figure)) for name, figure in figures.items() if figure is not None]
 
 
 @dataclass(frozen=True, slots=True)

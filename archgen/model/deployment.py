@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.frozen import dataclass
-from archgen.model.declared_timing import SchedulingOrder
+from archgen.frozen import dataclass, field
+from archgen.model.declared_timing import FairScheduling, SchedulingOrder
 from archgen.model.element_annotations import NO_ANNOTATIONS, ElementAnnotations
 from archgen.model.quantity import Quantity
 
@@ -25,6 +24,8 @@ class Host:
     cores: int | None = None
     scheduling: SchedulingOrder | None = None
     core_scheduling: Mapping[int, SchedulingOrder] = field(default_factory=dict)
+    fair: FairScheduling | None = None
+    """The figures of `scheduling: fair`, where some are written."""
     description: str | None = None
     environment: Mapping[str, str] = field(default_factory=dict)
     """Variables with which all processes on it are started."""

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import field
 from decimal import Decimal
-from typing import Literal, NamedTuple
+from typing import Literal
 
 from archgen.diagnostics.source_span import Span
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass, field
 
 PropertyType = Literal["boolean", "integer", "float", "string", "date"]
 MAX_DIGITS = 15

@@ -8,7 +8,8 @@ from __future__ import annotations
 import re
 from functools import lru_cache
 from itertools import pairwise
-from typing import NamedTuple
+
+from archgen.frozen import NamedTuple
 
 MAX_NAME_LENGTH = 200
 """The length of a type's name: generic types in generic types end here."""

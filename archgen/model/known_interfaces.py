@@ -7,12 +7,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import field
 from functools import lru_cache
-from typing import Literal, NamedTuple
+from typing import Literal
 
 from archgen.diagnostics.suggestions import count_slips, find_closest
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass, field
 from archgen.model.ros_distro import PAST_DISTROS, is_ros_1
 
 KNOWN_DISTROS = ("jazzy", "humble", "kilted", "lyrical", "rolling", "noetic")

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
 
 from archgen.diagnostics.source_span import Span
+from archgen.frozen import NamedTuple
 
 ElementPlace = tuple[str, int, int]
 """File, line and column of an element; column 0 for whatever begins on that line."""

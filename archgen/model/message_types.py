@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import field
 from typing import Literal
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.model.element_annotations import NO_ANNOTATIONS, ElementAnnotations
 from archgen.model.promise import Deprecation
 from archgen.model.quantity import Quantity

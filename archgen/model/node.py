@@ -8,11 +8,10 @@ Source: rmw/include/rmw/qos_profiles.h, https://docs.ros.org/en/jazzy/Concepts/I
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field, replace
 from typing import Literal
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field, replace
 from archgen.model.declared_timing import SchedulingOrder, Timing
 from archgen.model.element_annotations import NO_ANNOTATIONS, ElementAnnotations
 from archgen.model.parameter import FileRemark, ParameterValue

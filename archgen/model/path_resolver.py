@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import islice
-from typing import NamedTuple
 
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass
 
 MAX_LISTED = 8
 """The number of candidates that are listed; there may be ten thousand."""

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import re
-from dataclasses import field
 from decimal import Decimal
 from fractions import Fraction
 from functools import lru_cache
 
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 
 MAX_DIGITS = 18
 """The maximal number of digits before the decimal point, and behind it."""

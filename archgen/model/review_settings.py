@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import field, fields
 from fractions import Fraction
 from typing import Literal
 
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field, fields
 
 AGREEMENT_FOLDER, AGREEMENT_SUFFIX = "review", ".yaml"
 BreakCategory = Literal["wire", "promise", "meaning", "source", "foreign", "agreement"]

@@ -7,11 +7,10 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
-from dataclasses import field, replace
 from functools import cached_property
 
 from archgen.diagnostics.suggestions import NAMES_HELP, find_closest
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field, replace
 from archgen.model import flow_graph
 from archgen.model.architecture import Architecture
 from archgen.model.graph_search import find_reachable
@@ -49,12 +48,18 @@ class SelectorEvaluator:
 
     architecture: Architecture
     findings: Mapping[str, frozenset[str]] = field(default_factory=dict)
+    _known: dict[str, tuple[Selection, tuple[SelectorProblem, ...]]] = field(default_factory=dict)
 
     def evaluate(self, text: str) -> tuple[Selection, tuple[SelectorProblem, ...]]:
         """Evaluate a selector: the union of the words without `-` (everything if there are none), minus those with `-`.
 
         With an error (not only warnings) nothing is selected.
         """
+        if text not in self._known:
+            self._known[text] = self._find_selected(text)
+        return self._known[text]
+
+    def _find_selected(self, text: str) -> tuple[Selection, tuple[SelectorProblem, ...]]:
         selector = parse_selector(text)
         problems = list(selector.problems)
         wanted_hits = [self._evaluate_word(word, problems) for word in selector.words if not word.is_negative]

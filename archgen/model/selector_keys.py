@@ -9,9 +9,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
-from typing import NamedTuple
 
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 from archgen.model.deprecation_lookup import list_deprecated_kinds
@@ -98,14 +97,10 @@ def _matches_any(pattern: str, texts: Iterable[str | None]) -> bool:
     return any(text is not None and matches_wildcard(pattern, text) for text in texts)
 
 
-def _port_media(component: Component) -> Iterable[str]:
-    return (word for port in component.ports for word in list_medium_words(port))
-
-
 _COMPONENT_KEYS: Mapping[str, Callable[[Architecture, Component], Iterable[str | None]]] = {
     "owner": lambda _, component: component.owners,
     "status": lambda architecture, component: (find_component_status(architecture, component),),
-    "medium": lambda _, component: _port_media(component),
+    "medium": lambda _, component: (word for port in component.ports for word in list_medium_words(port)),
     "role": lambda _, component: (component.role,),
     "behaviour": lambda _, component: (component.timing.behaviour if component.timing else None,),
 }

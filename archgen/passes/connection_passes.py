@@ -7,10 +7,10 @@ component type once for all instances, or, where instances differ, at each of th
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from archgen.diagnostics.element_origins import TreePath
 from archgen.diagnostics.source_span import Span
+from archgen.frozen import NamedTuple
 from archgen.link import mapping_values
 from archgen.link.port_sources import PortKey, PortSource
 from archgen.passes.linked_tree import LinkedTree

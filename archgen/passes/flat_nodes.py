@@ -72,9 +72,7 @@ class FlatNodes:
         if not isinstance(node.value, MappingNode) or "start" not in node.value.entries:
             return node
         start = self._made.find_body(leaf_id).entries["start"]
-        return MappingEntry(
-            node.key, node.key_span, MappingNode({**node.value.entries, "start": start}, node.value.span)
-        )
+        return node.with_entries({**node.value.entries, "start": start})
 
     def list_implemented(self, node_id: str) -> tuple[str, ...]:
         """Return the leaves that a node implements, by their complete ids before."""
@@ -127,7 +125,7 @@ class FlatNodes:
         entries = self._keep_names(entry.key, leaves, entries, entry.key_span)
         if "internal" in entries:
             entries["internal"] = self._keep_internal_names(entry.key, entries["internal"])
-        return MappingEntry(entry.key, entry.key_span, MappingNode(entries, body.span))
+        return entry.with_value(MappingNode(entries, body.span))
 
     def _rename_components(self, entry: MappingEntry, leaves: tuple[str, ...]) -> MappingEntry:
         """Return what a node says by component, with the names that these get."""
@@ -142,10 +140,8 @@ class FlatNodes:
                 for each in inner
             }
         else:
-            entries = {
-                each.key: MappingEntry(each.key, each.key_span, _rename_items(each.value, new_names)) for each in inner
-            }
-        return MappingEntry(entry.key, entry.key_span, MappingNode(entries, inner.span))
+            entries = {each.key: each.with_value(_rename_items(each.value, new_names)) for each in inner}
+        return entry.with_value(MappingNode(entries, inner.span))
 
     def _keep_internal_names(self, node_id: str, section: MappingEntry) -> MappingEntry:
         """Return the internal topics and services of a node, those named that were called after a component's path."""
@@ -156,8 +152,8 @@ class FlatNodes:
                 use.key: self._keep_internal_name(use, _USES.get(written.key, ""), endpoints)
                 for use in mapping_values.get_body(written)
             }
-            uses[written.key] = MappingEntry(written.key, written.key_span, MappingNode(entries, written.value.span))
-        return MappingEntry(section.key, section.key_span, MappingNode(uses, section.value.span))
+            uses[written.key] = written.with_entries(entries)
+        return section.with_entries(uses)
 
     def _keep_internal_name(self, use: MappingEntry, key: str, endpoints: Sequence[Endpoint]) -> MappingEntry:
         """Return an internal entry; `key` is what names its topic or service."""
@@ -170,7 +166,7 @@ class FlatNodes:
         text = ScalarNode(endpoint.label, endpoint.label, use.key_span)
         value = SequenceNode([text], use.key_span) if key == "topic" else text
         named = {**body.entries, key: MappingEntry(key, use.key_span, value)}
-        return MappingEntry(use.key, use.key_span, MappingNode(named, use.key_span))
+        return use.with_value(MappingNode(named, use.key_span))
 
     def _keep_names(
         self, node_id: str, leaves: tuple[str, ...], entries: dict[str, MappingEntry], place: Span

@@ -16,7 +16,15 @@ from archgen.model.path_resolver import ElementRef
 from archgen.passes.flat_sources import FlatSteps
 from archgen.passes.linked_tree import LinkedTree
 from archgen.passes.selector_rewriting import list_selected, rewrite_selectors
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
+from archgen.syntax.yaml_tree import (
+    MappingEntry,
+    MappingNode,
+    ScalarNode,
+    SequenceNode,
+    YamlNode,
+    change_at,
+    list_entries,
+)
 from archgen.timing.analysis import Analysis
 from archgen.timing.run_analysis import AnalysisMemory
 
@@ -56,7 +64,11 @@ class FlatReferences:
             if name in sections:
                 rewritten[name] = rewrite_selectors(sections[name], self._rename_word)
         if "policies" in rewritten:
-            rewritten["policies"] = self._rewrite_accepted(rewritten["policies"])
+            # Exceptions name the inputs of leaves.
+            policies = rewritten["policies"]
+            rewritten["policies"] = policies.with_value(
+                change_at(policies.value, ("*", "accepted"), self._rewrite_accepted)
+            )
         return rewritten
 
     def rewrite_start(self, body: MappingNode, own_leaves: Collection[str]) -> MappingNode:
@@ -64,20 +76,22 @@ class FlatReferences:
 
         `own_leaves` are the components that the node implements: it waits for the others of what is around them.
         """
-        start = body.get("start")
-        if not isinstance(start, MappingNode):
-            return body
-        entries = dict(start.entries)
-        for key, has_several in (("after", True), ("by", False)):
-            scalars = mapping_values.get_scalars(start, key)
-            named = {name: each.span for each in scalars for name in self._name_started(each.text, own_leaves)}
+
+        def rename(entry: MappingEntry) -> MappingEntry:
+            scalars = entry.value.items if isinstance(entry.value, SequenceNode) else [entry.value]
+            named = {
+                name: each.span
+                for each in scalars
+                if isinstance(each, ScalarNode) and each.value is not None
+                for name in self._name_started(each.text, own_leaves)
+            }
             items = [ScalarNode(name, name, span) for name, span in named.items()]
-            if items:
-                value = SequenceNode(list(items), entries[key].value.span) if has_several else items[0]
-                entries[key] = MappingEntry(key, entries[key].key_span, value)
-        written = body.entries["start"]
-        rewritten = MappingEntry("start", written.key_span, MappingNode(entries, start.span))
-        return MappingNode({**body.entries, "start": rewritten}, body.span)
+            if not items:
+                return entry
+            return entry.with_value(SequenceNode([*items], entry.value.span) if entry.key == "after" else items[0])
+
+        changes = dict.fromkeys(("after", "by"), rename)
+        return body.change_each(lambda entry: entry.change_keys(changes) if entry.key == "start" else entry)
 
     def _name_started(self, text: str, own_leaves: Collection[str]) -> list[str]:
         """Return what is started where a component is: all leaves inside of a composed one."""
@@ -89,23 +103,12 @@ class FlatReferences:
         others = [each for each in leaves if each not in own_leaves]
         return [self.flat_ids[each] for each in others or leaves or inside if each in self.flat_ids]
 
-    def _rewrite_accepted(self, section: MappingEntry) -> MappingEntry:
-        """Return policies whose exceptions name the inputs of leaves."""
-        policies: dict[str, MappingEntry] = {}
-        for policy in mapping_values.get_body(section):
-            policies[policy.key] = policy
-            body = mapping_values.get_body(policy)
-            accepted = body.get("accepted")
-            if isinstance(accepted, MappingNode):
-                inputs: dict[str, MappingEntry] = {}
-                for each in accepted:
-                    for name in self._name_inputs(each.key):
-                        inputs.setdefault(name, MappingEntry(name, each.key_span, each.value))
-                written = body.entries["accepted"]
-                rewritten = MappingEntry("accepted", written.key_span, MappingNode(inputs, accepted.span))
-                value = MappingNode({**body.entries, "accepted": rewritten}, body.span)
-                policies[policy.key] = MappingEntry(policy.key, policy.key_span, value)
-        return MappingEntry(section.key, section.key_span, MappingNode(policies, section.value.span))
+    def _rewrite_accepted(self, accepted: YamlNode) -> YamlNode:
+        inputs: dict[str, MappingEntry] = {}
+        for each in list_entries(accepted):
+            for name in self._name_inputs(each.key):
+                inputs.setdefault(name, MappingEntry(name, each.key_span, each.value))
+        return MappingNode(inputs, accepted.span) if isinstance(accepted, MappingNode) else accepted
 
     def _name_inputs(self, text: str) -> list[str]:
         target = self.linked.resolver.names.resolve_path(text, ("input",)).unique_element
@@ -115,20 +118,18 @@ class FlatReferences:
         return [f"{self.flat_ids[leaf]}.{name}" for leaf, _, name in leaf_ports if leaf in self.flat_ids] or [text]
 
     def _rewrite_elements(self, section: MappingEntry, key: str) -> MappingEntry:
-        entries: dict[str, MappingEntry] = {}
-        for element in mapping_values.get_body(section):
-            body = mapping_values.get_body(element)
-            inner = dict(body.entries)
-            if key in inner:
-                # In a chain a node of a name goes before a component, in a link a host.
-                is_chain = key == "through"
+        # In a chain a node of a name goes before a component, in a link a host.
+        is_chain = key == "through"
+        kinds = _WAYPOINT_KINDS if is_chain else _DEVICE_KINDS
+
+        def rewrite(element: MappingEntry) -> MappingEntry:
+            def rewrite_ends(ends: MappingEntry) -> MappingEntry:
                 worst_leaves = self._list_worst_leaves(element.key) if is_chain else ()
-                kinds = _WAYPOINT_KINDS if is_chain else _DEVICE_KINDS
-                value = self._rewrite_value(inner[key].value, kinds, worst_leaves)
-                inner[key] = MappingEntry(key, inner[key].key_span, value)
-            value_node = MappingNode(inner, body.span) if inner else element.value
-            entries[element.key] = MappingEntry(element.key, element.key_span, value_node)
-        return MappingEntry(section.key, section.key_span, MappingNode(entries, section.value.span))
+                return ends.with_value(self._rewrite_value(ends.value, kinds, worst_leaves))
+
+            return element.change_keys({key: rewrite_ends})
+
+        return section.change_each(rewrite)
 
     def _rewrite_value(self, node: YamlNode, kinds: tuple[str, ...], worst_leaves: tuple[str, ...]) -> YamlNode:
         items = node.items if isinstance(node, SequenceNode) else [node]
@@ -245,13 +246,13 @@ class FlatFrames:
 
     def rewrite_own(self, section: MappingEntry, leaf_id: str) -> MappingEntry:
         """Return the frames of a leaf."""
-        entries: dict[str, MappingEntry] = {}
-        for written in mapping_values.get_body(section):
-            name = self._parameters.fill_in_name(written.key, leaf_id, written.key_span)
-            frame = self._architecture.frames.get(name)
+
+        def rewrite(written: MappingEntry) -> MappingEntry:
+            frame = self._architecture.frames.get(self._parameters.fill_in_name(written.key, leaf_id, written.key_span))
             is_own = frame is not None and frame.component == leaf_id and frame.by_written
-            entries[written.key] = self._rewrite_frame(written, frame) if is_own else written
-        return MappingEntry(section.key, section.key_span, MappingNode(entries, section.value.span))
+            return self._rewrite_frame(written, frame) if is_own else written
+
+        return section.change_each(rewrite)
 
     def _rewrite_frame(self, entry: MappingEntry, frame: Frame | None) -> MappingEntry:
         if frame is None or frame.by is None:
@@ -263,7 +264,7 @@ class FlatFrames:
         writer = self._name_writer(frame)
         if writer != frame.by or "by" not in entries:
             entries["by"] = _write_text("by", writer, entries.get("by") or entry)
-        return MappingEntry(entry.key, entry.key_span, MappingNode(entries, body.span))
+        return entry.with_value(MappingNode(entries, body.span))
 
     def _name_writer(self, frame: Frame) -> str:
         """Return who writes a frame: of a composed component its only node, else its first leaf."""

@@ -10,7 +10,7 @@ from archgen.model.architecture import Architecture
 from archgen.model.step_connections import StepConnection, StepConnections
 from archgen.model.use_case_steps import Step, StepEnd
 from archgen.passes.linked_tree import LinkedTree
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode, change_at
 
 
 class FlatSteps:
@@ -27,17 +27,12 @@ class FlatSteps:
 
     def rewrite_use_cases(self, section: MappingEntry) -> MappingEntry:
         """Return the section with the ends of steps called as they are now."""
-        cases: dict[str, MappingEntry] = {}
-        for case in mapping_values.get_body(section):
-            cases[case.key] = case
-            body = mapping_values.get_body(case)
-            steps = body.get("steps")
-            if isinstance(steps, SequenceNode):
-                items = [self._rewrite_step(each) for each in steps.items]
-                written = MappingEntry("steps", body.entries["steps"].key_span, SequenceNode(items, steps.span))
-                value = MappingNode({**body.entries, "steps": written}, body.span)
-                cases[case.key] = MappingEntry(case.key, case.key_span, value)
-        return MappingEntry(section.key, section.key_span, MappingNode(cases, section.value.span))
+        return section.with_value(change_at(section.value, ("*", "steps"), self._rewrite_steps))
+
+    def _rewrite_steps(self, steps: YamlNode) -> YamlNode:
+        if not isinstance(steps, SequenceNode):
+            return steps
+        return SequenceNode(list(map(self._rewrite_step, steps.items)), steps.span)
 
     def _rewrite_step(self, node: YamlNode) -> YamlNode:
         source = mapping_values.get_scalar(node, "from") if isinstance(node, MappingNode) else None
@@ -50,7 +45,7 @@ class FlatSteps:
             name = self._name_end(end, connection)
             if name != end.id:
                 scalar = ScalarNode(name, name, entries[key].value.span)
-                entries[key] = MappingEntry(key, entries[key].key_span, scalar)
+                entries[key] = entries[key].with_value(scalar)
         return MappingNode(entries, node.span)
 
     def _name_end(self, end: StepEnd, connection: StepConnection | None) -> str:

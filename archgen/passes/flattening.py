@@ -19,7 +19,7 @@ from archgen.passes.linked_tree import LinkedTree
 from archgen.passes.pass_shape import Pass, PassWork
 from archgen.passes.project_tree import have_same_content, make_node
 from archgen.passes.tree_rebuilding import rebuild_tree
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode, change_at
 
 _HANDED_KEYS = ("owner", "status")
 """What a leaf has of what is around it, unless it says it itself."""
@@ -70,9 +70,7 @@ class _Flattener:
         sections = dict(root.entries)
         written_groups = mapping_values.get_mapping(root, "groups")
         groups = {entry.key: self._write_group(entry) for entry in written_groups}
-        sections["groups"] = MappingEntry(
-            "groups", root.entries["groups"].key_span, MappingNode(groups, written_groups.span)
-        )
+        sections["groups"] = root.entries["groups"].with_value(MappingNode(groups, written_groups.span))
         sections |= self._nodes.find_containers(self._linked.expansion.root)
         nodes = {
             node_id: self._rewrite_node(entry, self._nodes.list_implemented(node_id))
@@ -95,7 +93,7 @@ class _Flattener:
             components[flat_name] = self._write_component(component_id, flat_name)
         written = body.entries["components"]
         section = MappingEntry("components", written.key_span, MappingNode(components, written.value.span))
-        return MappingEntry(group.key, group.key_span, MappingNode({**body.entries, "components": section}, body.span))
+        return group.with_value(MappingNode({**body.entries, "components": section}, body.span))
 
     def _list_in_order(self, component_ids: object) -> list[str]:
         """Return what is left of components, each composed one before what is inside of it."""
@@ -121,10 +119,10 @@ class _Flattener:
         ):
             if key in entries and isinstance(entries[key].value, MappingNode):
                 ports = write(component_id, names, mapping_values.get_mapping(body, key))
-                entries[key] = MappingEntry(key, entries[key].key_span, ports)
+                entries[key] = entries[key].with_value(ports)
         if "parameters" in entries and isinstance(entries["parameters"].value, MappingNode):
             filled = fill_in_parameters(entries["parameters"].value, self._parameters.find_parameters(component_id))
-            entries["parameters"] = MappingEntry("parameters", entries["parameters"].key_span, filled)
+            entries["parameters"] = entries["parameters"].with_value(filled)
         if "frames" in entries:
             entries["frames"] = self._references.frames.rewrite_own(entries["frames"], component_id)
         if is_deep:
@@ -144,7 +142,7 @@ class _Flattener:
     def _rewrite_node(self, entry: MappingEntry, own_leaves: tuple[str, ...]) -> MappingEntry:
         if not isinstance(entry.value, MappingNode) or "start" not in entry.value.entries:
             return entry
-        return MappingEntry(entry.key, entry.key_span, self._references.rewrite_start(entry.value, own_leaves))
+        return entry.with_value(self._references.rewrite_start(entry.value, own_leaves))
 
     def _list_ports(self, component_id: str, *, is_shell: bool) -> tuple[tuple[str, ...], tuple[str, ...]]:
         """Return the names of the inputs and outputs that a component keeps: of a composed one those that are open."""
@@ -178,19 +176,13 @@ def _join_lists(own: MappingEntry | None, around: MappingEntry) -> MappingEntry:
         return around
     own_items = _list_items(own)
     added = [each for each in _list_items(around) if not any(have_same_content(each, item) for item in own_items)]
-    return MappingEntry(own.key, own.key_span, SequenceNode([*own_items, *added], own.value.span)) if added else own
+    return own.with_value(SequenceNode([*own_items, *added], own.value.span)) if added else own
 
 
 def _lay_over(own: MappingEntry | None, around: MappingEntry) -> MappingEntry:
     if own is None or not isinstance(own.value, MappingNode) or not isinstance(around.value, MappingNode):
         return own or around
-    return MappingEntry(
-        own.key,
-        own.key_span,
-        MappingNode(
-            {**own.value.entries, **{e.key: e for e in around.value if e.key not in own.value.entries}}, own.value.span
-        ),
-    )
+    return own.with_entries({**own.value.entries, **{e.key: e for e in around.value if e.key not in own.value.entries}})
 
 
 def _list_items(entry: MappingEntry) -> list[YamlNode]:
@@ -234,26 +226,23 @@ _DECLARING_KEYS = frozenset({"value", "type", "choices", "from"})
 
 def fill_in_parameters(written: MappingNode, parameters: Mapping[str, Parameter], prefix: str = "") -> MappingNode:
     """Return declarations of parameters without `from` and `$(self.x)`: with the values that these stand for."""
-    entries: dict[str, MappingEntry] = {}
-    for entry in written:
+
+    def fill_in(entry: MappingEntry) -> MappingEntry:
         name = f"{prefix}{entry.key}"
-        value = entry.value
         if name in parameters:
-            value = _fill_in_declaration(value, parameters[name], entry.key_span)
-        elif isinstance(value, MappingNode):
-            value = fill_in_parameters(value, parameters, f"{name}.")
-        entries[entry.key] = MappingEntry(entry.key, entry.key_span, value)
-    return MappingNode(entries, written.span)
+            return entry.with_value(_fill_in_declaration(entry.value, parameters[name], entry.key_span))
+        if isinstance(entry.value, MappingNode):
+            return entry.with_value(fill_in_parameters(entry.value, parameters, f"{name}."))
+        return entry
+
+    return written.change_each(fill_in)
 
 
 def _fill_in_declaration(node: YamlNode, parameter: Parameter, place: Span) -> YamlNode:
     if not isinstance(node, MappingNode) or _DECLARING_KEYS.isdisjoint(node.entries):
         return _fill_in_value(node, parameter)
     if "from" not in node.entries:
-        entries = dict(node.entries)
-        if (written := entries.get("value")) is not None:
-            entries["value"] = MappingEntry("value", written.key_span, _fill_in_value(written.value, parameter))
-        return MappingNode(entries, node.span)
+        return change_at(node, ("value",), lambda value: _fill_in_value(value, parameter))
     entries = {key: each for key, each in node.entries.items() if key != "from"}
     handed: dict[str, object] = {
         "type": parameter.type,

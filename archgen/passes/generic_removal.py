@@ -18,7 +18,7 @@ from archgen.passes.pass_shape import Pass, PassWork
 from archgen.passes.project_tree import ProjectTree, list_paths
 from archgen.passes.selector_rewriting import rename_by_key, rename_in_selectors
 from archgen.passes.written_places import find_type_path, is_written, list_holders, list_type_sections
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlNode, list_entries
 
 _ARRAY = re.compile(r"(?:\[(?:<=)?[0-9]*\])?\Z")
 _PORT_SECTIONS = frozenset({"inputs", "outputs"})
@@ -122,9 +122,7 @@ class _DataTypeSpecialiser:
         body = self._tree.get(generic_path)
         stands_for = dict(zip(self._types[base].generic, arguments, strict=False))
         contents = {
-            each.key: each
-            for each in (body if isinstance(body, MappingNode) else ())
-            if each.key in _CONTENT_KEYS and is_written(each.value)
+            each.key: each for each in list_entries(body) if each.key in _CONTENT_KEYS and is_written(each.value)
         }
         bound_entries = {
             key: MappingEntry(key, each.key_span, _bind_content(each.value, stands_for))
@@ -178,7 +176,7 @@ def _names_field_type(inner: TreePath) -> bool:
 def _bind_content(node: YamlNode, stands_for: dict[str, str]) -> YamlNode:
     """Return the content of a generic type with the types in it that its names stand for."""
     if isinstance(node, MappingNode):
-        entries = {e.key: MappingEntry(e.key, e.key_span, _bind_field(e.value, stands_for)) for e in node}
+        entries = {e.key: e.with_value(_bind_field(e.value, stands_for)) for e in node}
         return MappingNode(entries, node.span)
     return _bind_scalar(node, stands_for)
 
@@ -271,9 +269,8 @@ def _list_concrete(work: PassWork) -> Iterator[tuple[TreePath, MappingNode]]:
             yield holder.path, holder.entry.value
 
 
-def _list_inside(path: TreePath, node: object) -> Iterator[TreePath]:
-    components = node.get("components") if isinstance(node, MappingNode) else None
-    for part in components if isinstance(components, MappingNode) else ():
+def _list_inside(path: TreePath, node: YamlNode | None) -> Iterator[TreePath]:
+    for part in list_entries(node, "components"):
         yield (*path, "components", part.key)
         yield from _list_inside((*path, "components", part.key), part.value)
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 
 from archgen import compose, link
 from archgen.compose import ExpandedProject
 from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.frozen import dataclass
 from archgen.link import element_outline
 from archgen.link.automatic_connections import join_ports
 from archgen.link.declare.type_declaration import DeclaredTypes

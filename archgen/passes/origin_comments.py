@@ -15,8 +15,15 @@ from archgen.diagnostics.source_span import SourceTexts, Span
 from archgen.frozen import replace
 from archgen.language.language_tables import SECTION_KINDS
 from archgen.model.made_elements import ElementPlace, MadeElement
-from archgen.passes.project_tree import list_paths
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
+from archgen.passes.project_tree import list_paths, walk_tree
+from archgen.syntax.yaml_tree import (
+    MappingEntry,
+    MappingNode,
+    ScalarNode,
+    SequenceNode,
+    YamlNode,
+    list_entries,
+)
 
 _COMMENT = re.compile(r"# archgen: (?:made\[([a-z0-9_., ]{1,2000})\] )?from ([^#\r\n]{1,300})")
 _UNMADE_SECTIONS = frozenset({"libraries", "properties", "variants"})
@@ -56,24 +63,13 @@ def keep_origin_comments(root: MappingNode, made_elements: Mapping[ElementPlace,
     """Return the comments of a file that is packed again, by the path of what each is about."""
     comments: dict[TreePath, str] = {}
     lines: set[tuple[str, int]] = set()
-    for path, span in _list_all_places(root, ()):
+    for path, entry, node in walk_tree(root):
+        span = entry.key_span if entry else node.span
         made = made_elements.get((span.file, span.line, 0))
         if made is not None and (span.file, span.line) not in lines:
             lines.add((span.file, span.line))
             comments[path] = write_comment(made)
     return comments
-
-
-def _list_all_places(node: YamlNode, path: TreePath) -> Iterator[tuple[TreePath, Span]]:
-    """Yield every key and every item of a list with its place, outer ones first."""
-    if isinstance(node, MappingNode):
-        for entry in node:
-            yield (*path, entry.key), entry.key_span
-            yield from _list_all_places(entry.value, (*path, entry.key))
-    elif isinstance(node, SequenceNode):
-        for number, item in enumerate(node.items):
-            yield (*path, number), item.span
-            yield from _list_all_places(item, (*path, number))
 
 
 def write_comment(made_element: MadeElement) -> str:
@@ -98,8 +94,7 @@ def _list_elements(root: MappingNode) -> Iterator[tuple[TreePath, Span]]:
 
 
 def _list_components(holder: MappingEntry, path: TreePath) -> Iterator[tuple[TreePath, Span]]:
-    components = holder.value.get("components") if isinstance(holder.value, MappingNode) else None
-    for part in components if isinstance(components, MappingNode) else ():
+    for part in list_entries(holder.value, "components"):
         inner_path = (*path, "components", part.key)
         yield inner_path, part.key_span
         yield from _list_components(part, inner_path)

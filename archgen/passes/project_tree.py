@@ -239,12 +239,19 @@ def have_same_content(first: YamlNode, second: YamlNode) -> bool:
     return False
 
 
+def walk_tree(node: YamlNode, path: TreePath = ()) -> Iterator[tuple[TreePath, MappingEntry | None, YamlNode]]:
+    """Yield every value inside of a tree with its path, outer ones first, and with its entry where it stands in a mapping."""
+    if isinstance(node, MappingNode):
+        for entry in node:
+            yield (*path, entry.key), entry, entry.value
+            yield from walk_tree(entry.value, (*path, entry.key))
+    elif isinstance(node, SequenceNode):
+        for number, item in enumerate(node.items):
+            yield (*path, number), None, item
+            yield from walk_tree(item, (*path, number))
+
+
 def list_paths(node: YamlNode, path: TreePath = ()) -> Iterator[tuple[TreePath, YamlNode]]:
     """Yield every value of a tree with its path, outer ones first."""
     yield path, node
-    if isinstance(node, MappingNode):
-        for entry in node:
-            yield from list_paths(entry.value, (*path, entry.key))
-    elif isinstance(node, SequenceNode):
-        for number, item in enumerate(node.items):
-            yield from list_paths(item, (*path, number))
+    yield from ((inner_path, inner) for inner_path, _, inner in walk_tree(node, path))

@@ -9,7 +9,7 @@ from archgen.model.selector_evaluation import evaluate_selector
 from archgen.model.selector_keys import matches_wildcard
 from archgen.model.selector_parser import parse_selector, split_selector
 from archgen.passes.project_tree import ProjectTree, list_paths
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlNode
+from archgen.syntax.yaml_tree import MappingEntry, ScalarNode, YamlNode, change_at
 
 _SELECTOR_PATHS = {
     "views": (("show",),),
@@ -23,10 +23,9 @@ RenameWord = Callable[[str], Sequence[str] | None]
 def rewrite_selectors(section: MappingEntry, rename_word: RenameWord) -> MappingEntry:
     """Return a section of views or policies with the words of its selectors renamed."""
     value = section.value
-    for element in tuple(value) if isinstance(value, MappingNode) else ():
-        for path in _SELECTOR_PATHS[section.key]:
-            value = _rewrite_at(value, (element.key, *path), rename_word)
-    return MappingEntry(section.key, section.key_span, value)
+    for path in _SELECTOR_PATHS[section.key]:
+        value = change_at(value, ("*", *path), lambda node: _rewrite_selector(node, rename_word))
+    return section.with_value(value)
 
 
 def rename_in_selectors(tree: ProjectTree, rename_word: RenameWord) -> None:
@@ -70,24 +69,13 @@ def list_selected(architecture: Architecture, word: str) -> list[str]:
     return [each for each in architecture.components if each in selection.components]
 
 
-def _rewrite_at(node: YamlNode, path: tuple[str, ...], rename_word: RenameWord) -> YamlNode:
-    """Return a tree with the selector at a path rewritten."""
-    if path:
-        entry = node.entries.get(path[0]) if isinstance(node, MappingNode) else None
-        if not isinstance(node, MappingNode) or entry is None:
-            return node
-        value = _rewrite_at(entry.value, path[1:], rename_word)
-        if value is entry.value:
-            return node
-        return MappingNode({**node.entries, entry.key: MappingEntry(entry.key, entry.key_span, value)}, node.span)
+def _rewrite_selector(node: YamlNode, rename_word: RenameWord) -> YamlNode:
     if not isinstance(node, ScalarNode) or node.value is None:
         return node
     words = list(split_selector(node.text))
     renamed_words = [_rewrite_word(word, rename_word) for word in words]
-    if renamed_words == words:
-        return node
     text = " ".join(renamed_words)
-    return ScalarNode(text, text, node.span)
+    return node if renamed_words == words else ScalarNode(text, text, node.span)
 
 
 def _rewrite_word(word: str, rename_word: RenameWord) -> str:

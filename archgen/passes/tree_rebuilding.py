@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from archgen.diagnostics.element_origins import Origin, TreePath
 from archgen.diagnostics.source_span import Span
-from archgen.passes.project_tree import ProjectTree, have_same_content
+from archgen.passes.project_tree import ProjectTree, have_same_content, walk_tree
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode, copy_node
 
 
@@ -31,7 +29,9 @@ class _OldPlaces:
         self._by_identity: dict[int, TreePath] = {}
         self._by_place: dict[tuple[Span, str], TreePath] = {}
         self._components_by_place: dict[Span, TreePath] = {}
-        for path, entry in _list_entries(tree.root, ()):
+        for path, entry, _ in walk_tree(tree.root):
+            if entry is None:
+                continue
             self._by_identity[id(entry)] = path
             self._by_identity.setdefault(id(entry.value), path)
             self._by_place.setdefault((entry.key_span, str(path[-1])), path)
@@ -76,17 +76,6 @@ def _index_items(provenance: dict[TreePath, Origin]) -> dict[TreePath, list[tupl
         if length < len(path):
             indexed.setdefault(path[:length], []).append((path[length:], origin))
     return indexed
-
-
-def _list_entries(node: YamlNode, path: TreePath) -> Iterator[tuple[TreePath, MappingEntry]]:
-    if isinstance(node, MappingNode):
-        for entry in node:
-            inner_path = (*path, entry.key)
-            yield inner_path, entry
-            yield from _list_entries(entry.value, inner_path)
-    elif isinstance(node, SequenceNode):
-        for number, item in enumerate(node.items):
-            yield from _list_entries(item, (*path, number))
 
 
 def _trace_mapping(

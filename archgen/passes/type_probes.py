@@ -5,7 +5,7 @@ from __future__ import annotations
 from archgen.passes.linked_tree import LinkedTree
 from archgen.passes.pass_shape import PassWork
 from archgen.passes.written_places import list_type_sections, name_probe_type
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlNode, change_at, list_entries
 
 PROBE_GROUP = "probe"
 
@@ -22,9 +22,10 @@ def link_types(work: PassWork) -> LinkedTree:
             type_scalar = MappingEntry("is", entry.key_span, ScalarNode(name, name, entry.key_span))
             body = MappingNode({"is": type_scalar}, entry.key_span)
             instances[instance_id] = MappingEntry(instance_id, entry.key_span, body)
-    sections = {
-        key: MappingEntry(key, entry.key_span, _make_concrete(key, entry.value)) for key, entry in root.entries.items()
-    }
+    concrete: YamlNode = root
+    for path in (("component_types", "*"), ("libraries", "*", "component_types", "*")):
+        concrete = change_at(concrete, path, _drop_abstract)
+    sections = {entry.key: entry for entry in list_entries(concrete)}
     group = MappingNode(
         {"components": MappingEntry("components", root.span, MappingNode(instances, root.span))}, root.span
     )
@@ -33,29 +34,5 @@ def link_types(work: PassWork) -> LinkedTree:
     return LinkedTree(work.loaded_project, MappingNode(sections, root.span), work.interfaces)
 
 
-def _make_concrete(key: str, section: object) -> MappingNode:
-    """Return a section in which no component type is abstract."""
-    if not isinstance(section, MappingNode) or key not in {"component_types", "libraries"}:
-        return section  # type: ignore[return-value]
-    if key == "libraries":
-        entries = {
-            each.key: MappingEntry(each.key, each.key_span, _make_library_concrete(each.value)) for each in section
-        }
-        return MappingNode(entries, section.span)
-    return MappingNode(
-        {each.key: MappingEntry(each.key, each.key_span, _drop_abstract(each.value)) for each in section}, section.span
-    )
-
-
-def _make_library_concrete(library: object) -> MappingNode:
-    if not isinstance(library, MappingNode):
-        return library  # type: ignore[return-value]
-    return MappingNode(
-        {e.key: MappingEntry(e.key, e.key_span, _make_concrete(e.key, e.value)) for e in library}, library.span
-    )
-
-
-def _drop_abstract(body: object) -> MappingNode:
-    if not isinstance(body, MappingNode):
-        return body  # type: ignore[return-value]
-    return MappingNode({each.key: each for each in body if each.key != "abstract"}, body.span)
+def _drop_abstract(body: YamlNode) -> YamlNode:
+    return body.without("abstract") if isinstance(body, MappingNode) else body

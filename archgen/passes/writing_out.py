@@ -13,7 +13,7 @@ from archgen.passes.project_tree import list_paths
 from archgen.passes.selector_rewriting import list_selected, rewrite_selectors
 from archgen.passes.tree_rebuilding import rebuild_tree
 from archgen.schema.component_sugar import move_targets, name_listed_elements
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode, change_at
 
 _TYPE_KEYS = frozenset({"is", "same_as"})
 _TYPE_SELECTORS = ("is:", "library:", "deprecated:")
@@ -34,7 +34,9 @@ def _resolve_instances(work: PassWork) -> None:
         if name in sections:
             sections[name] = rewrite_selectors(sections[name], lambda word: _name_instances(work, word))
     if "libraries" in sections:
-        sections["libraries"] = _drop_library_types(sections["libraries"])
+        libraries = sections["libraries"]
+        # Nothing but data types stays in them.
+        sections["libraries"] = libraries.with_value(change_at(libraries.value, ("*",), _drop_types))
     rebuild_tree(work.tree, MappingNode(sections, work.tree.root.span))
 
 
@@ -47,16 +49,9 @@ def _write_group(group: MappingEntry, parts: list[tuple[MappingEntry, Expansion]
     body = mapping_values.get_body(group)
     if "components" not in body.entries:
         return group
-    written = body.entries["components"]
-    return MappingEntry(
-        group.key,
-        group.key_span,
-        MappingNode({**body.entries, "components": _write_components(written, dict(_key_parts(parts)))}, body.span),
-    )
-
-
-def _key_parts(parts: list[tuple[MappingEntry, Expansion]]) -> list[tuple[str, tuple[MappingEntry, Expansion]]]:
-    return [(part.key, (part, expansion)) for part, expansion in parts]
+    parts_by_name = {part.key: (part, expansion) for part, expansion in parts}
+    components = _write_components(body.entries["components"], parts_by_name)
+    return group.with_value(MappingNode({**body.entries, "components": components}, body.span))
 
 
 def _write_components(written: MappingEntry, parts: dict[str, tuple[MappingEntry, Expansion]]) -> MappingEntry:
@@ -73,22 +68,11 @@ def _write_component(part: MappingEntry, expansion: Expansion) -> MappingEntry:
         entries["components"] = _write_components(inner, expansion.parts)
     if not entries and not isinstance(part.value, MappingNode):
         return part
-    return MappingEntry(part.key, part.key_span, MappingNode(entries, body.span))
+    return part.with_value(MappingNode(entries, body.span))
 
 
-def _drop_library_types(section: MappingEntry) -> MappingEntry:
-    """Return the libraries with nothing but data types in them."""
-    libraries = {
-        library.key: MappingEntry(
-            library.key,
-            library.key_span,
-            MappingNode({e.key: e for e in library.value if e.key != "component_types"}, library.value.span)
-            if isinstance(library.value, MappingNode)
-            else library.value,
-        )
-        for library in (section.value if isinstance(section.value, MappingNode) else ())
-    }
-    return MappingEntry(section.key, section.key_span, MappingNode(libraries, section.value.span))
+def _drop_types(library: YamlNode) -> YamlNode:
+    return library.without("component_types") if isinstance(library, MappingNode) else library
 
 
 RESOLVE_INSTANCES = Pass(

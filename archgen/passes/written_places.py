@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from archgen.compose.type_expressions import parse_type_expression
 from archgen.compose.type_table import list_generic_names
 from archgen.diagnostics.element_origins import TreePath
+from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 from archgen.model.selector_keys import find_component_status
 from archgen.passes.linked_tree import LinkedTree
 from archgen.passes.project_tree import ProjectTree
 from archgen.project.library_reading import SHIPPED_ID
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, find_value, list_entries
 
 MAX_DEPTH = 60
 """So deep components are followed, as deep as they are written out."""
@@ -73,13 +73,13 @@ def name_probe_type(path: TreePath, entry: MappingEntry) -> str:
 
 def _list_section(tree: ProjectTree, path: TreePath) -> Iterator[Holder]:
     section = tree.get(path)
-    for entry in list(section) if isinstance(section, MappingNode) else ():
+    for entry in list_entries(section):
         yield from _list_inside(Holder((*path, entry.key), entry))
 
 
 def _list_inside(holder: Holder) -> Iterator[Holder]:
     yield holder
-    components = holder.entry.value.get("components") if isinstance(holder.entry.value, MappingNode) else None
+    components = find_value(holder.entry.value, "components")
     if isinstance(components, MappingNode) and len(holder.path) < 2 * MAX_DEPTH:
         for part in list(components):
             yield from _list_inside(Holder((*holder.path, "components", part.key), part))

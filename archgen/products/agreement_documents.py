@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from datetime import date
 from pathlib import Path
 from typing import Literal
@@ -11,6 +10,7 @@ from typing import Literal
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.emit import file_tree
 from archgen.emit.picture import Picture
+from archgen.frozen import replace
 from archgen.git.project_revision import find_revision, find_revision_date
 from archgen.link.timing_overrides import apply_overrides
 from archgen.model.agreed_terms import Signature, find_agreement
@@ -280,11 +280,8 @@ def write_agreement(
     """Write an agreement into a file."""
     options = options or OutputOptions()
     if agreement_format in {"markdown", "json"}:
-        file_tree.write_file(target, render_agreement_text(partner_agreement, agreement_format).encode())
+        document = render_agreement_text(partner_agreement, agreement_format).encode()
     else:
-        file_tree.write_file(
-            target,
-            render_agreement_html(partner_agreement, options)
-            if agreement_format == "html"
-            else render_agreement_docx(partner_agreement, options),
-        )
+        render = render_agreement_html if agreement_format == "html" else render_agreement_docx
+        document = render(partner_agreement, options)
+    file_tree.write_file(target, document)

@@ -12,7 +12,7 @@ from archgen.compare import Change, Comparison
 from archgen.compare.agreements import AgreementJudge
 from archgen.compare.breaking_changes import sort_breaks_first
 from archgen.compare.comparison import PartnerBreak
-from archgen.diagnostics.common_wording import join_words, shorten_hash
+from archgen.diagnostics.common_wording import join_words, keep_first, shorten_hash
 from archgen.diagnostics.diagnostic import Severity
 from archgen.frozen import dataclass, replace
 from archgen.git import GitError, find_repository
@@ -184,8 +184,7 @@ class _AgreementPair:
             f"{f', in the variant `{variant}`' if variant else ''}: mend it, or let both sign again (`archgen sign "
             f"{' '.join(self.new.pair)}`)"
         )
-        told = [f"{key} ({'; '.join(lines)})" for key, lines in list(left.items())[:_MAX_TOLD]]
-        told += [f"{len(left) - _MAX_TOLD} more"] if len(left) > _MAX_TOLD else []
+        told = keep_first([f"{key} ({'; '.join(lines)})" for key, lines in left.items()], _MAX_TOLD)
         return self._make_change(("versions",), text, f"leaves what was signed of {join_words(told)}")
 
     def _name(self, signed: Signature | None) -> str:

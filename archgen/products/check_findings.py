@@ -8,15 +8,14 @@ from __future__ import annotations
 import os
 from collections import Counter
 from collections.abc import Hashable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
-from archgen import git, pipeline, project
+from archgen import pipeline, project
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity, settle_diagnostics
 from archgen.diagnostics.finding_identity import BaselineEntry, IdRenamer, identify_finding, match_findings
+from archgen.frozen import dataclass
 from archgen.pipeline import CheckedProject, VersionCache, index_all_rules
 from archgen.project import baseline_reading as reading
-from archgen.syntax import yaml_writer
 
 BASELINE_FILE = "archgen-baseline.yaml"
 """The baseline of a project, unless another file is named."""
@@ -116,17 +115,14 @@ def compare_findings(
     new_indexes = [
         index
         for index, earlier_index in enumerate(matched_indexes)
-        if earlier_index is None or _is_graver(checked_project.findings[index], earlier_project.findings[earlier_index])
+        if earlier_index is None
+        or checked_project.findings[index].effective_severity
+        > earlier_project.findings[earlier_index].effective_severity
     ]
     gone_indexes = set(range(len(earlier_keys))).difference(matched_indexes)
     return tuple(checked_project.findings[index] for index in new_indexes), tuple(
         earlier_project.findings[index] for index in sorted(gone_indexes)
     )
-
-
-def _is_graver(new_finding: Diagnostic, old_finding: Diagnostic) -> bool:
-    """Whether a finding is more severe than its match, for example because its rule was set to another severity."""
-    return new_finding.effective_severity > old_finding.effective_severity
 
 
 def _matching_keys(
@@ -146,6 +142,8 @@ def check_earlier(path: Path | None, revision: str, version_cache: VersionCache 
     """
     if not revision.endswith("..."):
         return pipeline.check_at_revision(path, revision, version_cache)
+    from archgen import git
+
     tracked_project = project.find_tracked_project(path)
     fork = git.find_common_commit(tracked_project.objects.repository, revision.removesuffix("...") or "HEAD", "HEAD")
     return pipeline.check_tracked_project(tracked_project, fork.commit_id, version_cache)
@@ -244,6 +242,8 @@ def format_baseline(findings: Iterable[Diagnostic], rules: Mapping[str, Rule]) -
 
 def _entry_lines(rule: str, element: str, message: str, count: int) -> Iterator[str]:
     """Yield the lines of one entry; empty keys are left out, so that a diff shows what matters."""
+    from archgen.syntax import yaml_writer
+
     yield f"  - rule: {yaml_writer.format_scalar(rule)}"
     if element:
         yield f"    element: {yaml_writer.format_scalar(element)}"

@@ -3,20 +3,31 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+import posixpath
+from collections.abc import Mapping, Sequence
+from functools import cache
 from pathlib import Path
 
 from archgen import git, pipeline, project
-from archgen.compare import Comparison
+from archgen.compare import ArchitectureVersion, Comparison
+from archgen.compare.agreements import agreement_key, hash_change
+from archgen.compare.breaking_changes import stricter_policy
+from archgen.compare.change_listing import find_changes
 from archgen.compare.compare_versions import compare_versions
-from archgen.compare.review_facts import ReviewFacts
+from archgen.compare.match_elements import match_elements
+from archgen.compare.review_facts import Author, ReviewFacts, name_author
 from archgen.diagnostics.common_wording import shorten_hash
+from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics.rule_options import format_percentage
 from archgen.frozen import dataclass, replace
+from archgen.git.commit_authors import find_last_commit, find_own_mail, list_author_mails
+from archgen.git.project_revision import differs_from_head
+from archgen.link.project_linking import link_type_patterns
+from archgen.model.review_settings import agreement_file
 from archgen.model.variant import BASE_NAME
 from archgen.pipeline import CheckedProject, VersionCache
-from archgen.products.comparison_input import make_comparison_input
-from archgen.products.review_history import find_review_facts
 from archgen.project.project_search import find_project
+from archgen.syntax.yaml_tree import MappingNode
 
 _PATH_PREFIXES = ("./", "../", "/", "~")
 WORKING_TREE_NAME = "the working tree"
@@ -95,7 +106,8 @@ def read_versions(
     if dots:
         after = read_version(right, path, version_cache)
         if dots == "...":
-            return read_at_base(_find_fork(left, right, path), path, version_cache, after), after
+            base = git.find_common_commit(project.find_tracked_project(path).objects.repository, left, right)
+            return read_at_base(base, path, version_cache, after), after
         return read_earlier_version(left, path, version_cache, after), after
     if first is not None:
         after = read_version(second, path, version_cache)
@@ -103,7 +115,8 @@ def read_versions(
     # The newer version first here: it names the main line that the older one is found by.
     after = read_version(second, path, version_cache)
     main_line = after.checked_project.architecture.review.main
-    return read_at_base(_find_base(path, main_line), path, version_cache, after), after
+    base = git.find_branch_base(project.find_tracked_project(path).objects.repository, main_line)
+    return read_at_base(base, path, version_cache, after), after
 
 
 def split_range(version_text: str) -> tuple[str, str, str]:
@@ -136,10 +149,6 @@ def read_version(
             if not os.path.lexists(version_text):
                 raise
     return ProjectVersion(version_text, pipeline.check_project(Path(version_text), version_cache))
-
-
-def _find_base(path: Path | None, main_line: str | None) -> git.BaseCommit:
-    return git.find_branch_base(project.find_tracked_project(path).objects.repository, main_line)
 
 
 def read_at_base(
@@ -175,11 +184,6 @@ def _check_moved(
         project.find_tracked_project(path), revision, later.checked_project.architecture.project.id, later.commit
     )
     return pipeline.check_tracked_project(moved_project, revision, version_cache)
-
-
-def _find_fork(left: str, right: str, path: Path | None) -> git.BaseCommit:
-    """Find the commit where two lines of history parted."""
-    return git.find_common_commit(project.find_tracked_project(path).objects.repository, left, right)
 
 
 def _is_path(version_text: str) -> bool:
@@ -244,3 +248,87 @@ def _find_left_out_files(before: CheckedProject, after: CheckedProject) -> tuple
     later_files = after.loaded_project.files
     old_files = (*before.yaml_files, *before.loaded_project.interface_files)
     return tuple(file for file in old_files if file not in read_files and later_files.has_path(file))
+
+
+def find_review_facts(
+    before: CheckedProject, after: CheckedProject, base_commit: str, forge_facts: ReviewFacts
+) -> ReviewFacts:
+    """Return what is known of who changed a project: what the forge tells, and git of the commits since `base_commit`."""
+    reviews = before.architecture.review, after.architecture.review
+    is_asked = stricter_policy(*reviews).foreign is not Severity.OFF
+    if not base_commit or not (is_asked or reviews[1].accepted):
+        return forge_facts
+    try:
+        repository = git.find_repository(after.root)
+        head = git.resolve_revision(repository, after.loaded_project.files.commit or "HEAD")
+    except git.GitError:
+        return forge_facts
+    on_disk = not after.loaded_project.files.commit
+
+    def list_authors(path: str, files: tuple[str, ...]) -> tuple[Author, ...]:
+        mails = list_author_mails(repository, base_commit, head, path)
+        if on_disk and differs_from_head(after.root, files):
+            mails |= {find_own_mail(repository)}
+        return tuple(name_author(mail=mail) for mail in sorted(mails) if mail)
+
+    own_files = map(agreement_file, before.architecture.partners)
+    files = {file: posixpath.join(repository.prefix, file) for file in own_files}
+    present_files = tuple(file for file in after.yaml_files if file in files)
+
+    @cache
+    def hash_agreed_changes(file: str) -> Mapping[tuple[str, str], str] | None:
+        commit = find_last_commit(repository, base_commit, head, files.get(file, file))
+        if not commit or commit == head or (on_disk and differs_from_head(after.root, (file,))):
+            return None
+        return _hash_changes(before, after, commit)
+
+    return replace(
+        forge_facts,
+        authors=list_authors("", after.input_files),
+        agreement_authors={file: list_authors(files[file], (file,)) for file in present_files},
+        agreed_hashes=hash_agreed_changes,
+    )
+
+
+def _hash_changes(before: CheckedProject, after: CheckedProject, commit: str) -> Mapping[tuple[str, str], str]:
+    """Return the hashes of what had changed at a commit, by element and key; nothing where the project was not there."""
+    try:
+        agreed_project = pipeline.check_at_revision(after.root, commit)
+    except (git.GitError, project.ProjectNotFoundError):
+        return {}
+    old, new = make_comparison_input(before), make_comparison_input(agreed_project)
+    versions, changes = find_changes(old, new, match_elements(old.architecture, new.architecture))
+    return {(change.element_id, agreement_key(change)): hash_change(change, versions) for change in changes}
+
+
+def make_comparison_input(checked_project: CheckedProject) -> ArchitectureVersion:
+    """Return what a comparison looks at."""
+    unread_files = dict.fromkeys(error.span.file for error in checked_project.reading_errors)
+    project_section = checked_project.merged_table.get("project")
+    return ArchitectureVersion(
+        architecture=checked_project.architecture,
+        findings=checked_project.findings,
+        silenced_findings=checked_project.silenced_findings,
+        rule_settings={
+            **{rule: str(severity) for rule, severity in checked_project.loaded_project.rule_settings.items()},
+            **{
+                f"{rule}.{name}": format_percentage(share)
+                for rule, options in checked_project.rule_options.items()
+                for name, share in options.items()
+            },
+        },
+        chapters={path: chapter.text for path, chapter in checked_project.chapters.texts.items()},
+        chapter_order=checked_project.chapters.order,
+        # Where a project does not write them, they come from the name of its folder: that is no change of the project.
+        unnamed_keys=frozenset(
+            {"id", "title"}
+            - ({entry.key for entry in project_section} if isinstance(project_section, MappingNode) else set())
+        ),
+        analysis=checked_project.analysis,
+        sound_files=frozenset(checked_project.yaml_files).difference(unread_files),
+        unread_files=tuple(sorted(unread_files)),
+        broken_files=checked_project.loaded_project.broken_files,
+        library_files=frozenset(checked_project.loaded_project.library_files),
+        waiting_rules=checked_project.waiting_rules,
+        type_patterns=link_type_patterns(checked_project.merged_table, checked_project.architecture),
+    )

@@ -6,14 +6,13 @@ Pages and pictures import late: `archgen diff` in a terminal needs neither.
 from __future__ import annotations
 
 import shlex
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from archgen.compare import Comparison
 from archgen.diagnostics.common_wording import shorten_hash
+from archgen.frozen import replace
 from archgen.products.compared_versions import WORKING_TREE_NAME, ProjectVersion
-from archgen.views.changes.comparison_document import ComparisonDocument, describe_comparison
-from archgen.views.changes.reading_errors import ReadingErrors
+from archgen.views.changes.comparison_document import ComparisonDocument, ReadingErrors, describe_comparison
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -9,21 +9,22 @@ import contextlib
 import json
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from archgen.cache.file_store import FileStore, digest_bytes, digest_text
 from archgen.cache.program_stamp import stamp_program
 from archgen.emit import file_tree
 from archgen.emit.file_tree import OutputError
+from archgen.frozen import replace
 from archgen.pipeline import CheckedProject
 from archgen.products import project_views, report_cache
-from archgen.products.backend_choice import choose_backends
-from archgen.products.backend_products import make_backend_product
 from archgen.products.product_inputs import Product, ProductInputs
 from archgen.products.product_table import PRODUCTS, REPORT, SITE
 from archgen.products.product_writing import StartedProducts, start_products, write_started
-from archgen.products.trusted_backends import TrustedRevision
+
+if TYPE_CHECKING:
+    from archgen.products.trusted_backends import TrustedRevision
 
 
 def choose_products(
@@ -39,6 +40,12 @@ def choose_products(
     """
     products = [product for name, product in PRODUCTS.items() if name in only_names or not only_names]
     named_backends = [name for name in only_names if name not in PRODUCTS]
+    if not named_backends and not backend_names:
+        return tuple(products)
+    # Imported here: most builds make no output of a backend.
+    from archgen.products.backend_choice import choose_backends
+    from archgen.products.backend_products import make_backend_product
+
     backends = (
         *choose_backends(checked_project, named_backends, "documents", trusted_revision, other_outputs=PRODUCTS),
         *choose_backends(checked_project, backend_names, "documents", trusted_revision),

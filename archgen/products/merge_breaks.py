@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Hashable, Iterator
-from dataclasses import replace
 
 from archgen.compare import Change, Comparison, PartnerBreak
 from archgen.compare.change_spans import find_change_span, find_old_file
@@ -14,7 +13,8 @@ from archgen.compare.review_facts import ReviewFacts
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.findings.comparison_rules import BREAKING_CHANGE
+from archgen.findings.rule_table import BREAKING_CHANGE
+from archgen.frozen import replace
 from archgen.link.interface_sources import interface_name_of
 from archgen.merge.branch_merge import JointBreaks
 from archgen.pipeline import CheckedProject

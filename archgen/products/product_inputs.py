@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import field
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from archgen.emit.file_tree import FileTree
 from archgen.emit.picture import Picture
-from archgen.frozen import dataclass, replace
+from archgen.frozen import dataclass, field, replace
 from archgen.pipeline import CheckedProject
 from archgen.products import project_views
 from archgen.products.output_options import OutputOptions
 from archgen.products.project_views import ProjectViews
-from archgen.views import drawing_set
-from archgen.views.lookup import Lookup, add_timing
-from archgen.views.pages import report_outline, site_pages
-from archgen.views.pages.report_outline import DocumentEdition, RosPlace
-from archgen.views.picture_shapes import Drawing, Graph, GraphKind
-from archgen.views.shapes import Figure, Outline, Page
-from archgen.views.timing.timing_lookup import add_late_runs, complete_with_chains
+
+if TYPE_CHECKING:
+    from archgen.views.lookup import Lookup
+    from archgen.views.pages.report_outline import DocumentEdition, RosPlace
+    from archgen.views.picture_shapes import Drawing, GraphKind
+    from archgen.views.shapes import Outline, Page
 
 
 # Without slots: `cached_property` stores its values in the object's dictionary.
@@ -38,6 +37,8 @@ class ProductInputs:
     @property
     def site_undrawn_kinds(self) -> frozenset[GraphKind]:
         """The kinds of pictures that the site leaves to its map, since there are too many of them."""
+        from archgen.views import drawing_set
+
         components = self._list_shown_components()
         groups = {name.partition(".")[0] for name in components}
         return drawing_set.list_undrawn_kinds(len(components), len(groups), wish=self.options.component_pictures)
@@ -54,6 +55,9 @@ class ProductInputs:
     @cached_property
     def timed_lookup(self) -> Lookup:
         """The look-ups with the timing analysis, without drawings."""
+        from archgen.views.lookup import add_timing
+        from archgen.views.timing.timing_lookup import add_late_runs, complete_with_chains
+
         analysis, architecture = self.checked_project.analysis, self.checked_project.architecture
         lookup = project_views.make_scoped_lookup(self.checked_project, self.options)
         return add_timing(lookup, add_late_runs(complete_with_chains(analysis, architecture)))
@@ -61,6 +65,8 @@ class ProductInputs:
     @cached_property
     def site_drawings(self) -> Mapping[str, Drawing]:
         """The drawings that the site shows, by id."""
+        from archgen.views.picture_shapes import Graph
+
         undrawn_kinds = self.site_undrawn_kinds
         return {
             name: each
@@ -71,6 +77,8 @@ class ProductInputs:
     @cached_property
     def outline(self) -> Outline:
         """The architecture as one document, for templates."""
+        from archgen.views.pages import report_outline
+
         return report_outline.make_report(self.views.lookup, self.views.edition)
 
     @cached_property
@@ -91,6 +99,8 @@ class ProductInputs:
     @cached_property
     def tabled_report(self) -> Outline:
         """The architecture as one document at the report's level, each table as it is on the site."""
+        from archgen.views.pages import report_outline
+
         return report_outline.make_report(self.views.lookup, self._report_edition)
 
     @cached_property
@@ -98,6 +108,7 @@ class ProductInputs:
         """The pictures of the Word report by their own ids: those that it shows."""
         from archgen.views.report.printed_report import walk_sections
         from archgen.views.report.report_drawings import make_report_drawings
+        from archgen.views.shapes import Figure
 
         outline = self.printed_report
         shown_ids = {
@@ -113,6 +124,8 @@ class ProductInputs:
     @cached_property
     def pages(self) -> tuple[Page, ...]:
         """The site's pages."""
+        from archgen.views.pages import site_pages
+
         edition = replace(self.views.edition, drawings=self.site_drawings, undrawn_kinds=self.site_undrawn_kinds)
         return tuple(site_pages.make_pages(self.views.lookup, edition))
 

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING
 
-from archgen.checking.checked_packing import pack_checked_project
-from archgen.emit import file_tree, picture_files, site
-from archgen.emit.own_file_marks import PACKED_HEADER
-from archgen.emit.picture import Picture
+from archgen.emit import file_tree
 from archgen.products import report_cache
 from archgen.products.product_inputs import FinishProduct, MadeProduct, Product, ProductInputs
 from archgen.syntax.folder_files import read_named_file
-from archgen.views.explorer import make_explorer_map
-from archgen.views.pages import report_outline
-from archgen.views.search import make_search_entries
+
+if TYPE_CHECKING:
+    from archgen.emit.picture import Picture
 
 MAX_TEMPLATE_BYTES = 200_000_000
 """The largest Word template that is read: as much as one may unpack to."""
@@ -65,6 +63,11 @@ def _start_report(inputs: ProductInputs) -> FinishProduct:
 
 
 def _start_site(inputs: ProductInputs) -> FinishProduct:
+    from archgen.emit import site
+    from archgen.views.explorer import make_explorer_map
+    from archgen.views.pages import report_outline
+    from archgen.views.search import make_search_entries
+
     page_list = inputs.pages
     search_entries = make_search_entries(inputs.views.lookup, page_list)
     explorer_map = make_explorer_map(inputs.views.lookup)
@@ -90,12 +93,16 @@ def make_diagrams_product(formats: Sequence[str], name_patterns: Sequence[str] =
     """Make the product of pictures in these formats (svg, png, pdf, dot), by patterns of their ids (none: all)."""
 
     def start(_inputs: ProductInputs) -> FinishProduct:
+        from archgen.emit import picture_files
+
         return lambda pictures: MadeProduct(picture_files.build_picture_tree(pictures, formats))
 
     return Product("diagrams", "diagrams", start, tuple(formats), tuple(name_patterns) or ("*",))
 
 
 def _start_packed(inputs: ProductInputs) -> FinishProduct:
+    from archgen.checking.checked_packing import pack_checked_project
+    from archgen.emit.own_file_marks import PACKED_HEADER
     from archgen.syntax import yaml_writer
 
     packed_project = pack_checked_project(inputs.checked_project)

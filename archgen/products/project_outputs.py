@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 from archgen.emit import file_tree
+from archgen.frozen import replace
 from archgen.pipeline import CheckedProject
 from archgen.products.output_options import OutputOptions
 from archgen.products.product_inputs import ProductInputs

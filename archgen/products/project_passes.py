@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
 
+from archgen.frozen import NamedTuple
 from archgen.passes import Pass, order_passes
 from archgen.passes.patterns.pattern_registry import find_known_passes
 from archgen.pipeline import CheckedProject, transform_project

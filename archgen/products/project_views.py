@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from itertools import combinations
+from typing import TYPE_CHECKING
 
 from archgen import git
 from archgen.diagnostics.common_wording import shorten_hash
-from archgen.findings import rule_pages
 from archgen.frozen import dataclass, replace
 from archgen.git.project_revision import find_revision, find_revision_date
-from archgen.git.tag_list import list_tags_below
-from archgen.history import count_history
 from archgen.model import selector_evaluation
-from archgen.model.partner_interfaces import PartnerPair
 from archgen.model.project_history import History
 from archgen.model.selector_evaluation import Selection
 from archgen.model.selector_parser import SelectorProblem
@@ -21,15 +18,14 @@ from archgen.model.source_repository import SourceRepository
 from archgen.pipeline import CheckedProject, index_all_rules
 from archgen.products import report_cache
 from archgen.products.output_options import OutputOptions
-from archgen.project import ProjectNotFoundError
-from archgen.views import drawing_set
-from archgen.views.agreement.signature_record import SignedTag
-from archgen.views.lookup import DocumentScope, Lookup, add_timing, make_lookup
-from archgen.views.pages.report_outline import DetailLevel, DocumentEdition
-from archgen.views.pages.variant_chapter import VariantDifference
-from archgen.views.picture_shapes import Drawing
-from archgen.views.tables import statistics_tables
-from archgen.views.timing.timing_lookup import add_late_runs, complete_with_chains
+
+if TYPE_CHECKING:
+    from archgen.model.partner_interfaces import PartnerPair
+    from archgen.views.agreement.signature_record import SignedTag
+    from archgen.views.lookup import Lookup
+    from archgen.views.pages.report_outline import DetailLevel, DocumentEdition
+    from archgen.views.pages.variant_chapter import VariantDifference
+    from archgen.views.picture_shapes import Drawing
 
 _SHORT_HASH_LENGTH = 10
 """Digits of a commit's hash that are printed: enough to be unique in a repository of this size."""
@@ -42,22 +38,21 @@ def select_elements(
 
     Return the selection and the problems of the selector; errors among them make the selection unusable.
     """
-    return selector_evaluation.evaluate_selector(
-        selector_text, checked_project.architecture, _elements_by_rule(checked_project)
-    )
-
-
-def _elements_by_rule(checked_project: CheckedProject) -> Mapping[str, frozenset[str]]:
-    """Return the ids of elements with findings, by rule."""
     rule_elements: dict[str, set[str]] = {}
     for finding in checked_project.findings:
         if finding.element:
             rule_elements.setdefault(finding.rule, set()).add(finding.element)
-    return {rule: frozenset(elements) for rule, elements in rule_elements.items()}
+    return selector_evaluation.evaluate_selector(
+        selector_text,
+        checked_project.architecture,
+        {rule: frozenset(elements) for rule, elements in rule_elements.items()},
+    )
 
 
 def make_scoped_lookup(checked_project: CheckedProject, options: OutputOptions) -> Lookup:
     """Build the look-ups for the selected part of a project."""
+    from archgen.views.lookup import DocumentScope, make_lookup
+
     scope = (
         DocumentScope(options.selection.components, options.selection.nodes, options.selector_text)
         if options.selection
@@ -82,6 +77,11 @@ def make_views(
 
     There is no drawing of the `undrawn_kinds`.
     """
+    from archgen.views import drawing_set
+    from archgen.views.lookup import add_timing
+    from archgen.views.tables import statistics_tables
+    from archgen.views.timing.timing_lookup import add_late_runs, complete_with_chains
+
     timing_lookup = add_late_runs(complete_with_chains(checked_project.analysis, checked_project.architecture))
     lookup = replace(
         add_timing(make_scoped_lookup(checked_project, options), timing_lookup),
@@ -126,6 +126,11 @@ def make_edition(
     revision: str,
 ) -> DocumentEdition:
     """Say what documents contain beside the architecture."""
+    from archgen.findings import rule_pages
+    from archgen.views.pages.report_outline import DocumentEdition
+    from archgen.views.tables import statistics_tables
+
+    found_rules = {finding.rule for finding in checked_project.findings}
     return DocumentEdition(
         revision=revision,
         level=level or "implementation",
@@ -135,7 +140,11 @@ def make_edition(
         drawings=drawings,
         statistics=statistics_tables.make_statistics_tables(checked_project.architecture),
         history=project_history,
-        rule_pages=_format_rule_pages(checked_project),
+        rule_pages={
+            rule.name: rule_pages.rule_page_to_markdown(rule).partition("\n")[2]
+            for rule in index_all_rules().values()
+            if rule.name in found_rules
+        },
         has_errors=checked_project.has_errors,
     )
 
@@ -153,6 +162,9 @@ def locate_repository(checked_project: CheckedProject) -> SourceRepository | Non
 
 def list_signed_tags(checked_project: CheckedProject) -> Mapping[PartnerPair, tuple[SignedTag, ...]]:
     """Return the tags that record signatures of two partners, newest first, by pairs in the order of their declaration."""
+    from archgen.git.tag_list import list_tags_below
+    from archgen.views.agreement.signature_record import SignedTag
+
     partners = checked_project.architecture.partners
     pairs = {f"{first}-{second}": (first, second) for first, second in combinations(partners, 2)}
     pairs |= {f"{second}-{first}": (first, second) for first, second in pairs.values()}
@@ -173,16 +185,6 @@ def _find_date(checked_project: CheckedProject, options: OutputOptions) -> str:
     return find_revision_date(checked_project.root, checked_project.input_files)
 
 
-def _format_rule_pages(checked_project: CheckedProject) -> Mapping[str, str]:
-    """Return the pages of the rules that found something, by name, without the titles."""
-    found_rules = {finding.rule for finding in checked_project.findings}
-    return {
-        rule.name: rule_pages.rule_page_to_markdown(rule).partition("\n")[2]
-        for rule in index_all_rules().values()
-        if rule.name in found_rules
-    }
-
-
 def _shows_history(checked_project: CheckedProject, options: OutputOptions) -> bool:
     """Whether documents show the history: not if it is not wanted, nor for a part, nor for a project from a commit."""
     return options.show_history and options.selection is None and not checked_project.loaded_project.files.commit
@@ -190,6 +192,9 @@ def _shows_history(checked_project: CheckedProject, options: OutputOptions) -> b
 
 def read_history(checked_project: CheckedProject, options: OutputOptions) -> History:
     """Return how the project grew, month by month; empty where documents do not show it, and outside of a repository."""
+    from archgen.history import count_history
+    from archgen.project import ProjectNotFoundError
+
     if not _shows_history(checked_project, options):
         return History()
     try:

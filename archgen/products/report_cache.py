@@ -13,11 +13,14 @@ import os
 import zlib
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from archgen.cache.file_store import FileStore, digest_bytes
 from archgen.cache.program_stamp import stamp_writers
-from archgen.emit.picture import Picture
-from archgen.views.shapes import Outline
+
+if TYPE_CHECKING:
+    from archgen.emit.picture import Picture
+    from archgen.views.shapes import Outline
 
 ReportWithWarnings = tuple[bytes, tuple[str, ...]]
 """A report and the warnings of its writer."""
@@ -68,7 +71,9 @@ def get_or_write_report(  # noqa: PLR0913 - all that a report depends on, and ho
         return data
 
     new_report = write_report(read_and_record)
-    files.store(report_key, _format_report(new_report, asked_digests))
+    document, warnings = new_report
+    header = json.dumps({"check": zlib.crc32(document), "warnings": warnings, "asked": asked_digests})
+    files.store(report_key, header.encode() + b"\n" + document)
     return new_report
 
 
@@ -108,9 +113,3 @@ def _read_report(data: bytes | None, chapter_files: ChapterFileReader) -> Report
     # Whatever the file holds instead, it is a miss.
     except (ValueError, KeyError, TypeError, AttributeError):
         return None
-
-
-def _format_report(new_report: ReportWithWarnings, asked_digests: Mapping[str, str | None]) -> bytes:
-    document, warnings = new_report
-    header = json.dumps({"check": zlib.crc32(document), "warnings": warnings, "asked": asked_digests})
-    return header.encode() + b"\n" + document

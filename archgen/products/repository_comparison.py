@@ -5,11 +5,11 @@ from __future__ import annotations
 import posixpath
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import NamedTuple
 
 from archgen import git
 from archgen.compare.review_facts import ReviewFacts
 from archgen.diagnostics.common_wording import join_words
+from archgen.frozen import NamedTuple
 from archgen.pipeline import CheckedProject
 from archgen.products.compared_versions import ProjectVersion, compare_named_versions, read_versions, split_range
 from archgen.products.comparison_documents import describe_versions

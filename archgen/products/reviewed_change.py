@@ -7,15 +7,14 @@ contradict them.
 from __future__ import annotations
 
 import shlex
-from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
-from typing import NamedTuple
 
 from archgen import git, project
 from archgen.compare import Comparison
 from archgen.compare.review_facts import ReviewFacts
 from archgen.diagnostics.common_wording import shorten_hash
 from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.frozen import NamedTuple, dataclass
 from archgen.git.project_revision import differs_from_head
 from archgen.git.repository_lookup import look_up_commit
 from archgen.pipeline import CheckedProject, VersionCache

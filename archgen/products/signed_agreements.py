@@ -6,10 +6,10 @@ A tag counts that is called `signed/A-B/...`, with the ids of both partners in e
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 from archgen.diagnostics.common_wording import shorten_hash
+from archgen.frozen import replace
 from archgen.git import GitError
 from archgen.git.tag_list import list_tags_below
 from archgen.model.agreed_terms import Signature

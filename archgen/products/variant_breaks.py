@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
-
 from archgen.compare import Change, Comparison
 from archgen.compare.breaking_changes import sort_breaks_first
 from archgen.compare.comparison import PartnerBreak
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Severity
+from archgen.frozen import replace
 
 _ChangeIdentity = tuple[str, str, str, str | None, str | None, str]
 
@@ -56,7 +54,9 @@ def add_variant_breaks(comparison: Comparison, variant_comparisons: dict[str, Co
         idle_acceptances=tuple(
             entry for entry in comparison.idle_acceptances if all(entry in idle for idle in idle_everywhere)
         ),
-        concerned_owners=tuple(sorted({*comparison.concerned_owners, *_list_partners(holders)})),
+        concerned_owners=tuple(
+            sorted({*comparison.concerned_owners, *(partner_break.partner for _, partner_break in holders)})
+        ),
     )
 
 
@@ -68,10 +68,6 @@ def _identify_change(change: Change) -> _ChangeIdentity:
 def _identify_loss(partner_break: PartnerBreak) -> tuple[str, str]:
     # Reasons may differ in figures and in who else is hit: a partner loses the same once.
     return partner_break.partner, partner_break.category
-
-
-def _list_partners(holders: dict[tuple[_ChangeIdentity, PartnerBreak], list[str]]) -> Iterator[str]:
-    return (partner_break.partner for _, partner_break in holders)
 
 
 def _add_losses(change: Change, in_variant: Change, losses: tuple[tuple[PartnerBreak, tuple[str, ...]], ...]) -> Change:

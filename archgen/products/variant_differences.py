@@ -6,7 +6,7 @@ from archgen.compare.change_listing import list_changes
 from archgen.diagnostics.diagnostic import phrase_severity_counts
 from archgen.model.variant import BASE_NAME
 from archgen.pipeline import CheckedProject, keep_variant_findings, stand_in_variants
-from archgen.products.comparison_input import make_comparison_input
+from archgen.products.compared_versions import make_comparison_input
 from archgen.views.pages.variant_chapter import VariantDifference
 
 

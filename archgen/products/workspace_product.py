@@ -10,16 +10,16 @@ from pathlib import Path
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.emit.backend_manifests import Backend
-from archgen.emit.file_tree import OutputError
+from archgen.emit.file_tree import OutputError, refuse_file
 from archgen.emit.workspace import workspace_writing
 from archgen.emit.workspace.disk_files import DiskReader, GeneratedFile, fold_file_path
 from archgen.emit.workspace.run_record import read_other_records, read_run_record
 from archgen.emit.workspace.workspace_plan import UserChoices, WorkspacePlan, plan_workspace
 from archgen.pipeline import CheckedProject
 from archgen.products.backend_choice import choose_backends, raise_problems
-from archgen.products.generation_contexts import make_generation_context
-from archgen.products.leaving_links import refuse_leaving_links
+from archgen.products.backend_products import make_generation_context
 from archgen.products.output_options import OutputOptions
+from archgen.products.product_writing import refuse_leaving_links
 from archgen.products.trusted_backends import refuse_untrusted_pass
 from archgen.views.generation import find_view_maker, make_generation_views
 from archgen.views.generation.architecture_needs import find_unmet_needs
@@ -187,7 +187,7 @@ def _write_files(
     files: Sequence[GeneratedFile], backend: Backend, folder: Path, run: str, request: WorkspaceRequest
 ) -> WorkspacePlan:
     """Plan, and unless only a look is asked for, do what is planned."""
-    _refuse_unusable(folder)
+    refuse_file(folder)
     try:
         if request.only_look:
             return _plan_files(files, backend, folder, run, request)
@@ -198,12 +198,6 @@ def _write_files(
     except OSError as error:
         msg = f"cannot write {error.filename or folder}: {error.strerror or error}"
         raise OutputError(msg, "no file is half written; run this again when that is mended") from error
-
-
-def _refuse_unusable(folder: Path) -> None:
-    if folder.exists() and not folder.is_dir():
-        msg = f"{folder} is a file, not a folder"
-        raise OutputError(msg, "give another folder with `-o`")
 
 
 def _plan_files(

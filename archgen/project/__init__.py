@@ -3,19 +3,23 @@
 The files come from the disk, or from a commit of the repository that the project is in.
 """
 
+from typing import TYPE_CHECKING
+
 from archgen.project.project_loading import LoadedProject, load_project
 from archgen.project.project_search import PROJECT_FILE, ProjectNotFoundError
-from archgen.project.project_tracking import (
-    NotAtRevisionError,
-    TrackedProject,
-    find_moved_project,
-    find_tracked_project,
-    load_at_commit,
-    load_at_revision,
-)
 from archgen.project.slice_parsing import ParsedSlices
 from archgen.project.source_reading import PASS_FOLDER
 from archgen.project.source_rules import RULES
+
+if TYPE_CHECKING:
+    from archgen.project.project_tracking import (
+        NotAtRevisionError,
+        TrackedProject,
+        find_moved_project,
+        find_tracked_project,
+        load_at_commit,
+        load_at_revision,
+    )
 
 __all__ = [
     "PASS_FOLDER",
@@ -32,3 +36,13 @@ __all__ = [
     "load_at_revision",
     "load_project",
 ]
+
+
+def __getattr__(name: str) -> object:
+    """Load what reads other revisions, and git with it, once it is asked for: a check of files does without."""
+    if name not in __all__:
+        message = f"module {__name__!r} has no attribute {name!r}"
+        raise AttributeError(message)
+    from archgen.project import project_tracking
+
+    return getattr(project_tracking, name)

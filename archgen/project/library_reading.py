@@ -12,13 +12,12 @@ import posixpath
 from collections.abc import Iterator, Mapping
 from functools import cache, lru_cache
 from types import MappingProxyType
-from typing import NamedTuple
 
 from archgen import resources
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import Span
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass
 from archgen.language.key_paths import SLICE
 from archgen.language.language_tables import KEYS, SECTION_KINDS
 from archgen.model.known_interfaces import KNOWN_DISTROS, guess_distro
@@ -26,7 +25,16 @@ from archgen.project.project_search import PROJECT_FILE
 from archgen.project.slice_parsing import ReadingState, parse_slice
 from archgen.project.source_reading import read_library_slices
 from archgen.syntax.project_files import FileRefusal, LibraryFiles, ProjectFiles
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlDocument, YamlNode
+from archgen.syntax.yaml_tree import (
+    MappingEntry,
+    MappingNode,
+    ScalarNode,
+    SequenceNode,
+    YamlDocument,
+    YamlNode,
+    find_value,
+    list_entries,
+)
 
 LIBRARY_SECTIONS = ("component_types", "types")
 _MEANINGS = frozenset({"ros", "glossary"})
@@ -60,7 +68,7 @@ def _list_written_paths(root: MappingNode) -> dict[str, ScalarNode]:
     libraries = root.get("libraries")
     return {
         entry.key: path
-        for entry in (libraries if isinstance(libraries, MappingNode) else ())
+        for entry in list_entries(libraries)
         if isinstance(entry.value, MappingNode)
         and isinstance(path := entry.value.get("path"), ScalarNode)
         and path.value is not None
@@ -99,7 +107,7 @@ def _list_pathless_libraries(root: MappingNode) -> Iterator[MappingEntry]:
     """Yield libraries of which neither a path nor, as in a packed file, the content is written."""
     libraries = root.get("libraries")
     paths = _list_written_paths(root)
-    for entry in libraries if isinstance(libraries, MappingNode) else ():
+    for entry in list_entries(libraries):
         keys = entry.value.entries.keys() if isinstance(entry.value, MappingNode) else set()
         if entry.key not in paths and keys.isdisjoint(LIBRARY_SECTIONS):
             yield entry
@@ -328,8 +336,8 @@ def _index_program_names() -> Mapping[tuple[str, str], set[str]]:
 
 
 def _get_node_text(body: YamlNode, key: str) -> str:
-    node = body.get("node") if isinstance(body, MappingNode) else None
-    value = node.get(key) if isinstance(node, MappingNode) else None
+    node = find_value(body, "node")
+    value = find_value(node, key)
     return value.text if isinstance(value, ScalarNode) else ""
 
 

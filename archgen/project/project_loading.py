@@ -6,14 +6,13 @@ The settings of a loaded project as a variant has them: rules, distribution, and
 from __future__ import annotations
 
 import re
-from dataclasses import field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Severity, name_rule
 from archgen.diagnostics.rule_options import WrittenOption
 from archgen.diagnostics.source_span import SourceTexts, Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field, replace
 from archgen.project.library_reading import (
     SHIPPED_ID,
     SHIPPED_PATH,
@@ -30,7 +29,16 @@ from archgen.project.source_patterns import expand_source_pattern
 from archgen.project.source_reading import read_slice, read_sources
 from archgen.syntax.folder_files import FolderFiles
 from archgen.syntax.project_files import ProjectFiles
-from archgen.syntax.yaml_tree import IgnoreComment, MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlDocument
+from archgen.syntax.yaml_tree import (
+    IgnoreComment,
+    MappingEntry,
+    MappingNode,
+    ScalarNode,
+    SequenceNode,
+    YamlDocument,
+    find_value,
+    list_entries,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -168,7 +176,7 @@ def _list_rule_entries(state: ReadingState) -> Iterator[MappingEntry]:
 
 def list_rule_entries(rules: YamlNode | None) -> Iterator[MappingEntry]:
     """Yield the entries of a `rules:` section, each below the name that the rule has today."""
-    for entry in rules if isinstance(rules, MappingNode) else ():
+    for entry in list_entries(rules):
         yield MappingEntry(name_rule(entry.key), entry.key_span, entry.value)
 
 
@@ -182,7 +190,7 @@ def read_rule_options(rule_entries: Iterable[MappingEntry]) -> dict[str, dict[st
     """Return the options by rule and name. Two files may set different options of one rule."""
     rule_options: dict[str, dict[str, WrittenOption]] = {}
     for rule_entry in rule_entries:
-        for entry in rule_entry.value if isinstance(rule_entry.value, MappingNode) else ():
+        for entry in list_entries(rule_entry.value):
             if entry.key != "severity":
                 text = entry.value.text if isinstance(entry.value, ScalarNode) else ""
                 written_option = WrittenOption(text, entry.key_span, entry.value.span)
@@ -191,13 +199,8 @@ def read_rule_options(rule_entries: Iterable[MappingEntry]) -> dict[str, dict[st
 
 
 def _list_nodes_at(state: ReadingState, *path: str) -> Iterator[YamlNode]:
-    """Yield the nodes that the documents hold at a path of keys, in the order of the documents."""
-    for document in state.documents:
-        node: YamlNode | None = document.root
-        for key in path:
-            node = node.get(key) if isinstance(node, MappingNode) else None
-        if node is not None:
-            yield node
+    """Return the nodes that the documents hold at a path of keys, in the order of the documents."""
+    return (node for each in state.documents if (node := find_value(each.root, *path)) is not None)
 
 
 def changes_settings(variant: MappingEntry) -> bool:
@@ -216,8 +219,8 @@ def adopt_settings(loaded_project: LoadedProject, root: MappingNode) -> LoadedPr
     """Return a loaded project with the settings that its merged slices have in a variant."""
     rules, ros = root.get("rules"), root.get("ros")
     rule_entries = list(list_rule_entries(rules))
-    distro = ros.get("distro") if isinstance(ros, MappingNode) else None
-    patterns = ros.get("interfaces") if isinstance(ros, MappingNode) else None
+    distro = find_value(ros, "distro")
+    patterns = find_value(ros, "interfaces")
     # What is wrong with a pattern is told where the project itself is read, or as a message that is not known.
     state = ReadingState(loaded_project.files, sources=loaded_project.sources)
     interface_files = [

@@ -19,7 +19,7 @@ from archgen.project.project_search import PROJECT_FILE, ProjectNotFoundError, f
 from archgen.project.slice_parsing import ParsedSlices, parse_slice
 from archgen.syntax.committed_files import list_committed_files
 from archgen.syntax.project_files import MAX_BYTES
-from archgen.syntax.yaml_tree import MappingNode, ScalarNode
+from archgen.syntax.yaml_tree import ScalarNode, find_value
 
 _MAX_GONE_PROJECTS = 100
 """Maximal number of projects that are read to find one that moved."""
@@ -105,7 +105,7 @@ def _read_project_id(objects: GitObjects, blob_id: str) -> str | None:
     data = objects.read_blob(blob_id) if size is not None and size <= MAX_BYTES else None
     document = parse_slice(PROJECT_FILE, data.decode("utf-8", "replace")).document if data is not None else None
     section = document.root.get("project") if document else None
-    project_id = section.get("id") if isinstance(section, MappingNode) else None
+    project_id = find_value(section, "id")
     return project_id.text if isinstance(project_id, ScalarNode) else None
 
 

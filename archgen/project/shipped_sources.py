@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
-from typing import Any, NamedTuple
+from typing import Any
 
 from archgen import resources
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlNode
+from archgen.frozen import NamedTuple
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlNode, find_value, list_entries
 
 SOURCE_KINDS = ("documentation", "source text", "recording")
 """Words for what was read: what people wrote about the package, the package's own files, or a running node."""
@@ -73,27 +74,22 @@ def list_type_facts(body: MappingNode) -> Iterator[str]:
 
     What is said of the world outside, such as who presses keys, is nothing that a package could say.
     """
-    for entry in _list_entries(body, "node"):
+    for entry in list_entries(body, "node"):
         if entry.key in _PROGRAM_KEYS:
             yield entry.key
         elif entry.key in _USE_KINDS and isinstance(entry.value, MappingNode):
             for use in entry.value:
                 yield from (f"{key}.{use.key}" for key in _NAMING_KEYS if _has_key(use.value, key))
     for section in ("inputs", "outputs", "operations"):
-        for entry in _list_entries(body, section):
-            medium = entry.value.get("medium") if isinstance(entry.value, MappingNode) else None
+        for entry in list_entries(body, section):
+            medium = find_value(entry.value, "medium")
             if not (isinstance(medium, ScalarNode) and medium.text == "physical"):
                 yield f"{section}.{entry.key}"
-    yield from _list_parameters(_list_entries(body, "parameters"), "parameters")
+    yield from _list_parameters(list_entries(body, "parameters"), "parameters")
 
 
 def _has_key(node: YamlNode, key: str) -> bool:
     return isinstance(node, MappingNode) and key in node.entries
-
-
-def _list_entries(body: MappingNode, section: str) -> Iterator[MappingEntry]:
-    entries = body.get(section)
-    yield from entries if isinstance(entries, MappingNode) else ()
 
 
 def _list_parameters(parameters: Iterable[MappingEntry], path: str) -> Iterator[str]:

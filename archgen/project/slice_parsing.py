@@ -9,15 +9,14 @@ import re
 from bisect import bisect_left
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import field
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import SourceTexts, Span
-from archgen.frozen import dataclass, replace
+from archgen.frozen import dataclass, field, replace
 from archgen.model.agreed_terms import is_signature_file
 from archgen.model.review_settings import is_agreement_file
 from archgen.project.project_search import PROJECT_FILE
-from archgen.schema import normalise_document, suggest_ids, validate_document
+from archgen.schema import normalise_document, validate_document
 from archgen.syntax import yaml_parser
 from archgen.syntax.project_files import ProjectFiles, read_text_file
 from archgen.syntax.yaml_tree import MappingNode, SequenceNode, YamlDocument, YamlNode
@@ -180,6 +179,8 @@ def _find_lost_keys(
     parsed_slice: Slice, document: YamlDocument, schema_diagnostics: tuple[Diagnostic, ...]
 ) -> Iterator[str]:
     """Yield the keys that were taken out of a document, and the ids that malformed keys may have been meant to be."""
+    from archgen.schema.schema_wording import suggest_ids
+
     # Counted, not a set: of two elements with the same id in different sections one may be lost and the other not.
     yield from Counter(find_written_keys(parsed_slice.text)) - Counter(_list_keys(document.root))
     lines = parsed_slice.text.replace("\r\n", "\n").replace("\r", "\n").split("\n")

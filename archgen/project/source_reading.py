@@ -24,7 +24,7 @@ from archgen.project.source_patterns import (
 )
 from archgen.schema import list_sections
 from archgen.syntax import file_patterns
-from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode
+from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, find_value, list_entries
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -181,9 +181,8 @@ def read_library_slices(state: ReadingState, folder: str) -> None:
 def _list_parameter_paths(state: ReadingState) -> Iterator[str]:
     """Yield the paths of the parameter files that nodes name: these are read, as what they are."""
     for document in state.documents:
-        nodes = document.root.get("nodes")
-        for entry in nodes if isinstance(nodes, MappingNode) else ():
-            files = entry.value.get("parameter_files") if isinstance(entry.value, MappingNode) else None
+        for entry in list_entries(document.root, "nodes"):
+            files = find_value(entry.value, "parameter_files")
             for item in files.items if isinstance(files, SequenceNode) else ():
                 if isinstance(item, ScalarNode):
                     yield posixpath.normpath(item.text)

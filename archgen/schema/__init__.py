@@ -2,15 +2,12 @@
 
 from archgen.schema.reading_rules import RULES
 from archgen.schema.schema_validation import list_sections, validate_document
-from archgen.schema.schema_wording import element_of_path, suggest_ids
 from archgen.schema.short_forms import fold_type_name, normalise_document
 
 __all__ = [
     "RULES",
-    "element_of_path",
     "fold_type_name",
     "list_sections",
     "normalise_document",
-    "suggest_ids",
     "validate_document",
 ]

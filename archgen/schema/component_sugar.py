@@ -7,14 +7,15 @@ from __future__ import annotations
 
 import re
 from collections import deque
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, diagnose_repetition
 from archgen.diagnostics.suggestions import did_you_mean
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
+from archgen.frozen import NamedTuple
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, list_entries
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from archgen.syntax.yaml_tree import YamlDocument, YamlNode
 
@@ -67,26 +68,22 @@ class _Holder(NamedTuple):
 
 def _list_holders(root: MappingNode) -> Iterator[_Holder]:
     """Yield all that may hold components, outer ones first. What is replaced on the way is followed."""
-    waiting = deque((entry.key, entry.value, False) for entry in _list_entries(root.get("component_types")))
-    waiting.extend((entry.key, entry.value, True) for entry in _list_entries(root.get("groups")))
+    waiting = deque((entry.key, entry.value, False) for entry in list_entries(root, "component_types"))
+    waiting.extend((entry.key, entry.value, True) for entry in list_entries(root, "groups"))
     while waiting:
         holder_id, body, is_group = waiting.popleft()
         if isinstance(body, MappingNode):
             yield _Holder(holder_id, body, is_group)
             # Listed only now: who got this holder has replaced its lists meanwhile.
-            parts = _list_entries(body.get("components"))
+            parts = list_entries(body, "components")
             waiting.extend((f"{holder_id}.{entry.key}", entry.value, False) for entry in parts)
-
-
-def _list_entries(node: YamlNode | None) -> list[MappingEntry]:
-    return list(node) if isinstance(node, MappingNode) else []
 
 
 def _expand_components(holder: MappingNode, diagnostics: list[Diagnostic]) -> None:
     for side in _PORT_SIDES:
         ports = holder.entries.get(side)
         if ports is not None and isinstance(ports.value, SequenceNode):
-            ports.value = _make_ports(ports.value, diagnostics)
+            ports.value = _name_items(ports.value, "type", name_port_after, diagnostics)
     components = holder.entries.get("components")
     if components is None:
         return
@@ -96,25 +93,20 @@ def _expand_components(holder: MappingNode, diagnostics: list[Diagnostic]) -> No
         components.value = _nest_dotted_ids(components.value, diagnostics)
 
 
-def _make_ports(listed: SequenceNode, diagnostics: list[Diagnostic]) -> MappingNode:
-    """Return ports of the listed types: `[Laser pose]` is `{laser_pose: {type: Laser pose}}`."""
-    ports = MappingNode({}, listed.span)
+def _name_items(
+    listed: SequenceNode, key: str, name_item: Callable[[str], str], diagnostics: list[Diagnostic]
+) -> MappingNode:
+    """Return elements of the listed types: `[Laser pose]` is `{laser_pose: {type: Laser pose}}`, `[lidar]` is `{lidar: {is: lidar}}`."""
+    elements = MappingNode({}, listed.span)
     for item in listed.items:
         if isinstance(item, ScalarNode):
-            body = MappingNode({"type": MappingEntry("type", item.span, item)}, item.span)
-            _add_entry(ports, MappingEntry(name_port_after(item.text), item.span, body), diagnostics)
-    return ports
+            body = MappingNode({key: MappingEntry(key, item.span, item)}, item.span)
+            _add_entry(elements, MappingEntry(name_item(item.text), item.span, body), diagnostics)
+    return elements
 
 
 def _make_instances(listed: SequenceNode, diagnostics: list[Diagnostic]) -> MappingNode:
-    """Return instances of the listed component types: `[lidar]` is `{lidar: {is: lidar}}`."""
-    components = MappingNode({}, listed.span)
-    for item in listed.items:
-        if isinstance(item, ScalarNode):
-            body = MappingNode({"is": MappingEntry("is", item.span, item)}, item.span)
-            name = item.text.split("<", 1)[0].rpartition(".")[2]
-            _add_entry(components, MappingEntry(name, item.span, body), diagnostics)
-    return components
+    return _name_items(listed, "is", lambda text: text.split("<", 1)[0].rpartition(".")[2], diagnostics)
 
 
 def _add_entry(mapping: MappingNode, entry: MappingEntry, diagnostics: list[Diagnostic]) -> None:
@@ -174,9 +166,8 @@ def _find_inner(components: MappingNode, outer_id: str, entry: MappingEntry) -> 
 def _move_targets(holder: MappingNode, diagnostics: list[Diagnostic]) -> None:
     """Write the `to` of each output as `from` of the inputs that it names, which stand beside it."""
     components = holder.get("components")
-    for component in _list_entries(components):
-        outputs = component.value.get("outputs") if isinstance(component.value, MappingNode) else None
-        for output in _list_entries(outputs):
+    for component in list_entries(components):
+        for output in list_entries(component.value, "outputs"):
             # Taken out of the output: from here on there is one way to write a connection.
             target_entry = output.value.entries.pop("to", None) if isinstance(output.value, MappingNode) else None
             if target_entry is not None and isinstance(components, MappingNode):

@@ -13,7 +13,7 @@ from archgen.diagnostics.suggestions import find_closest
 from archgen.schema import key_places, key_wording
 from archgen.schema.language_schema import load_schema, resolve_part
 from archgen.schema.schema_wording import add_article, element_of_path
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, list_entries
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -80,7 +80,7 @@ def _mend_keys(
     elements = holder.entries[name].value
     previous: MappingEntry | None = None
     is_reported = False
-    for element in list(elements) if isinstance(elements, MappingNode) else ():
+    for element in list_entries(elements):
         above = previous.value if previous else None
         strange_keys = _list_strange_keys(element.value, element_part)
         if strange_keys and element.key in element_part["properties"] and _lacks_key(above, element.key):
@@ -115,7 +115,7 @@ def _mend_elements(elements: MappingNode, element_part: SchemaPart, path: KeyPat
     """Mend elements among the keys of another element: its siblings, or what it holds by id."""
     for element in list(elements):
         body = element.value
-        for entry in list(body) if isinstance(body, MappingNode) else ():
+        for entry in list_entries(body):
             if entry.key in element_part["properties"]:
                 continue
             target = _find_home(elements, body, entry, element_part)

@@ -15,15 +15,16 @@ from typing import TYPE_CHECKING, Any
 import jsonschema_rs
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
-from archgen.schema import schema_wording
+from archgen.diagnostics.source_span import NO_SPAN
+from archgen.language.language_tables import SECTION_KINDS
 from archgen.schema.language_schema import load_schema
 from archgen.schema.parameter_forms import DECLARATION_KEYS
-from archgen.schema.schema_wording import ErrorPlace
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, find_value, list_entries
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
+    from archgen.schema.schema_wording import ErrorPlace
     from archgen.syntax.yaml_tree import MappingEntry, YamlDocument, YamlNode
 
 _USABLE_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,199}\Z", re.ASCII)
@@ -114,7 +115,7 @@ def _record_error(
     seen_paths: set[tuple[str | int, ...]],
 ) -> None:
     # Sound files, which are nearly all, need no words for what is wrong with keys.
-    from archgen.schema import key_wording
+    from archgen.schema import key_wording, schema_wording
 
     # `seen_paths` are those already reported: one finding for each place, the first one, which is a wrong type if any.
     place = _locate_error(document.root, [_remove_key_mark(step) for step in error.instance_path])
@@ -155,6 +156,8 @@ def _locate_error(root: MappingNode, path: list[str | int]) -> ErrorPlace:
             node = entry.value
         elif isinstance(node, SequenceNode):
             node = node.items[int(step)]
+    from archgen.schema.schema_wording import ErrorPlace
+
     return ErrorPlace(tuple(path), node, parent, entry)
 
 
@@ -168,12 +171,12 @@ def _find_schema_part(path: Iterable[str | int]) -> dict[str, Any]:
 
 # Stands in for a wrong list entry until all are found: removing one at once would shift the indices of the others.
 # Compared by identity, and gone from the tree when validation returns.
-_HOLE_NODE = ScalarNode(None, "", schema_wording.NO_DOCUMENT_SPAN)
+_HOLE_NODE = ScalarNode(None, "", NO_SPAN)
 _KEPT_LIST_KEYS = frozenset({"from", "implements", "through"})
 """Keys whose absence a rule reports. Where nothing sound is left of one, an empty list keeps the fact that it was
 written, so that the same mistake is not reported a second time as a missing key.
 """
-_KEYS_OF_IDS = schema_wording.SECTIONS_BY_ID | {
+_KEYS_OF_IDS = frozenset(SECTION_KINDS) | {
     "components",
     "inputs",
     "outputs",
@@ -195,7 +198,7 @@ def _prune_node(place: ErrorPlace, key: str | None) -> None:
         place.parent.items[int(place.path[-1])] = _HOLE_NODE
     elif isinstance(place.parent, MappingNode) and place.entry is not None:
         if _is_kept_list(place.path):
-            place.entry.value = SequenceNode([], schema_wording.NO_DOCUMENT_SPAN)
+            place.entry.value = SequenceNode([], NO_SPAN)
         # An empty value below an id declares the element, as in `rgbd:`; normalising turns it into `{}`.
         elif len(place.path) > 1 and (place.path[-2] in _KEYS_OF_IDS or _is_part_of_declaration(place.path)):
             place.entry.value = ScalarNode(None, "", place.node.span)
@@ -249,8 +252,7 @@ def find_swallowed_components(document: YamlDocument) -> Iterator[Diagnostic]:
 
     A group that has components besides is left alone: its description may well show how a project is written.
     """
-    groups = document.root.get("groups")
-    for group in groups if isinstance(groups, MappingNode) else ():
+    for group in list_entries(document.root, "groups"):
         body = group.value
         if isinstance(body, MappingNode) and "components" not in body.entries and "description" in body.entries:
             yield from _check_description(body.entries["description"], group.key)
@@ -276,10 +278,10 @@ _HOLDING_KEYS = frozenset({"components", "is", "same_as"})
 
 def mend_exchanged_ports(document: YamlDocument) -> Iterator[Diagnostic]:
     """Report components whose outputs are references and whose inputs are types, and exchange the two in the tree."""
-    for group in _list_entries(document.root.get("groups")):
-        for component in _list_entries(_get_child(group.value, "components")):
+    for group in list_entries(document.root, "groups"):
+        for component in list_entries(group.value, "components"):
             body = component.value
-            inputs, outputs = _get_child(body, "inputs"), _get_child(body, "outputs")
+            inputs, outputs = find_value(body, "inputs"), find_value(body, "outputs")
             # What holds components passes on what they send: its outputs are references, and its inputs may be types.
             is_leaf = isinstance(body, MappingNode) and _HOLDING_KEYS.isdisjoint(body.entries)
             if isinstance(body, MappingNode) and is_leaf and _are_references(outputs) and _are_types(inputs):
@@ -303,7 +305,7 @@ def _diagnose_exchange(component: MappingNode, component_id: str) -> Diagnostic:
 def _are_references(ports: YamlNode | None) -> bool:
     """Whether every port says where something comes from, and at least one by a dotted path."""
     has_dotted_path = False
-    for port in _list_entries(ports):
+    for port in list_entries(ports):
         for text in _list_texts(port.value, "from"):
             # Nearly always true of the first output: it has a type, and nothing else is looked at.
             if _TYPE_SIGN.search(text):
@@ -314,9 +316,9 @@ def _are_references(ports: YamlNode | None) -> bool:
 
 def _are_types(ports: YamlNode | None) -> bool:
     """Whether every port says of what type it is, and at least one by a text that no reference can be."""
-    types = [text for port in _list_entries(ports) for text in _list_texts(port.value, "type")]
+    types = [text for port in list_entries(ports) for text in _list_texts(port.value, "type")]
     names_source = any(
-        "from" in port.value.entries for port in _list_entries(ports) if isinstance(port.value, MappingNode)
+        "from" in port.value.entries for port in list_entries(ports) if isinstance(port.value, MappingNode)
     )
     return not names_source and any(map(_TYPE_SIGN.search, types)) and not any(map(_DOTTED_PATH.match, types))
 
@@ -326,11 +328,3 @@ def _list_texts(port: YamlNode, key: str) -> list[str]:
     node = port.get(key) if isinstance(port, MappingNode) else port
     items = node.items if isinstance(node, SequenceNode) else [node]
     return [item.text for item in items if isinstance(item, ScalarNode) and item.value is not None]
-
-
-def _get_child(node: YamlNode, key: str) -> YamlNode | None:
-    return node.get(key) if isinstance(node, MappingNode) else None
-
-
-def _list_entries(node: YamlNode | None) -> list[MappingEntry]:
-    return list(node) if isinstance(node, MappingNode) else []

@@ -6,13 +6,14 @@ The validator's own messages quote the schema's patterns and Python values, whic
 from __future__ import annotations
 
 import re
-from typing import Any, NamedTuple
+from typing import Any
 
 from archgen.diagnostics import odd_characters
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import AskedName, Diagnostic
-from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean, did_you_shorten
+from archgen.frozen import NamedTuple
 from archgen.language.key_paths import find_part
 from archgen.language.language_tables import OFFERS, SECTION_KINDS
 from archgen.schema import list_wording
@@ -20,7 +21,6 @@ from archgen.schema.language_schema import load_schema, resolve_part
 from archgen.schema.quantity_wording import clip_text, describe_wrong_quantity, find_dimension
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
 
-NO_DOCUMENT_SPAN = NO_SPAN
 _BOOLEAN_WORDS = {
     "yes": "true",
     "on": "true",

@@ -7,17 +7,16 @@ becomes `{}`. Normalising twice changes nothing.
 from __future__ import annotations
 
 import unicodedata
-from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, diagnose_repetition
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field, replace
 from archgen.language.key_paths import SLICE
 from archgen.language.language_tables import DATA_PARTS, ENTRIES, KEYS, LISTED_PARTS, SHORT_KEYS
 from archgen.model.generic_names import write_generic_name
 from archgen.schema import component_sugar
 from archgen.schema.parameter_forms import expand_parameters
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, find_value, list_entries
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -90,17 +89,15 @@ def normalise_document(document: YamlDocument) -> tuple[Diagnostic, ...]:
     _normalise_mapping(document.root, find_form(SLICE))
     _drop_empty_step_keys(document.root)
     review = document.root.get("review")
-    accepted = review.get("accepted") if isinstance(review, MappingNode) else None
-    for entry in accepted if isinstance(accepted, MappingNode) else ():
+    for entry in list_entries(review, "accepted"):
         entry.value = _list_accepted(entry)
     return inner_diagnostics + type_diagnostics + sugar_diagnostics + indicator_diagnostics + parameter_diagnostics
 
 
 def _drop_empty_step_keys(root: MappingNode) -> None:
     """Drop the empty keys in the steps of use cases, in place: these are no elements by id."""
-    use_cases = root.get("use_cases")
-    for entry in use_cases if isinstance(use_cases, MappingNode) else ():
-        steps = entry.value.get("steps") if isinstance(entry.value, MappingNode) else None
+    for entry in list_entries(root, "use_cases"):
+        steps = find_value(entry.value, "steps")
         for step in steps.items if isinstance(steps, SequenceNode) else ():
             if isinstance(step, MappingNode):
                 _normalise_mapping(step, _PLAIN_FORM)
@@ -108,17 +105,15 @@ def _drop_empty_step_keys(root: MappingNode) -> None:
 
 def _normalise_libraries(document: YamlDocument) -> Iterator[Diagnostic]:
     """Normalise what a packed file holds of its libraries, each as if it were a file of its own."""
-    libraries = document.root.get("libraries")
-    for library in libraries if isinstance(libraries, MappingNode) else ():
+    for library in list_entries(document.root, "libraries"):
         if isinstance(library.value, MappingNode):
             yield from normalise_document(replace(document, root=library.value))
 
 
 def _normalise_changes(document: YamlDocument) -> Iterator[Diagnostic]:
     """Normalise what each variant writes over the project, each as if it were a file of its own."""
-    variants = document.root.get("variants")
-    for variant in variants if isinstance(variants, MappingNode) else ():
-        changes = variant.value.get("changes") if isinstance(variant.value, MappingNode) else None
+    for variant in list_entries(document.root, "variants"):
+        changes = find_value(variant.value, "changes")
         if isinstance(changes, MappingNode):
             yield from normalise_document(replace(document, root=changes))
 

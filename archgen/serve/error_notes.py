@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from archgen.diagnostics.diagnostic import Severity, sort_gravest_first
 from archgen.diagnostics.safe_text import make_visible
+from archgen.frozen import dataclass
 from archgen.pipeline import CheckedProject
 
 

@@ -10,9 +10,9 @@ import os
 import threading
 import time
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from pathlib import Path, PurePath
 
+from archgen.frozen import dataclass
 from archgen.syntax.file_patterns import YAML_ENDINGS
 
 Snapshot = Mapping[str, tuple[int, int, int]]

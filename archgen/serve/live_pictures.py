@@ -7,12 +7,12 @@ import threading
 import time
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 
 from archgen.emit import graphviz
 from archgen.emit.graphviz.worker_pool import DrawingWorker, create_worker
 from archgen.emit.picture import Picture
+from archgen.frozen import dataclass
 from archgen.products import report_cache
 from archgen.views.picture_shapes import Drawing
 

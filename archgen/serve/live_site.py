@@ -6,7 +6,6 @@ import gc
 import secrets
 import threading
 import time
-from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from archgen.emit import site
@@ -14,6 +13,7 @@ from archgen.emit.site import page_pictures
 from archgen.emit.site.chapter_html import ChapterWriter
 from archgen.emit.site.page_links import renew_ids
 from archgen.emit.site.script_files import EXPLORER_ANCHOR
+from archgen.frozen import dataclass, field, replace
 from archgen.pipeline import CheckedProject, UnknownVariantError, VersionCache
 from archgen.products.compared_versions import ProjectVersion
 from archgen.products.comparison_documents import read_version_before

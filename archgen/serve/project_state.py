@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from pathlib import Path
 
+from archgen.frozen import dataclass, replace
 from archgen.model.project_history import History
 from archgen.model.selector_evaluation import Selection
 from archgen.pipeline import CheckedProject, VersionCache, check_project, stand_in_variants

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 
 from archgen.emit import site
 from archgen.emit.site.matrix_files import build_matrix_files
 from archgen.emit.site.page_links import open_page
 from archgen.emit.site.script_files import build_explorer_files, build_search_files
+from archgen.frozen import dataclass
 from archgen.serve.project_state import ProjectState
 from archgen.views.explorer import make_explorer_map
 from archgen.views.pages.site_pages import make_pages

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field, replace
 from archgen.model.architecture import Architecture
 from archgen.simulation.chain_witnesses import find_witnesses
 from archgen.simulation.seeded_runs import LateRun

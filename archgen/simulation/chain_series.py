@@ -11,9 +11,9 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
 from itertools import accumulate, pairwise
-from typing import NamedTuple
+
+from archgen.frozen import NamedTuple, dataclass
 
 TimeRange = tuple[int, int]
 """Values from the first to the second are equally likely, and a range weighs as much as it is long; or one value,

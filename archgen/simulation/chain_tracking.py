@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import pairwise
 
+from archgen.frozen import dataclass, field
 from archgen.simulation.chain_series import ChainSeries, ChainTrace, TimeRange, compute_quantiles, measure_chain
 from archgen.simulation.job_activation import list_samplings
 from archgen.simulation.simulation_plan import SimulationPlan
@@ -71,7 +71,8 @@ def track_chain(plan: SimulationPlan, activity_ids: Sequence[str]) -> ChainTrack
         tuple(index for index, arc in enumerate(plan.arcs) if (arc.source, arc.target) == ends)
         for ends in pairwise(activity_ids)
     )
-    if not activity_ids or not all(wires):
+    # Of one element alone that is not simulated there is no wire to be missing.
+    if not activity_ids or activity_ids[0] not in activity_numbers or not all(wires):
         return None
     activities = tuple(activity_numbers[activity_id] for activity_id in activity_ids)
     selective = any(plan.wires[index].is_selective for ends in wires for index in ends)

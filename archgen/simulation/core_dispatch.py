@@ -103,6 +103,9 @@ def _start_thread(run: SimulationRun, now: int, thread: int, running: list[int])
             slice_time = min(slice_time, run.processors.switch_time)
         threads.time_after_slice[thread] = max(remaining - slice_time, 0)
         remaining = min(remaining, slice_time)
+        processor = threads.processor[thread]
+        run.processors.least_served[processor] = max(threads.served[thread], run.processors.least_served[processor])
+        threads.served[thread] += remaining
     running.append(thread)
     if run.log is not None:
         run.log.enter_state(run, thread, "runs")

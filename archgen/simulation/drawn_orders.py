@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
-from typing import NamedTuple
 
+from archgen.frozen import NamedTuple
 from archgen.simulation import executor_state
 from archgen.simulation.simulation_run import SimulationRun
 

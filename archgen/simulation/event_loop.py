@@ -12,10 +12,9 @@ from fractions import Fraction
 from heapq import heapify, heappop, heappush
 
 from archgen.simulation.core_dispatch import dispatch_threads
-from archgen.simulation.job_activation import fire_activity, passes_gate
+from archgen.simulation.job_activation import deliver_sample, enqueue_sample, fire_activity, passes_gate
 from archgen.simulation.job_completion import end_thread, finish_declared_job
 from archgen.simulation.resource_use import leave_resource
-from archgen.simulation.sample_arrival import deliver_sample, enqueue_sample
 from archgen.simulation.simulation_plan import ONCE, PERIODIC, SimulationPlan
 from archgen.simulation.simulation_run import (
     ACTIVITY_RELEASE,

@@ -14,11 +14,20 @@ from archgen.model.declared_timing import SchedulingOrder
 from archgen.simulation.run_state import Job
 from archgen.simulation.simulation_plan import TIMER, Processor, SimulationPlan
 
-WAIT_SET, FIRST_FIRST, LAST_FIRST, RANDOM_ORDER, FIXED_RANKS, FAVOURED_OTHERS, BY_PRIORITY, BY_DEADLINE, TAKE_TURNS = (
-    range(9)
-)
+(
+    WAIT_SET,
+    FIRST_FIRST,
+    LAST_FIRST,
+    RANDOM_ORDER,
+    FIXED_RANKS,
+    FAVOURED_OTHERS,
+    BY_PRIORITY,
+    BY_DEADLINE,
+    TAKE_TURNS,
+    LEAST_SERVED,
+) = range(10)
 """Orders: the wait set of rclcpp; first come first served; last come first served; at random; ranks drawn once; first come
-first served, but one activity after all others; by written priority; by deadline; in turns.
+first served, but one activity after all others; by written priority; by deadline; in turns; who was served least.
 """
 _ANY_SCHEDULER = (FIRST_FIRST, LAST_FIRST, RANDOM_ORDER, FIXED_RANKS, FAVOURED_OTHERS)
 _ANY_EXECUTOR = (WAIT_SET, WAIT_SET, *_ANY_SCHEDULER)
@@ -29,6 +38,7 @@ _WRITTEN_ORDERS: dict[SchedulingOrder, int] = {
     "non_preemptive": BY_PRIORITY,
     "edf": BY_DEADLINE,
     "round_robin": TAKE_TURNS,
+    "fair": LEAST_SERVED,
 }
 _ORDERS_BY_PRIORITY = (None, "fixed_priority", "non_preemptive")
 _SWITCH_NS = 5_000_000
@@ -148,6 +158,8 @@ class ThreadStates:
         self.ready_order: list[int] = []
         self.time_left: list[int] = []
         """Execution time until it ends or waits for a resource; -1 before the job starts."""
+        self.served: list[int] = []
+        """For how long it ran, or might have, where it was not behind all others."""
         self.time_after_slice: list[int] = []
         self.later_steps: list[list[tuple[int, int, int]]] = []
         """What comes then, last first: a resource, the time on it, and the execution time after it."""
@@ -162,6 +174,7 @@ class ThreadStates:
         """Add a thread and return its number."""
         for numbers in (self.callback, self.processor, self.urgency, self.ready_order, self.end_time, self.end_version):
             numbers.append(0)
+        self.served.append(0)
         for numbers in (self.time_after_slice, self.job_activation, self.firing_wire, self.job_number):
             numbers.append(0)
         self.last_core.append(-1)
@@ -192,7 +205,7 @@ class ProcessorStates:
         self.rank = dice.sample(range(len(plan.activities)), len(plan.activities))
         """The rank of each activity where ranks are drawn."""
         self.victim = _draw_victims(members, dice, last_turn)
-        self.uses_priority = [processor.order in _ORDERS_BY_PRIORITY for processor in processors]
+        self.uses_priority = [processor.order in (*_ORDERS_BY_PRIORITY, "fair") for processor in processors]
         # Also where priorities count, something may have none, or the same one: for that an order is drawn.
         other_orders = [None if processor.order in _ORDERS_BY_PRIORITY else processor.order for processor in processors]
         self.scheduler = _draw_orders(other_orders, _ANY_SCHEDULER, dice, last_turn)
@@ -201,9 +214,16 @@ class ProcessorStates:
             for index, (processor, scheduler) in enumerate(zip(processors, self.scheduler, strict=True))
         ]
         slice_time = max(1, int(dice.choice(_SLICES_NS) / plan.unit))
-        self.has_slices = TAKE_TURNS in self.scheduler or any(executor.is_serial for executor in plan.executors)
+        self.has_slices = not {TAKE_TURNS, LEAST_SERVED}.isdisjoint(self.scheduler) or any(
+            executor.is_serial for executor in plan.executors
+        )
         self.switch_time = max(1, int(_SWITCH_NS / plan.unit))
-        self.slice_time = [slice_time if scheduler == TAKE_TURNS else 0 for scheduler in self.scheduler]
+        self.slice_time = [
+            max(1, int(processor.turn / plan.unit)) if processor.turn else slice_time if scheduler == TAKE_TURNS else 0
+            for processor, scheduler in zip(processors, self.scheduler, strict=True)
+        ]
+        self.least_served = [0] * count
+        """How long the thread was served by then that began last, where the one comes first that was served least."""
         self.ready: list[list[tuple[int, int, int]]] = [[] for _ in processors]
         self.running: list[list[int]] = [[] for _ in processors]
         self.busy_time = [0] * count

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Literal, NamedTuple
+from typing import Literal
 
+from archgen.frozen import NamedTuple, dataclass, field
 from archgen.simulation.chain_series import ChainTrace, find_latest_passage, list_passed_jobs
 from archgen.simulation.chain_tracking import ChainTrack, track_chain
 from archgen.simulation.drawn_orders import DrawnOrder, list_drawn_orders

@@ -7,9 +7,9 @@ and always take the longest times, and three let some activity come after all it
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 
+from archgen.frozen import dataclass
 from archgen.simulation.chain_series import find_latest_passage
 from archgen.simulation.chain_tracking import ChainTrack, track_chain
 from archgen.simulation.drawn_orders import DrawnOrder, list_drawn_orders

@@ -5,13 +5,14 @@ itself.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
 from itertools import pairwise
 
+from archgen.frozen import dataclass
 from archgen.simulation.simulation_result import SimulationResult
 from archgen.timing.analysis import Analysis
 from archgen.timing.figures.figure_wording import format_duration
+from archgen.timing.system.fair_hosts import PREEMPTIVE_ORDERS
 from archgen.timing.system.timing_system import Activity, TimingSystem, is_selective_arc
 
 NOT_SIMULATED = (
@@ -64,6 +65,8 @@ def list_random_choices(system: TimingSystem) -> tuple[str, ...]:
         for key, executor in executors.items()
     )
     used_resources = {key for activity in activities for key in activity.uses}
+    open_hosts = {activity.host for activity in activities if activity.host} - system.fair_shares.keys()
+    open_hosts |= {host for (host, _), order in system.core_orders.items() if order in PREEMPTIVE_ORDERS - {"fair"}}
     choices = (
         (
             any(activity.period for activity in activities),
@@ -84,7 +87,7 @@ def list_random_choices(system: TimingSystem) -> tuple[str, ...]:
         (any(activity.conditional for activity in activities), "when a conditional output is published"),
         (any(activity.every > 1 for activity in activities), "where `every` begins to count"),
         (
-            any(activity.host and activity.priority is None for activity in activities),
+            any(activity.host in open_hosts and activity.priority is None for activity in activities),
             "who comes first among those without a priority (in three of eight runs one comes after all others)",
         ),
         (is_order_open, "the order in which an executor takes its callbacks"),
@@ -113,44 +116,32 @@ def list_default_figures(system: TimingSystem) -> tuple[DefaultFigure, ...]:
     hosts_without_cores = {
         activity.host for activity in working if activity.host and system.cores.get(activity.host) is None
     }
+
+    def list_lacking(lacks: Callable[[Activity], object]) -> tuple[str, ...]:
+        return tuple(activity.id for activity in working if lacks(activity))
+
     figures = (
-        DefaultFigure(
-            "wcet",
-            "0",
-            tuple(activity.id for activity in working if activity.wcet is None and activity.response is None),
-        ),
-        DefaultFigure(
-            "bcet", "0", tuple(activity.id for activity in working if activity.wcet and activity.bcet is None)
-        ),
-        DefaultFigure(
-            "jitter",
-            "none",
-            tuple(activity.id for activity in working if activity.period and "jitter" not in activity.places),
-        ),
+        DefaultFigure("wcet", "0", list_lacking(lambda each: each.wcet is None and each.response is None)),
+        DefaultFigure("bcet", "0", list_lacking(lambda each: each.wcet and each.bcet is None)),
+        DefaultFigure("jitter", "none", list_lacking(lambda each: each.period and "jitter" not in each.places)),
         DefaultFigure(
             "priority",
             "after all that have one",
-            tuple(
-                activity.id
-                for activity in working
-                if activity.host in hosts_with_priorities and activity.priority is None
-            ),
+            list_lacking(lambda each: each.host in hosts_with_priorities and each.priority is None),
         ),
-        DefaultFigure("host", "a core of its own", tuple(activity.id for activity in working if activity.host is None)),
-        DefaultFigure("cores", "1", tuple(sorted(host for host in hosts_without_cores if host))),
+        DefaultFigure("host", "a core of its own", list_lacking(lambda each: each.host is None)),
         DefaultFigure(
-            "calls",
-            "1 for each activation",
-            tuple(activity.id for activity in working if _uses_default_calls(system, activity)),
+            "scheduling", "fair", tuple(host for host in system.fair_shares if host not in system.host_orders)
         ),
+        DefaultFigure(
+            "scheduling", "fifo", tuple(each.id for each in system.resources.values() if each.is_order_assumed)
+        ),
+        DefaultFigure("cores", "1", tuple(sorted(host for host in hosts_without_cores if host))),
+        DefaultFigure("calls", "1 for each activation", list_lacking(lambda each: _uses_default_calls(system, each))),
         DefaultFigure(
             "latency",
             "the best that is written (0 without one), and on a link with a bandwidth the wait for it",
-            tuple(
-                dict.fromkeys(
-                    f"{activity.source} to {activity.target}" for activity in system.arcs if activity.worst is None
-                )
-            ),
+            tuple(dict.fromkeys(f"{arc.source} to {arc.target}" for arc in system.arcs if arc.worst is None)),
         ),
     )
     return tuple(default for default in figures if default.element_ids)

@@ -8,9 +8,9 @@ of a host, all of them where some thread may use a set, or cores of its own for 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 
+from archgen.frozen import dataclass
 from archgen.model.declared_timing import SchedulingOrder
 from archgen.timing.system.timing_system import Arc
 
@@ -159,6 +159,8 @@ class Processor:
     host: str | None
     cores: int
     order: SchedulingOrder | None = None
+    turn: Fraction | None = None
+    """How long a thread runs before one that was served less (ns), where cores are shared fairly."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import NamedTuple
 
+from archgen.frozen import NamedTuple, dataclass, field
 from archgen.simulation.chain_series import TimeRange, compute_quantiles
 from archgen.timing.analysis import ChainResult
 from archgen.timing.chains.chain_verdicts import SeenVerdict, judge_seen_share

@@ -40,35 +40,6 @@ NO_WIRE, ALL_WIRES, LOAD_ONLY = -1, -2, -3
 class SimulationRun:
     """One run with one seed. Read `activities`, `wires`, `processors` and `event_count` when it is over."""
 
-    __slots__ = (
-        "activities",
-        "aged_wires",
-        "answer_wires",
-        "callbacks",
-        "calls",
-        "changed_processors",
-        "changed_resources",
-        "draw_share",
-        "event_count",
-        "executors",
-        "heap",
-        "is_critical",
-        "log",
-        "now",
-        "outputs",
-        "plan",
-        "priority",
-        "processors",
-        "publish_share",
-        "resources",
-        "sequence",
-        "start_up",
-        "threads",
-        "wires",
-        "woken_executors",
-        "worst_share",
-    )
-
     def __init__(
         self, plan: SimulationPlan, seed: int, watched: Collection[int] = (), logged: Collection[int] = ()
     ) -> None:

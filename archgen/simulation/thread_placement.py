@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from archgen.frozen import replace
 from archgen.model.declared_timing import SchedulingOrder
 from archgen.simulation.simulation_plan import PlannedExecutor, Processor
 from archgen.timing.system.timing_system import Activity, TimingSystem
@@ -57,6 +58,9 @@ class ThreadPlacement:
         return self._number(host, (), Processor(host, host, len(shared_cores), order)), ()
 
     def _number(self, host: str | None, cores: tuple[int, ...], processor: Processor) -> int:
+        share = self.system.fair_shares.get(host or "")
+        if share is not None and processor.order in {None, "fair"}:
+            processor = replace(processor, order="fair", turn=share.turn * self.system.tick)
         if (host, cores) not in self.processor_numbers:
             self.processor_numbers[host, cores] = len(self.processors)
             self.processors.append(processor)

@@ -11,6 +11,7 @@ from archgen.simulation.executor_state import (
     FIRST_FIRST,
     FIXED_RANKS,
     LAST_FIRST,
+    LEAST_SERVED,
     RANDOM_ORDER,
     TAKE_TURNS,
     WAIT_SET,
@@ -63,7 +64,13 @@ def queue_thread(run: SimulationRun, thread: int) -> None:
         urgency = -1 - priority
     else:
         scheduler = processors.scheduler[processor]
-        urgency = draw_urgency(run, scheduler, activity, threads.job_activation[thread], victim)
+        if scheduler == LEAST_SERVED:
+            threads.served[thread] = max(threads.served[thread], processors.least_served[processor])
+        urgency = (
+            threads.served[thread]
+            if scheduler == LEAST_SERVED
+            else draw_urgency(run, scheduler, activity, threads.job_activation[thread], victim)
+        )
     order = run.sequence
     if victim == activity and processors.scheduler[processor] == FAVOURED_OTHERS:
         # Of equal priorities too it comes last.

@@ -7,10 +7,11 @@ import shlex
 import shutil
 import sys
 from pathlib import Path
-from typing import Literal, NamedTuple
+from typing import Literal
 
 from archgen import git
 from archgen.emit import file_tree
+from archgen.frozen import NamedTuple
 from archgen.git.git_call import run_git
 from archgen.project.project_loading import load_project
 from archgen.syntax.file_patterns import YAML_ENDINGS

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -15,6 +14,7 @@ from typing import Any
 from archgen import pipeline
 from archgen.checking import code_ownership
 from archgen.emit.codeowners_file import CODEOWNERS_PATHS
+from archgen.frozen import dataclass
 from archgen.model.review_settings import agreement_file
 from archgen.pipeline import CheckedProject
 from archgen.products import editor_schema_file, editor_schema_marks

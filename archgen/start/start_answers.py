@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
 from typing import Literal
 
 from archgen.emit.codeowners_file import REVIEWER_HANDLE
+from archgen.frozen import dataclass, replace
 from archgen.model import element_ids
 from archgen.model.path_resolver import title_from_id
 

@@ -65,10 +65,12 @@ class FolderFiles:
         It never waits for the other end of a pipe and never follows a link out of the folder.
         """
         full_path = self.root / path
-        if not Path(os.path.realpath(full_path)).is_relative_to(os.path.realpath(self.root)):
+        real_path = Path(os.path.realpath(full_path))
+        if not real_path.is_relative_to(os.path.realpath(self.root)):
             return FileRefusal("this link leads out of the project's folder", "copy the file into the project")
         try:
-            return _read_regular_file(full_path)
+            # It leads to no link now: one that is there later was put there since.
+            return _read_regular_file(real_path, flags=getattr(os, "O_NOFOLLOW", 0))
         except OSError as error:
             return FileRefusal(_describe_read_error(full_path, error))
 
@@ -143,15 +145,15 @@ def open_named_file(path: Path) -> Iterator[BinaryIO]:
         yield stream
 
 
-def _open_without_waiting(path: Path) -> BinaryIO:
+def _open_without_waiting(path: Path, flags: int = 0) -> BinaryIO:
     # Opened first, then examined by its descriptor: a path checked before it is opened could be swapped in between.
     # O_NONBLOCK keeps the call from waiting for a pipe's writer; O_BINARY exists on Windows only.
-    descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+    descriptor = os.open(path, flags | os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     return os.fdopen(descriptor, "rb")
 
 
-def _read_regular_file(path: Path, max_bytes: int = MAX_BYTES) -> bytes | FileRefusal:
-    with _open_without_waiting(path) as stream:
+def _read_regular_file(path: Path, max_bytes: int = MAX_BYTES, flags: int = 0) -> bytes | FileRefusal:
+    with _open_without_waiting(path, flags) as stream:
         mode = os.fstat(stream.fileno()).st_mode
         if not stat.S_ISREG(mode):
             return FileRefusal(_describe_file_kind(mode))

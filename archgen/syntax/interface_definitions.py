@@ -7,13 +7,11 @@ All errors of a file are reported at once, each with its position. What is refus
 from __future__ import annotations
 
 import re
-from dataclasses import field
-from typing import NamedTuple
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Rule, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass, field
 from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField
 from archgen.syntax.interface_literals import (
     FieldType,

@@ -8,10 +8,9 @@ Read the type of a field in an interface definition: builtin or a message, perha
 from __future__ import annotations
 
 import re
-from typing import NamedTuple
 
 from archgen.diagnostics.suggestions import did_you_mean
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass
 
 FLOAT_TYPES = frozenset({"float32", "float64"})
 STRING_TYPES = frozenset({"string", "wstring"})

@@ -14,11 +14,11 @@ from __future__ import annotations
 import posixpath
 from collections.abc import Iterator, Mapping
 from pathlib import Path, PurePosixPath
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass
 
 MAX_BYTES = 16 * 1024 * 1024
 """The largest file that is read. A project of 10,000 components in one file has about 6 MB."""

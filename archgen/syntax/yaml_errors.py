@@ -6,11 +6,11 @@ libyaml and PyYAML's own parser word some problems differently; the texts below 
 from __future__ import annotations
 
 import re
-from typing import NamedTuple
 
 from archgen.diagnostics import odd_characters
 from archgen.diagnostics.diagnostic import Diagnostic, Label, diagnose_repetition
 from archgen.diagnostics.source_span import Span
+from archgen.frozen import NamedTuple
 
 LONE_SURROGATE = re.compile("[\ud800-\udfff]")
 """Half of a character beyond U+FFFF (a surrogate), which no text may hold alone. libyaml refuses it by itself."""

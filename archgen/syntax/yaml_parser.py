@@ -6,7 +6,6 @@ Speed matters here more than anywhere: the walk is one function with local names
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from sys import intern
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +13,7 @@ import yaml
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
+from archgen.frozen import dataclass, field
 from archgen.syntax import yaml_comments, yaml_errors
 from archgen.syntax.yaml_tree import (
     NON_TEXT_STARTS,

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass
@@ -53,6 +53,31 @@ class MappingEntry:
         """Return the key, where it is written, with another value."""
         return MappingEntry(self.key, self.key_span, value)
 
+    def with_entries(self, entries: dict[str, MappingEntry]) -> MappingEntry:
+        """Return the key, where it is written, with a mapping of other entries in the place of its value."""
+        return self.with_value(MappingNode(entries, self.value.span))
+
+    def change_each(self, change: EntryChange) -> MappingEntry:
+        """Return the key with a mapping whose entries are changed; itself where none is, or where it has none."""
+        changed = self.value.change_each(change) if isinstance(self.value, MappingNode) else self.value
+        return self if changed is self.value else self.with_value(changed)
+
+    def change_keys(self, changes: Mapping[str, EntryChange]) -> MappingEntry:
+        """Return the key with a mapping in which what stands at some keys is changed."""
+        return self.change_each(lambda entry: changes[entry.key](entry) if entry.key in changes else entry)
+
+    def keep_items(self, is_kept: Callable[[YamlNode], bool]) -> MappingEntry | None:
+        """Return the key with what stays of its list, or of its only item; None where nothing does."""
+        items = self.value.items if isinstance(self.value, SequenceNode) else [self.value]
+        kept = [item for item in items if is_kept(item)]
+        if len(kept) == len(items):
+            return self
+        return self.with_value(SequenceNode(kept, self.value.span)) if kept else None
+
+
+EntryChange = Callable[[MappingEntry], MappingEntry | None]
+"""Makes of an entry another; of one that goes, None."""
+
 
 @dataclass(slots=True)
 class MappingNode:
@@ -71,6 +96,16 @@ class MappingNode:
     def with_entries(self, entries: dict[str, MappingEntry]) -> MappingNode:
         """Return the mapping, where it is written, with other entries."""
         return MappingNode(entries, self.span, self.declares)
+
+    def without(self, *keys: str) -> MappingNode:
+        """Return the mapping without some keys."""
+        return MappingNode({key: entry for key, entry in self.entries.items() if key not in keys}, self.span)
+
+    def change_each(self, change: EntryChange) -> MappingNode:
+        """Return the mapping with its entries changed, itself where none is; the mapping itself is not changed."""
+        kept = {entry.key: new for entry in self if (new := change(entry)) is not None}
+        is_same = len(kept) == len(self.entries) and all(kept[entry.key] is entry for entry in self)
+        return self if is_same else self.with_entries(kept)
 
     def __iter__(self) -> Iterator[MappingEntry]:
         """Iterate over the entries (not the keys), in order."""
@@ -109,6 +144,35 @@ def list_spans(node: YamlNode) -> Iterator[Span]:
             yield from list_spans(item)
     else:
         yield node.span
+
+
+def find_value(node: YamlNode | None, *path: str) -> YamlNode | None:
+    """Return what stands in a tree at a path of keys, None where it leads nowhere."""
+    for key in path:
+        if not isinstance(node, MappingNode):
+            return None
+        node = node.get(key)
+    return node
+
+
+def list_entries(node: YamlNode | None, *path: str) -> tuple[MappingEntry, ...]:
+    """Return the entries of the mapping that stands in a tree at a path of keys; of anything else none."""
+    found = find_value(node, *path)
+    return tuple(found) if isinstance(found, MappingNode) else ()
+
+
+def change_at(node: YamlNode, path: Sequence[str], change: Callable[[YamlNode], YamlNode]) -> YamlNode:
+    """Return a tree with what stands at a path of keys changed; `*` stands for each key. The tree itself is not changed."""
+    if not path:
+        return change(node)
+    if not isinstance(node, MappingNode):
+        return node
+    changed = {
+        entry.key: entry.with_value(value)
+        for entry in node
+        if path[0] in {"*", entry.key} and (value := change_at(entry.value, path[1:], change)) is not entry.value
+    }
+    return node.with_entries({**node.entries, **changed}) if changed else node
 
 
 def node_to_data(node: YamlNode) -> object:

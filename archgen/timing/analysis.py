@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Literal
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field, replace
 from archgen.model.declared_timing import ActivityBehaviour, SchedulingOrder
 from archgen.model.quantity import write_share
 from archgen.timing.figures.figure_wording import describe_timing_value, format_duration

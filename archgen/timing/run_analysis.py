@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from operator import attrgetter
 
+from archgen.frozen import replace
 from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, Reason, ResourceLoad, ResponseTime
 from archgen.timing.load.host_loads import (

@@ -156,6 +156,11 @@ def port_link(architecture: Architecture, port: Input | Output) -> Inlines:
     return (component_link(component), share_text(" · "), share_text(port.name, code=True))
 
 
+def port_id_link(architecture: Architecture, port_id: str) -> Inlines:
+    """Link to the component of the port of an id, followed by the port's own name."""
+    return port_link(architecture, architecture.outputs.get(port_id) or architecture.inputs[port_id])
+
+
 def frame_link(name: str) -> Inlines:
     """Link to a coordinate frame."""
     return (Text(name, ref=f"frame:{name}", code=True),)

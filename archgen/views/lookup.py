@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import field
 from typing import TypeVar
 
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.frozen import dataclass, replace
+from archgen.frozen import dataclass, field, replace
 from archgen.model.architecture import Architecture, Chain
 from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.component_nesting import find_component, list_members, list_surrounding, list_written_connections
@@ -169,6 +168,11 @@ def make_lookup(
     chains_for_requirement = group_values(
         (r, chain) for chain in architecture.chains.values() for r in chain.requirements
     )
+    ports: tuple[Input | Output, ...] = (*architecture.inputs.values(), *architecture.outputs.values())
+    media: dict[str, dict[str, None]] = {}
+    for port in ports:
+        if port.type:
+            media.setdefault(port.type, {})[port.medium] = None
     return Lookup(
         architecture,
         all_findings,
@@ -185,7 +189,7 @@ def make_lookup(
             architecture, (*components_for_requirement, *chains_for_requirement), _list_chain_verdicts(timing_lookup)
         ),
         outputs_of_type=group_values((o.type, o) for o in architecture.outputs.values() if o.type),
-        other_types=_find_other_types(architecture),
+        other_types={name: tuple(words) for name, words in media.items() if ROS not in words},
         frames_of=group_values(
             (frame.by, frame)
             for frame in architecture.frames.values()
@@ -222,16 +226,6 @@ def _list_ends(
         for component_id in (port.component, *(output.component for output in outputs)):
             yield component_id, position
             yield from ((shell, position) for shell in list_surrounding(architecture, component_id))
-
-
-def _find_other_types(architecture: Architecture) -> dict[str, tuple[str, ...]]:
-    """Return the types that no port sends or reads over ROS, each with its media."""
-    ports: tuple[Input | Output, ...] = (*architecture.inputs.values(), *architecture.outputs.values())
-    media: dict[str, dict[str, None]] = {}
-    for port in ports:
-        if port.type:
-            media.setdefault(port.type, {})[port.medium] = None
-    return {name: tuple(words) for name, words in media.items() if ROS not in words}
 
 
 def _containing_element(architecture: Architecture, element_id: str) -> str:

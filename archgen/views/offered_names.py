@@ -6,9 +6,10 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
 from archgen.diagnostics.safe_text import make_visible
+from archgen.frozen import NamedTuple
 from archgen.language.language_tables import SECTION_KINDS
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component

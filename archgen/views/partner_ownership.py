@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
+from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture, Partner
 from archgen.model.element_ids import ElementFiles
 

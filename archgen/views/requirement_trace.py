@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import field
 
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.model.architecture import Architecture
 from archgen.model.requirement import add_above, add_wholes, index_parts
 from archgen.views.shapes import Status

@@ -9,10 +9,9 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import field
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
-from archgen.frozen import dataclass, replace
+from archgen.frozen import NamedTuple, dataclass, field, replace
 from archgen.views.matrix_shapes import Matrix
 
 Record = Mapping[str, Any]
@@ -76,6 +75,9 @@ def split_anchor(anchor: str) -> tuple[str, str]:
     return kind, subject
 
 
+ColumnAlignment = Literal["left", "right", "centre"]
+
+
 @dataclass(frozen=True, slots=True)
 class Column:
     """A column of a table: its heading, its share of the width and its alignment.
@@ -85,8 +87,16 @@ class Column:
 
     title: str
     weight: float = 1.0
-    align: Literal["left", "right", "centre"] = "left"
+    align: ColumnAlignment = "left"
     key: str = ""
+
+
+def make_columns(*columns: str | tuple[str, float] | tuple[str, float, ColumnAlignment] | Column) -> tuple[Column, ...]:
+    """Return columns by their headings, those with a weight and an alignment as tuples."""
+    return tuple(
+        each if isinstance(each, Column) else Column(each) if isinstance(each, str) else Column(*each)
+        for each in columns
+    )
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from archgen.bringup.plan_shapes import DroppedWait, StartStep, Wait, WaitEnd, WaitReason
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.common_wording import join_first, join_words
 from archgen.frozen import dataclass
 from archgen.model.node import Endpoint, Node
 from archgen.model.quantity import Quantity
@@ -52,8 +52,7 @@ def describe_reason(wait: Wait) -> str:
     if wait.reason == "manages":
         return "manages it"
     outputs = list(dict.fromkeys(output for output, _ in wait.ports))
-    more = f" and {len(outputs) - _MAX_PORTS} more" if len(outputs) > _MAX_PORTS else ""
-    return f"{_PORT_VERBS[wait.reason]} {', '.join(outputs[:_MAX_PORTS])}{more}"
+    return f"{_PORT_VERBS[wait.reason]} {join_first(outputs, _MAX_PORTS)}"
 
 
 def describe_dropped(dropped: DroppedWait, steps: Mapping[str, StartStep]) -> str:

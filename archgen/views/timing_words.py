@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from archgen.model.declared_timing import InputTiming, Timing
+from archgen.model.declared_timing import InputTiming, Timing, list_fair_figures
 from archgen.model.deployment import Host
 from archgen.model.node import Node
 
@@ -107,8 +107,9 @@ def format_callback_groups(node: Node) -> str:
 
 
 def format_core_orders(host: Host) -> str:
-    """Format the orders of single cores: `core 0 edf, core 3 fifo`."""
-    return ", ".join(f"core {core} {order}" for core, order in host.core_scheduling.items())
+    """Format the figures of a fair order and the orders of single cores: `slice 3 ms, core 0 edf, core 3 fifo`."""
+    figures = [f"{name.replace('_', ' ')} {figure}" for name, figure in list_fair_figures(host.fair)]
+    return ", ".join([*figures, *(f"core {core} {order}" for core, order in host.core_scheduling.items())])
 
 
 def _format_timed_outputs(timing: Timing) -> list[str]:

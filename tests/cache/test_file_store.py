@@ -52,6 +52,24 @@ def test_a_disk_that_takes_nothing_is_no_error(tmp_path: Path, monkeypatch: pyte
     assert len(list(tmp_path.iterdir())) == 1
 
 
+def test_what_a_killed_run_left_goes_among_the_oldest(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    files = FileStore(tmp_path, ".kind", 2)
+
+    def kill(*_: object) -> None:
+        raise SystemExit
+
+    monkeypatch.setattr("os.replace", kill)
+    monkeypatch.setattr("os.unlink", lambda _: None)
+    with pytest.raises(SystemExit):
+        files.store("a", b"one")
+    monkeypatch.undo()
+    (left_over,) = tmp_path.iterdir()
+    os.utime(left_over, (1, 1))
+    files.store("b", b"two")
+    files.store("c", b"three")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["b.kind", "c.kind"]
+
+
 def test_digests_take_lone_surrogates_and_missing_files() -> None:
     assert digest_text("\ud800") != digest_text("\udfff")
     assert digest_bytes(None) is None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -74,6 +75,7 @@ def test_a_stream_that_is_not_utf_8(broken: Path) -> None:
 
 
 INTERRUPTED = """
+import signal
 import sys
 
 class Finder:
@@ -94,6 +96,23 @@ def test_an_interrupt_while_archgen_is_imported_shows_no_traceback(broken: Path,
     (tmp_path / "interrupted.py").write_text(INTERRUPTED.replace("MODULE", repr(module)))
     ran = _shell(f"{sys.executable} {tmp_path / 'interrupted.py'} check $project", broken)
     assert (ran.returncode, ran.stdout, ran.stderr.lstrip()) == (130, "", "archgen: stopped\n")
+
+
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129)])
+def test_what_would_end_it_at_once_stops_it_as_an_interrupt_does(
+    broken: Path, number: signal.Signals, status: int, tmp_path: Path
+) -> None:
+    stopped = INTERRUPTED.replace("MODULE", repr("archgen.pipeline")).replace(
+        "raise KeyboardInterrupt", f"import signal; signal.raise_signal({int(number)})"
+    )
+    (tmp_path / "stopped.py").write_text(stopped)
+    ran = _shell(f"{sys.executable} {tmp_path / 'stopped.py'} check $project", broken)
+    assert (ran.returncode, ran.stdout, ran.stderr.lstrip()) == (status, "", "archgen: stopped\n")
+    # What a caller ignores, as `nohup` does, stays ignored.
+    ran = _shell(
+        f"trap '' {number.name.removeprefix('SIG')}; {sys.executable} {tmp_path / 'stopped.py'} check $project", broken
+    )
+    assert ran.returncode == 1
 
 
 def test_hardly_anything_is_imported_before_an_interrupt_is_caught(broken: Path) -> None:

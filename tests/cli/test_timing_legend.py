@@ -69,7 +69,7 @@ PLAIN = set(
     sure take taken takes than that the them there they this time to triggered until up wait was what whatever where
     whether which why work worked works world write written hosts hz ms us s any all overloaded sum triggers late
     between call calls end exactly begin beginnings began clocks each gap host jitter load next nothing overload proves response clock two says start since source these caller configurations
-    comes other way their prove trying tried would then set stored old messages used thread node nodes components component left waits together apart several
+    lead slice tick threads times comes other way their prove trying tried would then set stored old messages used thread node nodes components component left waits together apart several
     """.split()  # noqa: SIM905 - a text of words is read more easily than a list of strings
 )
 """Words that need no legend."""

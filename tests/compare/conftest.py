@@ -11,7 +11,7 @@ from archgen import pipeline
 from archgen.compare import Change, Comparison
 from archgen.compare.compare_versions import compare_versions
 from archgen.model.architecture import Architecture
-from archgen.products.comparison_input import make_comparison_input
+from archgen.products.compared_versions import make_comparison_input
 
 Compared = Callable[[str, str], Comparison]
 ComparedFolders = Callable[[Mapping[str, str], Mapping[str, str]], Comparison]

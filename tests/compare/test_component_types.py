@@ -16,7 +16,7 @@ from archgen.compare.kinds.key_spec import ReadContext
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.type_edits import TypeKey, find_type_edits, trace_origins
 from archgen.emit.data.comparison_json import write_comparison_json
-from archgen.views.changes.reading_errors import ReadingErrors
+from archgen.views.changes.comparison_document import ReadingErrors
 from tests.compare.conftest import Compared
 from tests.compose.test_project_expansion import LONG, SHORT
 

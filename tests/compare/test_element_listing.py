@@ -12,7 +12,7 @@ from archgen.compare.element_listing import list_elements
 from archgen.compare.match_elements import match_elements
 from archgen.compare.normal_values import ElementTitle, to_plain_data
 from archgen.compare.version_pair import ComparedElement, ElementKey
-from archgen.products.comparison_input import make_comparison_input
+from archgen.products.compared_versions import make_comparison_input
 
 Elements = dict[ElementKey, ComparedElement]
 

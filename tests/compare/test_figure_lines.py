@@ -14,10 +14,9 @@ from archgen.compare.comparison import BoundaryChange
 from archgen.emit.data.comparison_json import comparison_record
 from archgen.views.agreement.partner_agreement import make_agreement
 from archgen.views.changes.boundary_lines import write_boundary_lines
-from archgen.views.changes.comparison_document import describe_comparison
+from archgen.views.changes.comparison_document import ReadingErrors, describe_comparison
 from archgen.views.changes.figure_lines import write_load_lines
 from archgen.views.changes.named_elements import name_partners
-from archgen.views.changes.reading_errors import ReadingErrors
 from tests.agreeing import checked, view
 from tests.compare.conftest import Compared
 from tests.compare.test_whom_a_change_concerns import CASES, HARVESTER
@@ -69,7 +68,10 @@ def test_what_is_told(compared: Compared, name: str) -> None:
 
 
 def test_a_host_whose_cores_nobody_counted_has_no_share(compared: Compared) -> None:
-    before, after = (text.replace("front: {cores: 2}", "front: {}") for text in (HARVESTER, _edit("a rate is halved")))
+    before, after = (
+        text.replace("front: {cores: 2, scheduling: fixed_priority}", "front: {scheduling: fixed_priority}")
+        for text in (HARVESTER, _edit("a rate is halved"))
+    )
     assert after not in {before, _edit("a rate is halved")}
     comparison = compared(before, after)
     assert write_load_lines(comparison, name_partners(comparison)) == ()

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from archgen.compare.finding_changes import judge_findings
+from archgen.compare.compare_versions import judge_findings
 from archgen.compare.matched_ids import MatchedIds
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import NO_SPAN

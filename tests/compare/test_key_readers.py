@@ -13,7 +13,7 @@ from archgen.compare.kinds.key_readers import READERS
 from archgen.compare.kinds.key_spec import ReadContext
 from archgen.compare.matched_ids import MatchedIds
 from archgen.language.comparison_tables import KEY_FACTS, KeyFacts
-from archgen.products.comparison_input import make_comparison_input
+from archgen.products.compared_versions import make_comparison_input
 from tests.compare.test_element_kinds import ROBOT
 
 OTHERWISE = """\

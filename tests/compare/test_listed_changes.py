@@ -7,7 +7,7 @@ from pathlib import Path
 from archgen import pipeline
 from archgen.compare.change_listing import list_changes
 from archgen.compare.compare_versions import compare_versions
-from archgen.products.comparison_input import make_comparison_input
+from archgen.products.compared_versions import make_comparison_input
 from tests.judged_projects import judge_ramcip
 
 BEFORE = """\

@@ -15,7 +15,7 @@ from archgen import pipeline
 from archgen.checking.checked_packing import pack_checked_project
 from archgen.compare import ArchitectureVersion, Change, Comparison
 from archgen.compare.compare_versions import compare_versions
-from archgen.products.comparison_input import make_comparison_input
+from archgen.products.compared_versions import make_comparison_input
 from archgen.syntax import yaml_writer as writer
 from tests.judged_projects import judge_ramcip
 from tests.running import RAMCIP

@@ -12,7 +12,7 @@ project: {id: harvester, title: Harvester}
 partners: {vega: Vega, orsa: Orsa, palma: Palma, kite: Kite}
 ros: {distro: jazzy}
 requirements: {R-1: Sees rows, R-5: Stops for people}
-hosts: {front: {cores: 2}, rear: {cores: 2}, arm: {cores: 1}}
+hosts: {front: {cores: 2, scheduling: fixed_priority}, rear: {cores: 2, scheduling: fixed_priority}, arm: {cores: 1, scheduling: fixed_priority}}
 links: {lan: {connects: [front, rear, arm], bandwidth: 100 Mbit/s}}
 types:
   Scan: {message: sensor_msgs/msg/LaserScan, size: 10 kB}
@@ -101,7 +101,7 @@ CASES = {
     "a message is larger": ([("size: 1 kB", "size: 500 kB")], ALL),
     "a distribution": ([("jazzy", "humble")], ALL),
     "work on a shared host takes longer": ([("limiter: {timing: {trigger: [persons], wcet: 1 ms", "limiter: {timing: {trigger: [persons], wcet: 9 ms")], ALL),
-    "a host loses a core": ([("arm: {cores: 1}", "arm: {cores: 2}")], "palma"),
+    "a host loses a core": ([("arm: {cores: 1, scheduling: fixed_priority}", "arm: {cores: 2, scheduling: fixed_priority}")], "palma"),
     "a link is slower": ([("100 Mbit/s", "10 Mbit/s")], "kite orsa palma vega"),
     "a link reaches a host no longer": ([("[front, rear, arm]", "[front, rear]")], ALL),
     "a deadline is relaxed": ([("400 ms", "500 ms")], "kite vega"),
@@ -133,7 +133,7 @@ CASES = {
     "a rate that nobody else reads": ([("ui: {timing: {rate: 1 Hz", "ui: {timing: {rate: 2 Hz")], "kite"),
     "an output is added that nobody reads": ([("outputs: {speed: Speed}", "outputs: {speed: Speed, steer: Speed}")], "orsa"),
     "a link that nothing crosses": ([("links: {lan", "links: {can: {connects: [front, arm]}, lan")], ""),
-    "a host's title": ([("rear: {cores: 2}", "rear: {title: Rear PC, cores: 2}")], ""),
+    "a host's title": ([("rear: {cores: 2, scheduling: fixed_priority}", "rear: {title: Rear PC, cores: 2, scheduling: fixed_priority}")], ""),
     "a chain's title": ([("halt: {", "halt: {title: Stop, ")], ""),
     "a group's title": ([("supervision:\n", "supervision:\n    title: Safety\n")], "kite"),
     "a tag": ([("planner: {", "planner: {tags: [slow], ")], "palma"),

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from archgen.derivation.inner_memory import mark_inner_memory
 from archgen.derivation.media_channels import derive_channels
-from archgen.derivation.writing_endpoints import find_node_parts
+from archgen.derivation.port_endpoints import find_node_parts
 from archgen.model.architecture import Architecture
 from archgen.model.node import Topic
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
+import threading
 from pathlib import Path
 
 import pytest
@@ -238,3 +240,81 @@ def test_what_comes_after_many_bytes_waits_on_disk(tmp_path: Path, monkeypatch: 
     assert write_tree(stored, tmp_path / "out").written == tuple(held.files)
     assert {path.name: path.read_bytes() for path in (tmp_path / "out").glob("*.txt")} == dict(files)
     assert write_tree(held, tmp_path / "out").unchanged == tuple(held.files)
+
+
+def test_what_killed_runs_left_is_removed_and_what_runs_hold_is_not(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    for folder in (tmp_path, out):
+        for name in ("killed__", "held____"):
+            (folder / f".archgen-new-{name}").mkdir(parents=True)
+            (folder / f".archgen-new-{name}" / "half").write_text("x")
+    (tmp_path / ".archgen-new-of-somebody-else").mkdir()
+    (tmp_path / ".archgen-new-a_link__").symlink_to(tmp_path / "held", target_is_directory=True)
+    (tmp_path / ".archgen-new-a_file__").write_text("own")
+    descriptors = [os.open(folder / ".archgen-new-held____", os.O_RDONLY) for folder in (tmp_path, out)]
+    for descriptor in descriptors:
+        fcntl.flock(descriptor, fcntl.LOCK_EX)
+    write_file(tmp_path / "a.txt", b"a")
+    write_tree(site(a="1"), out)
+    for descriptor in descriptors:
+        os.close(descriptor)
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        *(".archgen-new-a_file__", ".archgen-new-a_link__", ".archgen-new-held____", ".archgen-new-of-somebody-else"),
+        *("a.txt", "out"),
+    ]
+    assert sorted(path.name for path in out.iterdir()) == [".archgen-files", ".archgen-new-held____", "a"]
+
+
+def test_a_run_waits_for_another_one_in_the_same_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    out = tmp_path / "new" / "out"
+    with file_tree.lock_folder(out):
+        waiting = threading.Thread(target=write_tree, args=(site(a="1"), out))
+        waiting.start()
+        waiting.join(0.3)
+        assert waiting.is_alive()
+    # The first one wrote nothing, and took the folder away that the other one waited for.
+    waiting.join(120)
+    assert on_disk(out).keys() == {"a", TREE_MANIFEST}
+    monkeypatch.setattr(file_tree, "_LOCK_TRIES", 2)
+    with file_tree.lock_folder(out), pytest.raises(OutputError, match="another archgen is writing into"):
+        write_tree(site(a="2"), out)
+
+
+def test_a_file_system_without_locks_takes_files_all_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object) -> None:
+        raise OSError(37, "No locks available")
+
+    monkeypatch.setattr("fcntl.flock", refuse)
+    (tmp_path / "out" / ".archgen-new-12345678").mkdir(parents=True)
+    write_tree(site(a="1"), tmp_path / "out")
+    write_file(tmp_path / "b", b"b")
+    # Whether somebody is at work in it cannot be told: it stays, and is no obstacle.
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [
+        ".archgen-files",
+        ".archgen-new-12345678",
+        "a",
+    ]
+    write_tree(site(a="2"), tmp_path / "out")
+    assert (tmp_path / "out" / "a").read_text() == "2"
+
+
+def test_a_file_keeps_its_permissions(tmp_path: Path) -> None:
+    (tmp_path / "a").write_text("1")
+    (tmp_path / "a").chmod(0o640)
+    file_tree.replace_file(tmp_path / "a", b"2")
+    assert (tmp_path / "a").stat().st_mode & 0o777 == 0o640
+
+
+def test_a_folder_is_written_whose_parent_takes_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is a disk of its own, for instance, or the one folder that a container may write."""
+    (tmp_path / "out").mkdir()
+    real = os.mkdir
+
+    def refuse(path: str, *others: int) -> None:
+        if Path(path).parent == tmp_path:
+            raise PermissionError(13, "Permission denied", path)
+        real(path, *others)
+
+    monkeypatch.setattr(os, "mkdir", refuse)
+    write_tree(site(a="1"), tmp_path / "out")
+    assert (tmp_path / "out" / "a").read_text() == "1"

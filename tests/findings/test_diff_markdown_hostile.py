@@ -18,8 +18,7 @@ from archgen.emit.markdown.inert_text import escape_inert
 from archgen.emit.markdown.limited_comment import MAX_COMMENT_SIZE
 from archgen.model.review_settings import AcceptedChange
 from archgen.timing.figures.timing_values import TimingValue
-from archgen.views.changes.comparison_document import describe_comparison
-from archgen.views.changes.reading_errors import ReadingErrors
+from archgen.views.changes.comparison_document import ReadingErrors, describe_comparison
 from archgen.views.graphs.changes import SMALL_BUDGET, draw_changes
 from tests.emit.markdown.test_comparison_markdown import ROBOT, comparison
 from tests.findings.hostile_findings import HOSTILE

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from archgen.diagnostics.diagnostic import Severity
-from archgen.link.declare.deadline_declaration import ALWAYS
+from archgen.link.declare.timing_declaration import ALWAYS
 from archgen.pipeline import check_text
 from tests.timing.random_systems import architecture
 

@@ -9,7 +9,7 @@ import pytest
 from archgen.checking.checked_packing import pack_checked_project
 from archgen.compare.compare_versions import compare_versions
 from archgen.pipeline import CheckedProject, check_project
-from archgen.products.comparison_input import make_comparison_input
+from archgen.products.compared_versions import make_comparison_input
 from archgen.products.project_views import select_elements
 from archgen.syntax.yaml_writer import write_yaml
 

@@ -162,7 +162,7 @@ def test_an_input_of_a_node_of_several_components_concerns_those_that_have_it() 
         ),
         (
             "pc.scheduling.x=fifo",
-            "`scheduling.x` takes fixed_priority, non_preemptive, fifo, round_robin, edf, by host or by the number of a core, not `fifo`",
+            "`scheduling.x` takes fair, fixed_priority, non_preemptive, fifo, round_robin, edf, by host or by the number of a core, not `fifo`",
         ),
         ("gpu.scheduling=edf", "`scheduling` takes fifo, fixed_priority, not `edf`"),
         (

@@ -9,8 +9,7 @@ import pytest
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.link import input_wiring
-from archgen.link.reference_resolution import ReferenceResolver
-from archgen.link.unknown_references import diagnose_unknown_reference
+from archgen.link.reference_resolution import ReferenceResolver, diagnose_unknown_reference
 from archgen.model.architecture import Architecture
 from archgen.schema import normalise_document, validate_document
 from archgen.syntax import yaml_parser

@@ -33,7 +33,7 @@ def resolver() -> ReferenceResolver:
 def test_only_what_is_written_is_read() -> None:
     body = read_root("{cores: 4, scheduling: {0: fifo}, description: , tags: [a, b], colour: red}")
     values = read_values("host", Host, body)
-    assert values.keys() == {"cores", "scheduling", "core_scheduling", "core_places", "tags"}
+    assert values.keys() == {"cores", "scheduling", "core_scheduling", "core_places", "fair", "tags"}
     assert (values["cores"], values["core_scheduling"], values["tags"]) == (4, {0: "fifo"}, ("a", "b"))
 
 

@@ -7,6 +7,8 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline
+from archgen.emit import file_tree
+from archgen.emit.file_tree import OutputError
 from archgen.git import GitError
 from archgen.products.agreement_documents import make_project_agreement
 from archgen.products.agreement_signing import PreparedSignature, SigningError, prepare_signature, record_signature
@@ -139,3 +141,15 @@ def test_what_git_refuses_is_told(robot: Path) -> None:
     with pytest.raises(GitError, match=r"git makes no tag `signed/a-b/2026-03-01`: tag .* already exists"):
         record_signature(pipeline.check_project(robot), prepared)
     assert not (robot / FILE).exists()
+
+
+def test_a_file_that_cannot_be_written_leaves_no_tag(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: object) -> None:
+        message = "No space left on device"
+        raise OutputError(message)
+
+    prepared = prepare(robot)
+    monkeypatch.setattr(file_tree, "write_file", fail)
+    with pytest.raises(OutputError):
+        record_signature(pipeline.check_project(robot), prepared)
+    assert git(robot, "tag") == ""

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from archgen import pipeline
-from archgen.products.comparison_input import make_comparison_input
+from archgen.products.compared_versions import make_comparison_input
 
 
 @pytest.mark.parametrize(

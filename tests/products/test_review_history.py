@@ -8,7 +8,7 @@ import pytest
 
 from archgen.compare.review_facts import ReviewFacts, name_author
 from archgen.pipeline import check_at_revision, check_project
-from archgen.products.review_history import find_review_facts
+from archgen.products.compared_versions import find_review_facts
 from tests import repositories
 
 ROBOT = """\

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import re
 import time
+from collections.abc import Callable
 from pathlib import Path
+from typing import BinaryIO
 
 import pytest
 
@@ -16,6 +18,7 @@ from archgen.products.project_views import select_elements
 from archgen.project import ProjectNotFoundError
 from archgen.serve.live_site import LiveSite
 from archgen.serve.project_state import SelectionError
+from archgen.syntax import folder_files
 from tests.repositories import commit, git
 from tests.serve.conftest import PIXEL, ROBOT
 
@@ -249,3 +252,36 @@ def test_a_variant_that_is_not_there_is_not_served(robot: Path) -> None:
     with pytest.raises(UnknownVariantError):
         live.start()
     live.stop()
+
+
+@pytest.mark.parametrize(
+    "change", [Path.unlink, lambda file: file.write_text("groups: [")], ids=["gone", "half written"]
+)
+def test_files_that_change_while_they_are_read_are_read_again(
+    live_site: LiveSite, robot: Path, change: Callable[[Path], object], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At each file that a refresh opens; the next refresh shows what is there then."""
+    real, opened = folder_files._open_without_waiting, list[Path]()  # noqa: SLF001 - the one place where files are opened
+    harmed_step = -1
+
+    def open_late(path: Path, *flags: int) -> BinaryIO:
+        opened.append(path)
+        if len(opened) == harmed_step:
+            change(path)
+        return real(path, *flags)
+
+    monkeypatch.setattr(folder_files, "_open_without_waiting", open_late)
+    files = {file: file.read_bytes() for file in robot.rglob("*") if file.is_file()}
+    live_site.refresh()
+    page = without_live_parts(read_text(live_site, "groups/g.html"))
+    count = len(opened)
+    assert count > 0
+    for step in range(1, count + 1):
+        harmed_step = step
+        opened.clear()
+        live_site.refresh()
+        for file, data in files.items():
+            file.write_bytes(data)
+        harmed_step = -1
+        live_site.refresh()
+        assert without_live_parts(read_text(live_site, "groups/g.html")) == page

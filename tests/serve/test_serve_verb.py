@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import re
+import signal
+import subprocess
+import sys
 import threading
 import webbrowser
 from collections.abc import Callable
@@ -13,6 +17,7 @@ from click.testing import CliRunner
 
 from archgen.cli import main
 from archgen.serve import file_watch
+from tests.running import ROOT
 from tests.serve.conftest import ROBOT
 
 
@@ -50,3 +55,24 @@ def test_it_tells_its_address_opens_it_and_prints_errors_as_check_does(
 
 def test_a_port_beyond_all_ports_is_wrong_usage(robot: Path) -> None:
     assert CliRunner().invoke(main, ["serve", str(robot), "--port", "70000"]).exit_code == 2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGINT])
+def test_what_ends_it_from_outside_lets_it_tidy_up(robot: Path, number: signal.Signals, tmp_path: Path) -> None:
+    (tmp_path / "tmp").mkdir()
+    with subprocess.Popen(  # noqa: S603 - our own program
+        [sys.executable, "-m", "archgen", "serve", robot, "--port", "0"],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(ROOT), "TMPDIR": str(tmp_path / "tmp")},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as served:
+        assert served.stdout
+        while "serving" not in (line := served.stdout.readline()):
+            assert line
+        served.send_signal(number)
+        assert served.communicate(timeout=120)[1].endswith("stopped\n")
+    assert served.returncode == 0
+    assert list((tmp_path / "tmp").iterdir()) == []

@@ -11,6 +11,7 @@ import random
 from dataclasses import dataclass, field
 
 from archgen.derivation import derive_low_level
+from archgen.frozen import replace
 from archgen.link.slice_merging import merge_documents
 from archgen.model.architecture import Architecture
 from archgen.schema import normalise_document, validate_document
@@ -22,15 +23,25 @@ PERIODS = (2, 4, 5, 8, 10, 10, 12, 20, 20, 25, 40, 50)
 """In ms."""
 
 
-def architecture(text: str) -> Architecture:
-    """Read a project that is one text; nothing in it may be wrong."""
+def architecture(text: str, *, is_fair: bool = False) -> Architecture:
+    """Read a project that is one text; nothing in it may be wrong.
+
+    Hosts that name no order have any one, unless `is_fair`: then threads share their cores as Linux does it.
+    """
     document, found = yaml_parser.parse_yaml("random.yaml", text)
     assert document is not None, found
     assert (validate_document(document), normalise_document(document)) == ((), ()), text
     table, _ = merge_documents([document])
     linked, problems = link_table(table)
     assert not problems, (problems, text)
-    return derive_low_level(linked)
+    derived = derive_low_level(linked)
+    return derived if is_fair else in_any_order(derived)
+
+
+def in_any_order(linked: Architecture) -> Architecture:
+    """Return a project whose hosts that name no order have any one below the priorities."""
+    hosts = {name: replace(host, scheduling=host.scheduling or "fixed_priority") for name, host in linked.hosts.items()}
+    return replace(linked, hosts=hosts)
 
 
 def random_text(seed: int) -> str:

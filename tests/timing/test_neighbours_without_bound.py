@@ -18,7 +18,7 @@ nodes:
   b: {implements: b, host: pc, timing: {period: 10 ms, wcet: WCET}}
   c: {implements: c, host: pc, timing: {period: 100 ms, wcet: 5 ms}}
   d: {implements: d, host: pc, timing: {period: 100 ms, wcet: 5 ms}}
-hosts: {pc: {cores: 2}}
+hosts: {pc: {cores: 2, scheduling: fixed_priority}}
 """
 
 

@@ -11,7 +11,7 @@ from typing import get_args
 
 import pytest
 
-from archgen.emit.terminal import timing_legend
+from archgen.emit.terminal import timing_text
 from archgen.timing.analysis import Analysis
 from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.load import host_loads
@@ -124,7 +124,7 @@ def test_a_thread_with_an_order_and_a_core_to_itself_keeps_its_tier() -> None:
 
 
 def test_every_tier_has_words_wherever_it_is_shown() -> None:
-    tables = (host_loads._TIER_SENTENCES, timing_legend._TIERS, timing_tables.TIER_WORDS)  # noqa: SLF001 - they are it
+    tables = (host_loads._TIER_SENTENCES, timing_text._TIERS, timing_tables.TIER_WORDS)  # noqa: SLF001 - they are it
     assert all(set(table) == set(get_args(ResponseTier)) for table in tables)
 
 

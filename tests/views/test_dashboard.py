@@ -20,7 +20,7 @@ from archgen.views.timing.timing_lookup import analyse_with_chains
 ROBOT = """\
 partners: {p: {title: Partner P}, q: {}}
 requirements: {R-1: Stops in time, R-2: Looks, R-3: Nobody's}
-hosts: {pc: {cores: 1}, box: {cores: 1}}
+hosts: {pc: {cores: 1, scheduling: fixed_priority}, box: {cores: 1, scheduling: fixed_priority}}
 groups:
   g:
     components:

@@ -16,7 +16,7 @@ from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.pages.context_pages import make_topic_pages, make_topic_tables
 from archgen.views.pages.host_pages import make_host_pages
 from archgen.views.records.resolved_record import make_record
-from archgen.views.search.implementation_entries import make_channel_entries
+from archgen.views.search import make_channel_entries
 from archgen.views.shapes import Facts, Inlines, Table
 from archgen.views.tables.element_rows import list_element_rows
 

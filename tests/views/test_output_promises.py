@@ -145,7 +145,7 @@ KEPT = """\
 project: {id: p, title: P}
 partners: {a: A, b: B}
 types: {Rows: std_msgs/msg/Int32}
-hosts: {pc: {cores: 1}}
+hosts: {pc: {cores: 1, scheduling: fixed_priority}}
 groups:
   sense: {owner: a, components: {eye: {outputs: {rows: {type: Rows, promise: {max_gap: 130 ms}}}}, log: Log}}
   act: {owner: b, components: {base: {inputs: {rows: {from: eye.rows, freshness: 100 ms}}}}}

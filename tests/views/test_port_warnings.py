@@ -9,9 +9,8 @@ from archgen.products import project_views
 from archgen.products.output_options import OutputOptions
 from archgen.views.explorer.explorer_map import make_explorer_map
 from archgen.views.graphs.component_graph import draw_component
-from archgen.views.graphs.drawn_level import DrawnLevel, merge_flows
+from archgen.views.graphs.drawn_level import DrawnLevel, merge_flows, warn_of_outputs
 from archgen.views.lookup import Lookup
-from archgen.views.port_warnings import warn_of_outputs
 
 ROBOT = """\
 archgen: 1

@@ -7,11 +7,14 @@ from collections.abc import Mapping
 from archgen.compare.kinds.key_spec import ReadContext
 from archgen.compare.normal_values import ElementTitle, freeze_value, normalize_text, normalize_title
 from archgen.compare.version_pair import SOME_PORTS
+from archgen.frozen import replace
 from archgen.model.component import Component, ComponentType, Input, Output, PerformanceIndicator
 from archgen.model.declared_timing import Timing
 from archgen.model.generic_names import read_generic_name
+from archgen.model.message_types import ConceptualType
 from archgen.model.parameter import format_parameter
 from archgen.model.path_resolver import title_from_id
+from archgen.model.promise import Deprecation, Promise, format_range
 
 
 def read_name_as_title(component: Component, _context: ReadContext) -> ElementTitle:
@@ -132,3 +135,38 @@ def read_component_type(component: Component, context: ReadContext) -> str | Non
 def read_base(component_type: ComponentType, context: ReadContext) -> str | None:
     """Return the component type that a component type is made from."""
     return name_common_type(component_type.base, context)
+
+
+NO_DAY = "no day"
+"""What is compared where something is deprecated and nobody has said until when."""
+
+
+def read_range(promise: Promise, _context: ReadContext) -> str | None:
+    """Return the promised least and greatest value."""
+    return format_range(promise.range) if promise.range else None
+
+
+def find_output_deprecation(output: Output, context: ReadContext) -> Deprecation | None:
+    """Return until when an output is there, and what replaces it."""
+    found = _find_deprecation(output.deprecated, "output", context)
+    if found is None or found.use is None or not found.target or found.target.rpartition(".")[0] != output.component:
+        return found
+    # As people write it: instances of a type say the same of their own outputs.
+    return replace(found, use=found.use.rpartition(".")[2])
+
+
+def find_type_deprecation(conceptual_type: ConceptualType, context: ReadContext) -> Deprecation | None:
+    """Return until when a type is there, and what replaces it."""
+    return _find_deprecation(conceptual_type.deprecated, "type", context)
+
+
+def find_component_type_deprecation(component_type: ComponentType, context: ReadContext) -> Deprecation | None:
+    """Return until when a component type is there, and what replaces it."""
+    return _find_deprecation(component_type.deprecated, "component_type", context)
+
+
+def _find_deprecation(written: Deprecation | None, kind: str, context: ReadContext) -> Deprecation | None:
+    if written is None:
+        return None
+    use = context.common_id(kind, written.target) if written.target else written.use
+    return replace(written, until=written.until or NO_DAY, use=use)

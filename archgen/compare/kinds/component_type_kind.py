@@ -7,16 +7,15 @@ of its own. What is said of a part has a colon: `components.arm.motor:timing.wce
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import replace
 from typing import Any
 
-from archgen.compare.kinds.element_owners import find_type_owner
 from archgen.compare.kinds.functional_kinds import COMPONENT
-from archgen.compare.kinds.key_spec import Effect, KeySpec, ReadContext, Worsening, key_values
+from archgen.compare.kinds.key_spec import Effect, KeySpec, ReadContext, Worsening, find_type_owner, key_values
 from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec, name_features, text_feature
 from archgen.compare.kinds.port_kinds import INPUT, OUTPUT
 from archgen.compare.kinds.ros_kinds import NODE
 from archgen.compare.normal_values import drop_unset_values
+from archgen.frozen import replace
 from archgen.model.component import Component, ComponentType, Input, Output
 
 PART_MARK = ":"

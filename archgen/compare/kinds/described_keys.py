@@ -91,26 +91,6 @@ def _refuse_elements(attribute: str, _default: _Default) -> Reader:
     return read
 
 
-def _read_flag(attribute: str, _default: _Default) -> Reader:
-    return lambda element, _: getattr(element, attribute) or None
-
-
-def _read_set(attribute: str, default: _Default) -> Reader:
-    return lambda element, _: unordered_values(() if (values := getattr(element, attribute)) == default else values)
-
-
-def _read_title(attribute: str, _default: _Default) -> Reader:
-    return lambda element, _: normalize_title(element.id, getattr(element, attribute))
-
-
-def _read_prose(attribute: str, _default: _Default) -> Reader:
-    return lambda element, _: normalize_text(getattr(element, attribute))
-
-
-def _read_layout(attribute: str, _default: _Default) -> Reader:
-    return lambda element, _: getattr(element, attribute).direction
-
-
 def _read_data(attribute: str, _default: _Default) -> Reader:
     """Return what reads the leaves of data by their path."""
     return lambda element, _: dict(
@@ -137,11 +117,13 @@ def _list_hints(element: Any, _context: ReadContext) -> Mapping[str, object]:  #
 
 _READERS: Mapping[str, Callable[[str, _Default], Reader]] = {
     **dict.fromkeys(("value", "list", "mapping"), _read_value),
-    "flag": _read_flag,
-    "set": _read_set,
-    "title": _read_title,
-    "prose": _read_prose,
-    "layout": _read_layout,
+    "flag": lambda attribute, _: lambda element, _: getattr(element, attribute) or None,
+    "set": lambda attribute, default: (
+        lambda element, _: unordered_values(() if (values := getattr(element, attribute)) == default else values)
+    ),
+    "title": lambda attribute, _: lambda element, _: normalize_title(element.id, getattr(element, attribute)),
+    "prose": lambda attribute, _: lambda element, _: normalize_text(getattr(element, attribute)),
+    "layout": lambda attribute, _: lambda element, _: getattr(element, attribute).direction,
     "data": _read_data,
     "properties": _read_properties,
     "hints": _read_hints,
@@ -154,17 +136,11 @@ def _read_name(attribute: str, kind: str) -> Reader:
     return lambda element, context: context.common_id(kind, getattr(element, attribute))
 
 
-def _read_names(attribute: str, kind: str) -> Reader:
-    return lambda element, context: context.common_ids(kind, getattr(element, attribute))
-
-
-def _read_ordered_names(attribute: str, kind: str) -> Reader:
-    return lambda element, context: tuple(str(context.common_id(kind, each)) for each in getattr(element, attribute))
-
-
 _NAME_READERS: Mapping[str, Callable[[str, str], Reader]] = {
     "value": _read_name,
-    "set": _read_names,
-    "list": _read_ordered_names,
+    "set": lambda attribute, kind: lambda element, context: context.common_ids(kind, getattr(element, attribute)),
+    "list": lambda attribute, kind: (
+        lambda element, context: tuple(str(context.common_id(kind, each)) for each in getattr(element, attribute))
+    ),
 }
 """What reads values that name elements: by their common ids."""

@@ -5,8 +5,7 @@ from __future__ import annotations
 from operator import attrgetter
 
 from archgen.compare.kinds.component_keys import is_mapped
-from archgen.compare.kinds.element_owners import CO_OWNERS, read_owner
-from archgen.compare.kinds.key_spec import Effect, KeySpec
+from archgen.compare.kinds.key_spec import CO_OWNERS, Effect, KeySpec, read_owner
 from archgen.compare.kinds.kind_spec import (
     NAME_FEATURES,
     FeatureSpec,

@@ -11,22 +11,20 @@ from fractions import Fraction
 from typing import Any
 
 from archgen.bringup.start_plan import resolve_conditions
-from archgen.compare.kinds import component_keys, promise_keys
+from archgen.compare.kinds import component_keys
 from archgen.compare.kinds.key_spec import ReadContext, Reader
 from archgen.compare.normal_values import freeze_value, last_part, parameter_leaves, unordered_values
 from archgen.frozen import replace
-from archgen.model.architecture import Chain, Policy, ProjectInfo, UseCase
+from archgen.model.architecture import UseCase
 from archgen.model.component import PATTERN_GROUP
-from archgen.model.coordinate_frames import Frame
-from archgen.model.declared_timing import InputTiming, OutputTiming, Timing
-from archgen.model.deployment import Host, Link
+from archgen.model.declared_timing import Timing, list_fair_figures
+from archgen.model.deployment import Host
 from archgen.model.message_types import ConceptualType, DataField
 from archgen.model.node import Node
 from archgen.model.quantity import Quantity
 from archgen.model.requirement import Requirement
 from archgen.model.start_up import StartTarget, StartUp
 from archgen.model.use_case_steps import StepEnd
-from archgen.model.variant import Variant
 from archgen.timing.figures.figure_wording import format_rate
 
 
@@ -58,21 +56,6 @@ def _describe_field(field: DataField, context: ReadContext) -> str:
     return " ".join(filter(None, (field.type, default, field.meaning)))
 
 
-def _read_ros_name(node: Node, _context: ReadContext) -> str | None:
-    """Return the name of a node where that is not its id. Topics that follow it are keys of its ports."""
-    return None if node.name == node.id else node.name
-
-
-def _read_command(node: Node, _context: ReadContext) -> str | None:
-    """Return the words of what starts a node, as a shell would take them."""
-    return " ".join(map(shlex.quote, node.command)) or None
-
-
-def _read_arguments(node: Node, _context: ReadContext) -> str | None:
-    """Return the arguments of a node, as a shell would take them."""
-    return " ".join(map(shlex.quote, node.arguments)) or None
-
-
 def _read_host(node: Node, context: ReadContext) -> str | None:
     """Return the host of a node that says so itself."""
     own_container = context.architecture.containers.get(node.container) if node.container else None
@@ -97,11 +80,6 @@ def _read_parameters(node: Node, _context: ReadContext) -> Mapping[str, object]:
     }
 
 
-def _read_commands(node: Node, _context: ReadContext) -> Mapping[str, object]:
-    """Return the commands whose output parameters are, by the parameter."""
-    return {name: " ".join(words) for name, words in node.parameter_commands.items()}
-
-
 def _find_untold_timing(node: Node, context: ReadContext) -> Mapping[str, Timing]:
     """Return the timing that no component reports: of components with several nodes, and of a node without any."""
     return {
@@ -119,35 +97,10 @@ def _find_start(node: Node, context: ReadContext) -> StartUp | None:
     return replace(start, ready=resolve_conditions(start.ready, node, context.architecture.distro))
 
 
-def _read_start_targets(start: StartUp, context: ReadContext) -> frozenset[str]:
-    """Return after what a node starts."""
-    return unordered_values(_common_ids(start.after, context))
-
-
-def _read_start_manager(start: StartUp, context: ReadContext) -> str | None:
-    """Return what brings a lifecycle node into its state."""
-    return next(iter(_common_ids((start.by,) if start.by else (), context)), None)
-
-
 def _common_ids(targets: Iterable[StartTarget], context: ReadContext) -> tuple[str, ...]:
     # What a component type names inside of itself is another component in each instance: it is told there.
     own_targets = (target for target in targets if not target.id.startswith(f"{PATTERN_GROUP}."))
     return tuple(context.matched_ids.common_id(target.kind, target.id) for target in own_targets)
-
-
-def _read_project_id(project: ProjectInfo, context: ReadContext) -> str | None:
-    """Return the id of the project, None if the project does not write it."""
-    return None if "id" in context.version.unnamed_keys else project.id
-
-
-def _read_project_title(project: ProjectInfo, context: ReadContext) -> str | None:
-    """Return the title of the project, None if the project does not write it."""
-    return None if "title" in context.version.unnamed_keys else project.title
-
-
-def _read_actors(use_case: UseCase, _context: ReadContext) -> Mapping[str, str]:
-    """Return the titles of those who take part from outside, by id."""
-    return {actor.id: actor.title for actor in use_case.actors.values()}
 
 
 def _read_steps(use_case: UseCase, context: ReadContext) -> tuple[str, ...]:
@@ -173,38 +126,9 @@ def _read_verifications(requirement: Requirement, context: ReadContext) -> froze
 
 
 def _read_core_orders(host: Host, _context: ReadContext) -> Mapping[str, str]:
-    """Return the order in which each core takes what is ready."""
-    return {str(core): order for core, order in host.core_scheduling.items()}
-
-
-def _read_deadline_shares(chain: Chain, _context: ReadContext) -> Mapping[str, object]:
-    """Return how long shares of the reactions may take."""
-    return chain.deadline_shares
-
-
-def _find_latency(link: Link, _context: ReadContext) -> Link:
-    """Return the link: it has the keys below `latency` itself."""
-    return link
-
-
-def _find_forbidden_flow(policy: Policy, _context: ReadContext) -> Policy:
-    """Return the policy: it has the keys below `forbid` itself."""
-    return policy
-
-
-def _read_accepted(policy: Policy, context: ReadContext) -> Mapping[str, object]:
-    """Return why a policy lets inputs pass, by their common ids."""
-    return {str(context.common_id("input", name)): reason for name, reason in policy.accepted.items()}
-
-
-def _read_writer(frame: Frame, context: ReadContext) -> str | None:
-    """Return the component or the node that writes a frame."""
-    return context.common_id(frame.by_kind, frame.by)
-
-
-def _read_way(chain: Chain, context: ReadContext) -> tuple[str, ...]:
-    """Return what a chain leads through."""
-    return tuple(context.matched_ids.common_id(point.kind, point.id) for point in chain.through)
+    """Return the order in which each core takes what is ready, and the figures of a fair one."""
+    orders = {str(core): str(order) for core, order in host.core_scheduling.items()}
+    return orders | {f"fair.{name}": figure for name, figure in list_fair_figures(host.fair)}
 
 
 def _make_selector_reader(attribute: str) -> Reader:
@@ -214,11 +138,6 @@ def _make_selector_reader(attribute: str) -> Reader:
         return context.matched_ids.rename_in_text(" ".join((getattr(element, attribute) or "").split())) or None
 
     return read
-
-
-def _read_variant_changes(variant: Variant, context: ReadContext) -> frozenset[str]:
-    """Return what a variant writes over the project."""
-    return frozenset(context.matched_ids.rename_in_text(f"{each.path}: {each.value}") for each in variant.changes)
 
 
 _NS_PER_SECOND = 10**9
@@ -233,28 +152,8 @@ def _read_rate(timing: Timing, _context: ReadContext) -> Quantity | None:
     return Quantity(rate, format_rate(rate))
 
 
-def _find_output_timing(timing: Timing, context: ReadContext) -> Mapping[str, OutputTiming]:
-    """Return the outputs that are not published at each activation, each by what stands before its keys."""
-    return {_name_port("output", port, context): said for port, said in timing.outputs.items()}
-
-
-def _find_input_timing(timing: Timing, context: ReadContext) -> Mapping[str, InputTiming]:
-    """Return the inputs whose messages a callback stores, each by what stands before its keys."""
-    return {_name_port("input", port, context): said for port, said in timing.inputs.items()}
-
-
 def _name_port(kind: str, port: str, context: ReadContext) -> str:
     return f"{last_part(context.matched_ids.common_id(kind, port))}."
-
-
-def _read_stored(input_timing: InputTiming, _context: ReadContext) -> str | None:
-    """Return whether no callback stores the messages of an input, in the word of the language."""
-    return "at_once" if input_timing.stored_at_once else None
-
-
-def _read_calls(timing: Timing, context: ReadContext) -> Mapping[str, object]:
-    """Return how often each service or action is called in one activation."""
-    return {last_part(context.matched_ids.common_id("input", port)): count for port, count in timing.calls.items()}
 
 
 def _read_uses(timing: Timing, context: ReadContext) -> Mapping[str, object]:
@@ -272,21 +171,6 @@ def _read_measured_times(timing: Timing, _context: ReadContext) -> Mapping[str, 
     return {**times.percentiles, "measured": times.is_measured or None} if times else {}
 
 
-def _read_core(timing: Timing, _context: ReadContext) -> int | None:
-    """Return the only core: `core: 3` and `cores: [3]` mean the same."""
-    return timing.cores[0] if timing.core is None and timing.cores and len(timing.cores) == 1 else timing.core
-
-
-def _read_cores(timing: Timing, _context: ReadContext) -> tuple[int, ...] | None:
-    """Return a set of several cores."""
-    return timing.cores if timing.cores and len(timing.cores) > 1 else None
-
-
-def _read_trigger(timing: Timing, _context: ReadContext) -> str | None:
-    """Return how inputs fire a component."""
-    return timing.trigger.mode if timing.trigger else None
-
-
 def _read_trigger_facets(timing: Timing, context: ReadContext) -> Mapping[str, object]:
     """Return which inputs fire a component, and how far apart matched messages may be."""
     trigger = timing.trigger
@@ -294,9 +178,9 @@ def _read_trigger_facets(timing: Timing, context: ReadContext) -> Mapping[str, o
 
 
 READERS: Mapping[tuple[str, str], Reader] = {
-    ("project", "id"): _read_project_id,
-    ("project", "title"): _read_project_title,
-    ("use_case", "actors."): _read_actors,
+    ("project", "id"): lambda project, context: None if "id" in context.version.unnamed_keys else project.id,
+    ("project", "title"): lambda project, context: None if "title" in context.version.unnamed_keys else project.title,
+    ("use_case", "actors."): lambda use_case, _: {actor.id: actor.title for actor in use_case.actors.values()},
     ("use_case", "steps"): _read_steps,
     ("requirement", "verified_by"): _read_verifications,
     ("component", "title"): component_keys.read_name_as_title,
@@ -309,48 +193,66 @@ READERS: Mapping[tuple[str, str], Reader] = {
     ("component", "operations."): component_keys.read_operations,
     ("component", "timing."): component_keys.find_node_timing,
     ("component_type", "is"): component_keys.read_base,
-    ("component_type", "deprecated."): promise_keys.find_component_type_deprecation,
+    ("component_type", "deprecated."): component_keys.find_component_type_deprecation,
     ("input", "medium"): component_keys.read_medium,
     ("output", "medium"): component_keys.read_medium,
-    ("output", "deprecated."): promise_keys.find_output_deprecation,
+    ("output", "deprecated."): component_keys.find_output_deprecation,
     ("type", "fields."): _read_fields,
-    ("type", "deprecated."): promise_keys.find_type_deprecation,
-    ("frame", "by"): _read_writer,
-    ("promise", "range"): promise_keys.read_range,
-    ("node", "name"): _read_ros_name,
-    ("node", "command"): _read_command,
-    ("node", "arguments"): _read_arguments,
+    ("type", "deprecated."): component_keys.find_type_deprecation,
+    ("frame", "by"): lambda frame, context: context.common_id(frame.by_kind, frame.by),
+    ("promise", "range"): component_keys.read_range,
+    ("node", "name"): lambda node, _: None if node.name == node.id else node.name,
+    ("node", "command"): lambda node, _: " ".join(map(shlex.quote, node.command)) or None,
+    ("node", "arguments"): lambda node, _: " ".join(map(shlex.quote, node.arguments)) or None,
     ("node", "host"): _read_host,
     ("node", "callback_groups."): _read_callback_groups,
     ("node", "parameters."): _read_parameters,
-    ("node", "parameter_commands."): _read_commands,
+    ("node", "parameter_commands."): lambda node, _: {
+        name: " ".join(words) for name, words in node.parameter_commands.items()
+    },
     ("node", "start."): _find_start,
     ("node", "timing."): _find_untold_timing,
     ("host", "scheduling."): _read_core_orders,
-    ("link", "latency."): _find_latency,
-    ("start", "after"): _read_start_targets,
-    ("start", "by"): _read_start_manager,
-    ("policy", "forbid."): _find_forbidden_flow,
-    ("policy", "accepted."): _read_accepted,
+    # A link has the keys below `latency` itself, a policy those below `forbid`.
+    ("link", "latency."): lambda link, _: link,
+    ("start", "after"): lambda start, context: unordered_values(_common_ids(start.after, context)),
+    ("start", "by"): lambda start, context: next(iter(_common_ids((start.by,) if start.by else (), context)), None),
+    ("policy", "forbid."): lambda policy, _: policy,
+    ("policy", "accepted."): lambda policy, context: {
+        str(context.common_id("input", name)): reason for name, reason in policy.accepted.items()
+    },
     ("forbid", "from"): _make_selector_reader("forbid_from"),
     ("forbid", "to"): _make_selector_reader("forbid_to"),
     ("require", "of"): _make_selector_reader("of"),
     ("require", "inputs_from"): _make_selector_reader("inputs_from"),
     ("timing", "rate"): _read_rate,
     ("timing", "wcet."): _read_measured_times,
-    ("timing", "trigger"): _read_trigger,
+    ("timing", "trigger"): lambda timing, _: timing.trigger.mode if timing.trigger else None,
     ("timing", "trigger."): _read_trigger_facets,
-    ("timing", "inputs."): _find_input_timing,
-    ("timing", "outputs."): _find_output_timing,
-    ("timing", "calls."): _read_calls,
+    ("timing", "inputs."): lambda timing, context: {
+        _name_port("input", port, context): said for port, said in timing.inputs.items()
+    },
+    ("timing", "outputs."): lambda timing, context: {
+        _name_port("output", port, context): said for port, said in timing.outputs.items()
+    },
+    ("timing", "calls."): lambda timing, context: {
+        last_part(context.matched_ids.common_id("input", port)): count for port, count in timing.calls.items()
+    },
     ("timing", "uses."): _read_uses,
-    ("timing", "core"): _read_core,
-    ("timing", "cores"): _read_cores,
-    ("timing_input", "stored"): _read_stored,
-    ("chain", "through"): _read_way,
-    ("chain", "deadline."): _read_deadline_shares,
+    # `core: 3` and `cores: [3]` mean the same.
+    ("timing", "core"): lambda timing, _: (
+        timing.cores[0] if timing.core is None and timing.cores and len(timing.cores) == 1 else timing.core
+    ),
+    ("timing", "cores"): lambda timing, _: timing.cores if timing.cores and len(timing.cores) > 1 else None,
+    ("timing_input", "stored"): lambda input_timing, _: "at_once" if input_timing.stored_at_once else None,
+    ("chain", "through"): lambda chain, context: tuple(
+        context.matched_ids.common_id(point.kind, point.id) for point in chain.through
+    ),
+    ("chain", "deadline."): lambda chain, _: chain.deadline_shares,
     ("view", "show"): _make_selector_reader("show"),
     ("variant", "without"): _make_selector_reader("without"),
-    ("variant", "changes"): _read_variant_changes,
+    ("variant", "changes"): lambda variant, context: frozenset(
+        context.matched_ids.rename_in_text(f"{each.path}: {each.value}") for each in variant.changes
+    ),
 }
 """By kind and key."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import field
 from operator import attrgetter
 from typing import Any
 
@@ -13,7 +12,7 @@ from archgen.compare.element_relations import ElementRelations
 from archgen.compare.kinds.described_keys import derive_keys
 from archgen.compare.kinds.key_spec import Effect, KeySpec, ReadContext
 from archgen.compare.version_pair import ElementKey
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.language.comparison_tables import KIND_EFFECTS
 from archgen.model.component import Component, list_component_ports
 from archgen.model.path_resolver import title_from_id
@@ -40,10 +39,6 @@ def _nothing(_element: object, _context: ReadContext) -> None:
 
 def _no_components(_element: object, _context: ReadContext) -> tuple[str, ...]:
     return ()
-
-
-def _always(_element: object) -> bool:
-    return True
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +71,7 @@ class KindSpec:
     """Returns the common id of the partner."""
     components: Callable[[Any, ReadContext], tuple[str, ...]] = _no_components
     """Returns the common ids of the components behind an element."""
-    is_declared: Callable[[Any], bool] = _always
+    is_declared: Callable[[Any], bool] = lambda _: True
     """False for what exists without a declaration (a type that is only used)."""
     like: str = ""
     """The described kind whose keys it has, if not its own."""

@@ -10,12 +10,7 @@ from archgen.compare.element_likeness import letter_pairs
 from archgen.compare.kinds.key_spec import ReadContext, key_values
 from archgen.compare.kinds.kind_spec import FeatureSpec, KindSpec, list_port_holders, mark_values, text_feature
 from archgen.compare.normal_values import drop_unset_values
-from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Input, Output
-
-
-def _port_owner(port: Input | Output, context: ReadContext) -> str | None:
-    return context.common_id("partner", context.architecture.components[port.component].owner)
 
 
 def _port_parent(port: Input | Output, context: ReadContext) -> tuple[str, str]:
@@ -43,7 +38,7 @@ def _make_port_kind(
         parent_kind="component",
         stays_in_parent=True,
         parent=_port_parent,
-        owner=_port_owner,
+        owner=lambda port, context: context.common_id("partner", context.architecture.components[port.component].owner),
         components=lambda port, context: (_port_parent(port, context)[1],),
     )
 
@@ -83,7 +78,9 @@ def read_own_output_words(shell: Component, context: ReadContext) -> Mapping[str
 
 
 def _read_own_words(output: Output, context: ReadContext) -> Mapping[str, object]:
-    given = _find_given(context.architecture, output)
+    targets = context.architecture.shell_ports.get(f"output {output.id}", ())
+    component = context.architecture.find_component(targets[0].rpartition(".")[0]) if len(targets) == 1 else None
+    given = component.outputs.get(targets[0].rpartition(".")[2]) if component else None
     given_words = _read_words(given, context) if given else {}
     return {key: value for key, value in _read_words(output, context).items() if given_words.get(key) != value}
 
@@ -91,10 +88,3 @@ def _read_own_words(output: Output, context: ReadContext) -> Mapping[str, object
 def _read_words(output: Output, context: ReadContext) -> dict[str, object]:
     """Return what is said of an output that a composed component may say itself, too, by the keys of its kind."""
     return drop_unset_values(key_values(_OWN_WORDS, output, context))
-
-
-def _find_given(architecture: Architecture, output: Output) -> Output | None:
-    """Return the one output that an output of a composed component passes on, None for none and for several."""
-    targets = architecture.shell_ports.get(f"output {output.id}", ())
-    component = architecture.find_component(targets[0].rpartition(".")[0]) if len(targets) == 1 else None
-    return component.outputs.get(targets[0].rpartition(".")[2]) if component else None

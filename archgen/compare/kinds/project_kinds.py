@@ -11,17 +11,20 @@ from archgen.compare.normal_values import freeze_value, normalize_text, unordere
 from archgen.model.architecture import ProjectInfo
 from archgen.model.element_annotations import describe_range
 from archgen.model.path_resolver import title_from_id
-from archgen.model.review_settings import ReviewSettings
 
 
 def _read_review(_project: ProjectInfo, context: ReadContext) -> Mapping[str, object]:
     review = context.architecture.review
+    texts_by_element: dict[str, list[str]] = {}
+    for entry in review.accepted:
+        text = f"{entry.reason} ({entry.key})" if entry.key else entry.reason
+        texts_by_element.setdefault(entry.element, []).append(text)
     return {
         "main": review.main,
         "breaking": review.breaking and str(review.breaking),
         "backends": unordered_values(review.backends),
         "passes": unordered_values(review.passes),
-        **{f"accepted.{name}": "; ".join(texts) for name, texts in _group_accepted(review).items()},
+        **{f"accepted.{name}": "; ".join(texts) for name, texts in texts_by_element.items()},
     }
 
 
@@ -45,14 +48,6 @@ def _read_agreements(_project: ProjectInfo, context: ReadContext) -> Mapping[str
     return values
 
 
-def _read_parameters(_project: ProjectInfo, context: ReadContext) -> Mapping[str, object]:
-    return {value.name: freeze_value(value.value) for value in context.architecture.ros_parameters}
-
-
-def _read_environment(_project: ProjectInfo, context: ReadContext) -> Mapping[str, object]:
-    return {each.name: each.value for each in context.architecture.ros_environment}
-
-
 def _read_declared_properties(_project: ProjectInfo, context: ReadContext) -> Mapping[str, object]:
     """Return what is declared of properties: that there is one by its id, what is said of it by `id:key`."""
     values: dict[str, object] = {}
@@ -72,10 +67,6 @@ def _read_declared_properties(_project: ProjectInfo, context: ReadContext) -> Ma
     return values
 
 
-def _read_glossary(_project: ProjectInfo, context: ReadContext) -> Mapping[str, object]:
-    return {each.term: normalize_text(each.text) for each in context.architecture.glossary.values()}
-
-
 def _read_site(_project: ProjectInfo, context: ReadContext) -> Mapping[str, object]:
     repository = context.architecture.repository
     if repository is None:
@@ -88,28 +79,28 @@ def _read_site(_project: ProjectInfo, context: ReadContext) -> Mapping[str, obje
     }
 
 
-def _group_accepted(review: ReviewSettings) -> Mapping[str, list[str]]:
-    """Return what is accepted of each element; several partners may accept the same change."""
-    texts_by_element: dict[str, list[str]] = {}
-    for entry in review.accepted:
-        text = f"{entry.reason} ({entry.key})" if entry.key else entry.reason
-        texts_by_element.setdefault(entry.element, []).append(text)
-    return texts_by_element
-
-
 # Sections, and parts of sections, that belong to no other element.
 _SETTING_KEYS = (
     KeySpec("distro", lambda _, context: context.architecture.distro, noun="ROS distribution"),
-    KeySpec("environment.", _read_environment),
+    KeySpec(
+        "environment.", lambda _, context: {each.name: each.value for each in context.architecture.ros_environment}
+    ),
     KeySpec("shared_topics", lambda _, context: unordered_values(context.architecture.shared_topics)),
-    KeySpec("parameters.", _read_parameters),
+    KeySpec(
+        "parameters.",
+        lambda _, context: {value.name: freeze_value(value.value) for value in context.architecture.ros_parameters},
+    ),
     KeySpec("layout", lambda _, context: context.architecture.layout.direction, Effect.TEXT),
     KeySpec("chapters", lambda _, context: context.version.chapter_order),
     KeySpec("review.", _read_review),
     KeySpec("agreements.", _read_agreements, noun="agreement"),
     KeySpec("site.", _read_site, Effect.TEXT),
     KeySpec("properties.", _read_declared_properties),
-    KeySpec("glossary.", _read_glossary, Effect.TEXT),
+    KeySpec(
+        "glossary.",
+        lambda _, context: {each.term: normalize_text(each.text) for each in context.architecture.glossary.values()},
+        Effect.TEXT,
+    ),
     KeySpec("rules.", lambda _, context: context.version.rule_settings),
 )
 PROJECT = KindSpec(

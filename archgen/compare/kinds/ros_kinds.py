@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import fields
-from typing import NamedTuple, TypeVar
+from typing import TypeVar
 
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.element_likeness import letter_pairs
 from archgen.compare.element_relations import ElementRelations, project_messages
-from archgen.compare.kinds.element_owners import CO_OWNERS, find_type_owner, read_owner
 from archgen.compare.kinds.key_readers import is_own_type
-from archgen.compare.kinds.key_spec import Effect, KeySpec, ReadContext, Worsening
+from archgen.compare.kinds.key_spec import (
+    CO_OWNERS,
+    Effect,
+    KeySpec,
+    ReadContext,
+    Worsening,
+    find_type_owner,
+    read_owner,
+)
 from archgen.compare.kinds.kind_spec import (
     NAME_FEATURES,
     FeatureSpec,
@@ -22,9 +28,10 @@ from archgen.compare.kinds.kind_spec import (
     value_feature,
 )
 from archgen.compare.normal_values import unordered_values
+from archgen.derivation.port_endpoints import flow_of_use
 from archgen.derivation.wire.remap_rules import NodeNames
-from archgen.derivation.writing_endpoints import flow_of_use
 from archgen.diagnostics.source_span import NO_SPAN, Span
+from archgen.frozen import NamedTuple, fields
 from archgen.model.known_interfaces import Interface, InterfaceConstant, InterfaceField
 from archgen.model.message_types import ConceptualType
 from archgen.model.node import Node, PortUse, Qos
@@ -231,10 +238,6 @@ def _resolve_topics(port: NodePort, context: ReadContext) -> frozenset[str]:
     return unordered_values(wire.name or topic for wire, topic in wires)
 
 
-def _read_conditions(port: NodePort, _context: ReadContext) -> Mapping[str, object]:
-    return {name: format_parameter(wanted) or "no value" for name, wanted in port.use.when.items()}
-
-
 PORT = KindSpec(
     "port",
     "Nodes",
@@ -243,7 +246,12 @@ PORT = KindSpec(
         KeySpec("topic", _resolve_topics),
         KeySpec("own_name", lambda port, _: port.use.own_name, Effect.SYSTEM, noun="name in the program"),
         KeySpec("named_by", lambda port, _: port.use.named_by, Effect.SYSTEM, noun="parameter with its name"),
-        KeySpec("when.", _read_conditions, Effect.SYSTEM, noun="condition"),
+        KeySpec(
+            "when.",
+            lambda port, _: {name: format_parameter(wanted) or "no value" for name, wanted in port.use.when.items()},
+            Effect.SYSTEM,
+            noun="condition",
+        ),
         KeySpec("message", lambda port, _: port.use.message, worsening=Worsening.ALWAYS, verb="is"),
         KeySpec("qos.", _read_qos, worsening=Worsening.ALWAYS, noun="QoS"),
     ),

@@ -15,10 +15,8 @@ from archgen.compare.kinds.kind_spec import (
     text_feature,
     value_feature,
 )
-from archgen.compare.version_pair import ElementKey
-from archgen.model.architecture import Chain
 from archgen.model.coordinate_frames import Frame
-from archgen.model.deployment import Host, Resource
+from archgen.model.deployment import Host
 
 
 def _mark_containers(relations: ElementRelations, host: Host) -> frozenset[str]:
@@ -53,17 +51,19 @@ CONTAINER = KindSpec(
 )
 
 
-def _mark_users(relations: ElementRelations, resource: Resource) -> frozenset[str]:
-    return relations.common_ids("node", [node.id for node in relations.architecture.nodes_using(resource.id)])
-
-
 RESOURCE = KindSpec(
     "resource",
     "Resources",
     elements=lambda version: version.architecture.resources,
     features=(
         *NAME_FEATURES,
-        FeatureSpec("users", 5, _mark_users),
+        FeatureSpec(
+            "users",
+            5,
+            lambda relations, resource: relations.common_ids(
+                "node", [node.id for node in relations.architecture.nodes_using(resource.id)]
+            ),
+        ),
         value_feature("host", 1, "host"),
     ),
 )
@@ -107,14 +107,6 @@ def _list_writers(frame: Frame, context: ReadContext) -> tuple[str, ...]:
     return (context.matched_ids.common_id("component", component),) if component else ()
 
 
-def _find_frame_holder(frame: Frame, context: ReadContext) -> ElementKey | None:
-    return ("component", context.matched_ids.common_id("component", frame.component)) if frame.component else None
-
-
-def _mark_frames_below(relations: ElementRelations, frame: Frame) -> frozenset[str]:
-    return frozenset(relations.users_by_element[f"below:{frame.id}"])
-
-
 def _mark_frame_ports(relations: ElementRelations, frame: Frame) -> frozenset[str]:
     ports = relations.users_by_element[f"frame:{frame.id}"]
     return relations.common_ids("input", ports) | relations.common_ids("output", ports)
@@ -127,18 +119,16 @@ FRAME = KindSpec(
     features=(
         *NAME_FEATURES,
         FeatureSpec("ports", 4, _mark_frame_ports),
-        FeatureSpec("children", 3, _mark_frames_below),
+        FeatureSpec("children", 3, lambda relations, frame: frozenset(relations.users_by_element[f"below:{frame.id}"])),
         value_feature("parent", 2, "parent"),
         FeatureSpec("by", 2, lambda relations, frame: relations.common_ids(frame.by_kind, [frame.by])),
     ),
-    parent=_find_frame_holder,
+    parent=lambda frame, context: (
+        ("component", context.matched_ids.common_id("component", frame.component)) if frame.component else None
+    ),
     owner=_find_writing_owner,
     components=_list_writers,
 )
-
-
-def _mark_waypoints(relations: ElementRelations, chain: Chain) -> frozenset[str]:
-    return frozenset[str]().union(*(relations.common_ids(point.kind, [point.id]) for point in chain.through))
 
 
 CHAIN = KindSpec(
@@ -147,7 +137,13 @@ CHAIN = KindSpec(
     elements=lambda version: version.architecture.chains,
     features=(
         *NAME_FEATURES,
-        FeatureSpec("through", 6, _mark_waypoints),
+        FeatureSpec(
+            "through",
+            6,
+            lambda relations, chain: frozenset[str]().union(
+                *(relations.common_ids(point.kind, [point.id]) for point in chain.through)
+            ),
+        ),
         value_feature("deadline", 1, "deadline"),
     ),
 )

@@ -6,7 +6,6 @@ from collections import defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import NamedTuple
 
 from archgen.compare.comparison import Change
 from archgen.compare.key_phrases import name_partner, shorten_text, tick_names
@@ -16,6 +15,7 @@ from archgen.compare.review_facts import ReviewFacts
 from archgen.compare.version_pair import ElementKey, VersionPair
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Severity
+from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint
 from archgen.model.review_settings import BreakCategory

@@ -7,7 +7,6 @@ goes with a rename, an instance that changes with its type, a connection that no
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from archgen.compare.agreements import find_partner_id
 from archgen.compare.comparison import Change
@@ -16,6 +15,7 @@ from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.version_pair import ElementKey
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Severity
+from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.review_settings import agreement_file
 

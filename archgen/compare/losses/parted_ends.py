@@ -10,7 +10,6 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 from archgen.analyses.qos_compatibility import QosConflict, find_qos_conflicts
 from archgen.compare.kinds import Effect, find_effect
@@ -18,6 +17,7 @@ from archgen.compare.losses.change_context import WRITING_USES, ChangeContext, P
 from archgen.compare.version_pair import ElementKey
 from archgen.derivation.wire.running_state import domain_of
 from archgen.diagnostics.common_wording import join_words
+from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.node import Clock, Endpoint
 from archgen.model.ros_distro import is_ros_1

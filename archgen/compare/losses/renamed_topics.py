@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Container, Iterable, Iterator, Mapping
 
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_sorted_names
-from archgen.compare.losses.composed_places import find_component_renames
+from archgen.compare.losses.lost_connections import find_component_renames
 from archgen.model.node import Endpoint, FlowKind
 
 TopicKey = tuple[str, FlowKind]

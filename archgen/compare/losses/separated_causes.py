@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from itertools import chain
-from typing import Any, NamedTuple
+from typing import Any
 
 from archgen.compare.comparison import Change
 from archgen.compare.key_phrases import name_key
@@ -12,9 +12,9 @@ from archgen.compare.losses.change_context import ChangeContext, tick_name
 from archgen.compare.losses.timing_causes import TimingCauses
 from archgen.compare.timing_pair import can_affect_timing
 from archgen.derivation import derive_low_level
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.common_wording import fit_lines, join_words
 from archgen.diagnostics.source_span import NO_SPAN
-from archgen.frozen import dataclass, replace
+from archgen.frozen import NamedTuple, dataclass, replace
 from archgen.model.architecture import Architecture, PortEdge
 from archgen.model.component import Component, Output
 from archgen.model.declared_timing import Timing
@@ -308,8 +308,7 @@ class CauseSeparator:
     def _note(self, groups: Sequence[_ChangeGroup], ending: str) -> SeparatedCauses:
         indices = tuple(sorted(chain.from_iterable(group.told for group in groups)))
         names = [self._name_change(group.told[0]) for group in groups]
-        surplus = [f"{len(names) - _MAX_NAMES} more"] if len(names) > _MAX_NAMES + 1 else []
-        named = join_words([*names[: _MAX_NAMES if surplus else None], *surplus])
+        named = join_words(fit_lines(names, _MAX_NAMES + 1, "{} more"))
         return SeparatedCauses(indices, f"; {named}{ending}" if len(names) > 1 else "")
 
     def _name_change(self, index: int) -> str:

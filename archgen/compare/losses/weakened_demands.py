@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
 
 from archgen.compare.comparison import Change
 from archgen.compare.key_phrases import format_value
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name
 from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.text_meaning import differs_in_meaning, quote_difference
+from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture, Policy
 from archgen.model.selector_evaluation import SelectorEvaluator
 

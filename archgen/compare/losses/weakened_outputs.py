@@ -11,12 +11,12 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
-from typing import NamedTuple
 
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name, tick_sorted_names
 from archgen.compare.losses.changed_definitions import MessageUsers
 from archgen.compare.losses.lost_connections import find_output_causes
 from archgen.compare.version_pair import ComparedElement
+from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.declared_timing import OutputTiming, Timing
 from archgen.model.quantity import Quantity

@@ -8,11 +8,11 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from functools import cached_property
-from typing import NamedTuple
 
 from archgen.compare.losses.change_context import ChangeContext, PartnerLoss, tick_name
 from archgen.compare.losses.lost_connections import find_output_causes
 from archgen.compare.matched_ids import MatchedIds
+from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.component import Output
 from archgen.model.component_nesting import list_relied_outputs
@@ -34,9 +34,10 @@ _Reading = tuple[str, str]
 
 def find_weakened_words(context: ChangeContext) -> Iterator[PartnerLoss]:
     """Find outputs of which less is promised than before, that have another version, or are deprecated now."""
-    if not any(_says_something(output) for output in _list_outputs(context.before)) and not any(
-        output.deprecated for output in _list_outputs(context.after)
-    ):
+    if not any(
+        output.promise is not None or output.version is not None or output.deprecated is not None
+        for output in _list_outputs(context.before)
+    ) and not any(output.deprecated for output in _list_outputs(context.after)):
         return
     yield from _WordComparison(context).list_losses()
 
@@ -44,10 +45,6 @@ def find_weakened_words(context: ChangeContext) -> Iterator[PartnerLoss]:
 def _list_outputs(architecture: Architecture) -> Iterator[Output]:
     yield from architecture.outputs.values()
     yield from (output for shell in architecture.shells.values() for output in shell.outputs.values())
-
-
-def _says_something(output: Output) -> bool:
-    return output.promise is not None or output.version is not None or output.deprecated is not None
 
 
 class _WordComparison:
@@ -168,7 +165,7 @@ def _compare_promises(matched_ids: MatchedIds, old: Promise, new: Promise) -> It
             yield _Weakening(f"promises for {{}} no {noun} any more (it was {before})", f"promise.{key}")
         elif (after.value < before.value) if key == "rate" else (after.value > before.value):
             yield _Weakening(f"promises for {{}} a {noun} of {after} instead of {before}", f"promise.{key}")
-    if old.range is not None and (new.range is None or _is_wider(old.range, new.range)):
+    if old.range is not None and (new.range is None or new.range[0] < old.range[0] or new.range[1] > old.range[1]):
         before = format_range(old.range, old.unit)
         if new.range is None:
             yield _Weakening(f"promises for {{}} no range any more (it was {before})", "promise.range")
@@ -182,7 +179,3 @@ def _compare_promises(matched_ids: MatchedIds, old: Promise, new: Promise) -> It
     if old.frame is not None and matched_ids.common_id("frame", old.frame) != new.frame:
         after = f"in the frame {tick_name(new.frame)}" if new.frame else "in no named frame"
         yield _Weakening(f"gives {{}} {after} instead of {tick_name(old.frame)}", "promise.frame", "meaning")
-
-
-def _is_wider(old: tuple[float, float], new: tuple[float, float]) -> bool:
-    return new[0] < old[0] or new[1] > old[1]

@@ -9,9 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from archgen.compare.matched_ids import MatchedIds
-from archgen.compare.version_pair import ComparedElement, VersionPair
+from archgen.compare.version_pair import VersionPair
 from archgen.model.architecture import Architecture
-from archgen.model.node import Endpoint
 
 Wire = frozenset[tuple[object, ...]]
 """What the nodes of an output offer: names, messages, QoS, and whether a program does so or only a plan."""
@@ -39,7 +38,7 @@ def find_wire_heirs(
         candidates = [
             each.id
             for each in new_outputs
-            if _is_same_output(old_elements["output", name], each)
+            if all(old_elements["output", name].values.get(key) == each.values.get(key) for key in ("type", "medium"))
             and _continues_wire(name, wire, each.id, wires_after.get(each.id, frozenset()))
         ]
         if len(candidates) == 1:
@@ -54,20 +53,12 @@ def _collect_wires(architecture: Architecture, matched_ids: MatchedIds) -> Mappi
         node = architecture.nodes[endpoint.node]
         if endpoint.use in {"publishes", "serves"} and endpoint.port and node.written:
             wire = wires.setdefault(matched_ids.common_id("output", endpoint.port), set())
-            wire.add((*_describe_endpoint(endpoint), node.status == "planned"))
+            qos = endpoint.qos
+            durations = [each and each.value for each in (qos.deadline, qos.lifespan, qos.lease_duration)]
+            kept_qos = (qos.reliability, qos.durability, qos.history, qos.depth, qos.liveliness)
+            is_planned = node.status == "planned"
+            wire.add((endpoint.label, endpoint.flow, endpoint.message, *kept_qos, *durations, is_planned))
     return {port: frozenset(wire) for port, wire in wires.items()}
-
-
-def _describe_endpoint(endpoint: Endpoint) -> tuple[object, ...]:
-    qos = endpoint.qos
-    durations = [each and each.value for each in (qos.deadline, qos.lifespan, qos.lease_duration)]
-    kept_qos = (qos.reliability, qos.durability, qos.history, qos.depth, qos.liveliness)
-    return endpoint.label, endpoint.flow, endpoint.message, *kept_qos, *durations
-
-
-def _is_same_output(old_output: ComparedElement, new_output: ComparedElement) -> bool:
-    """Whether both carry the same type, into the same world."""
-    return all(old_output.values.get(key) == new_output.values.get(key) for key in ("type", "medium"))
 
 
 def _continues_wire(old_id: str, old_wire: Wire, new_id: str, new_wire: Wire) -> bool:

@@ -9,14 +9,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from types import MappingProxyType
-from typing import Literal, NamedTuple
+from typing import Literal
 
 from archgen.derivation.wire.launch_words import JOINT, list_rule_words
 from archgen.derivation.wire.name_expansion import expand_name, find_name_fault, find_node_name_fault
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass, replace
 from archgen.model.node import Evidence, FlowKind, Node, PortUse
 from archgen.model.ros_distro import PAST_DISTROS, is_ros_1
 

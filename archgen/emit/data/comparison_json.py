@@ -23,8 +23,7 @@ from archgen.emit.data.timing_json import duration_to_json, quantity_to_json
 from archgen.model.node import Qos
 from archgen.model.review_settings import BREAK_CATEGORIES
 from archgen.timing.analysis import ChainResult
-from archgen.views.changes.comparison_document import sort_by_severity
-from archgen.views.changes.reading_errors import ReadingErrors
+from archgen.views.changes.comparison_document import ReadingErrors, sort_by_severity
 from archgen.views.inline_text import list_qos_settings
 
 FORMAT_VERSION = 1

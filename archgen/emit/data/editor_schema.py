@@ -35,7 +35,10 @@ already, and then offers nothing at all; as a key `__proto__` makes the schema u
 def make_editor_schema(language_schema: bytes, names: OfferedNames, rule_summaries: Mapping[str, str]) -> SchemaPart:
     """Return the schema of a project with these names; `rule_summaries` are those of the rules that may be set."""
     schema: SchemaPart = json.loads(language_schema)
-    names = {kind: _leave_out_built_in(kind_names) for kind, kind_names in names.items()}
+    names = {
+        kind: tuple(each for each in kind_names if each.name not in _BUILT_IN_NAMES)
+        for kind, kind_names in names.items()
+    }
     definitions: dict[str, SchemaPart] = schema["$defs"]
     _add_rules(definitions["rules"], rule_summaries)
     list_items = dict[str, SchemaPart]()
@@ -57,10 +60,6 @@ def make_editor_schema(language_schema: bytes, names: OfferedNames, rule_summari
     for kind in sorted({kind for kinds in OFFERS.values() for kind in kinds} - _LISTED_KINDS):
         definitions[f"offered_{kind}"] = _list_words(names[kind])
     return schema
-
-
-def _leave_out_built_in(names: tuple[OfferedName, ...]) -> tuple[OfferedName, ...]:
-    return tuple(each for each in names if each.name not in _BUILT_IN_NAMES)
 
 
 def _walk_parts(part: SchemaPart) -> Iterator[SchemaPart]:
@@ -102,7 +101,12 @@ def _offer_names(
         # Snippets, and a reference that stands alone: where yaml-language-server sees alternatives of entries (it makes
         # them of what stands beside a reference, too), it offers "- (array item) ..." as well.
         offered_names = [each for kind in kinds for each in keep_plain_names(names[kind])]
-        definition = part["items"] | {"offers": [_make_snippet(each) for each in offered_names]}
+        definition = part["items"] | {
+            "offers": [
+                {"bodyText": each.name, **({"description": each.meaning} if each.meaning else {})}
+                for each in offered_names
+            ]
+        }
         name = next((name for name, known in list_items.items() if known == definition), f"item_{len(list_items) + 1}")
         list_items[name] = definition
         part["items"] = {"$ref": f"#/$defs/{name}"}
@@ -130,10 +134,6 @@ def _list_words(names: tuple[OfferedName, ...]) -> SchemaPart:
     if any(each.meaning for each in names):
         words["enumDescriptions"] = [each.meaning for each in names]
     return words if names else dict(_NEVER_VALID)
-
-
-def _make_snippet(name: OfferedName) -> SchemaPart:
-    return {"bodyText": name.name, **({"description": name.meaning} if name.meaning else {})}
 
 
 SchemaPart = dict[str, Any]

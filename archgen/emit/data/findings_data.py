@@ -62,7 +62,10 @@ def format_github_commands(diagnostics: Iterable[Diagnostic], *, folder: str = "
     """Yield a command for each settled finding. `folder` is the project's, relative to the repository's root."""
     for diagnostic in diagnostics:
         properties = {**_place_properties(diagnostic, folder), "title": diagnostic.rule}
-        property_list = ",".join(f"{key}={_escape_property(str(value))}" for key, value in properties.items())
+        property_list = ",".join(
+            f"{key}={_escape_data(str(value)).replace(':', '%3A').replace(',', '%2C')}"
+            for key, value in properties.items()
+        )
         yield f"::{_COMMAND_NAMES[diagnostic.severity or Severity.ERROR]} {property_list}::{_command_text(diagnostic)}"
 
 
@@ -91,10 +94,6 @@ def _command_text(diagnostic: Diagnostic) -> str:
 def _escape_data(text: str) -> str:
     """Escape text for a command. Line ends are made visible, like everything that a terminal would obey."""
     return make_visible(text).replace("%", "%25")
-
-
-def _escape_property(text: str) -> str:
-    return _escape_data(text).replace(":", "%3A").replace(",", "%2C")
 
 
 def path_in_repository(file: str, folder: str) -> str | None:

@@ -69,7 +69,12 @@ def _suite_lines(
             f" ({title_counts[title]})" if title_counts[title] > 1 else ""
         )  # GitLab shows only the first of two with one name
         yield f'    <testcase classname="{group_name}" name="{_escape_attribute(title + count)}">'
-        yield from _case_lines(diagnostic, sources, fails=diagnostic.severity in failing_severities)
+        text = "\n".join(_escape_text(line) for line in render_finding_text(diagnostic, sources))
+        if diagnostic.severity in failing_severities:
+            message = _escape_attribute(diagnostic.message)
+            yield f'      <failure type="{diagnostic.severity}" message="{message}">{text}</failure>'
+        else:
+            yield f"      <system-out>{text}</system-out>"
         yield "    </testcase>"
     yield "  </testsuite>"
 
@@ -77,16 +82,6 @@ def _suite_lines(
 def _case_name(diagnostic: Diagnostic) -> str:
     title = make_visible(f"{diagnostic.rule}: {diagnostic.message}")
     return title if len(title) <= _MAX_NAME_LENGTH else f"{title[:_MAX_NAME_LENGTH]}…"
-
-
-def _case_lines(diagnostic: Diagnostic, sources: SourceTexts, *, fails: bool) -> Iterator[str]:
-    """Yield the finding as a terminal shows it, with lines and marks."""
-    text = "\n".join(_escape_text(line) for line in render_finding_text(diagnostic, sources))
-    if fails:
-        message = _escape_attribute(diagnostic.message)
-        yield f'      <failure type="{diagnostic.severity}" message="{message}">{text}</failure>'
-    else:
-        yield f"      <system-out>{text}</system-out>"
 
 
 def _escape_attribute(text: str) -> str:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import gzip
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any
 from urllib.parse import quote_from_bytes
 
@@ -20,6 +19,7 @@ from archgen.diagnostics.source_span import Span
 from archgen.emit.data.findings_data import path_in_repository
 from archgen.findings import rule_pages
 from archgen.findings.variant_findings import phrase_absence
+from archgen.frozen import dataclass
 from archgen.resources import HOME_URL
 
 _SCHEMA_URL = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"

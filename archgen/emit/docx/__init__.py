@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 
 from archgen.emit.docx.contents_lists import write_contents
 from archgen.emit.docx.document_text import format_document
@@ -36,6 +35,7 @@ from archgen.emit.docx.title_page import (
     write_title_page,
 )
 from archgen.emit.picture import Picture
+from archgen.frozen import replace
 from archgen.views.shapes import Outline
 
 __all__ = ["TemplateError", "write"]

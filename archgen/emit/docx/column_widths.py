@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from archgen.emit.docx.docx_writer import ColumnMeasures, DocxWriter
 from archgen.emit.docx.paper_sheets import PaperSheet
 from archgen.emit.docx.text_metrics import join_hard_blanks, measure_code, measure_words, split_name
+from archgen.frozen import dataclass
 from archgen.views.shapes import Column, Inlines, Table
 
 CELL_MARGINS = 10.0

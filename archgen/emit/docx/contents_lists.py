@@ -7,13 +7,13 @@ computes the page of an entry that stands outside of one. So the outer field is 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 
 from archgen.emit.docx.docx_writer import ContentsEntry, DocxWriter
 from archgen.emit.docx.page_flow import FlowPiece
 from archgen.emit.docx.paper_sheets import PaperSheet
 from archgen.emit.docx.title_page import write_front_heading
 from archgen.emit.docx.word_xml import escape_text, format_field, format_paragraph, format_run, points_to_twips
+from archgen.frozen import dataclass, replace
 
 _MAX_LEVEL = 3
 """Levels of headings in the table of contents, if they fit a page or two."""
@@ -77,7 +77,9 @@ def _write_list(writer: DocxWriter, contents: ContentsList, pages: Mapping[str, 
     for index, (entry, style) in enumerate(entries):
         before = _format_field_start(contents.instruction) if index == 0 else ""
         after = _format_run_for_word('<w:fldChar w:fldCharType="end"/>') if index == last else ""
-        runs = before + _format_link(entry, style, pages.get(entry.bookmark, 1)) + after
+        link = format_run(_join_title(entry, style)) + "<w:r><w:tab/></w:r>"
+        number = format_field(f"PAGEREF {entry.bookmark} \\h", str(pages.get(entry.bookmark, 1)))
+        runs = before + f'<w:hyperlink w:anchor="{entry.bookmark}" w:history="1">{link}{number}</w:hyperlink>' + after
         yield _write_entry(writer, runs, _join_title(entry, style), style, contents.sheet)
 
 
@@ -92,13 +94,6 @@ def _write_entry(writer: DocxWriter, runs: str, text: str, style: str, sheet: Pa
     # Beside another column, a line takes its share of the page's height.
     line, before, after = (height / sheet.columns for height in (face.line, face.before, face.after))
     return FlowPiece(xml, (line,) * line_count, before, after, whole=True, sheet=sheet)
-
-
-def _format_link(entry: ContentsEntry, style: str, page: int) -> str:
-    """Return an entry with the number of its page as a link."""
-    link = format_run(_join_title(entry, style)) + "<w:r><w:tab/></w:r>"
-    number = format_field(f"PAGEREF {entry.bookmark} \\h", str(page))
-    return f'<w:hyperlink w:anchor="{entry.bookmark}" w:history="1">{link}{number}</w:hyperlink>'
 
 
 def _join_title(entry: ContentsEntry, style: str) -> str:

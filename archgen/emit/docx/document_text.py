@@ -53,7 +53,8 @@ def _iter_body(
             yield piece.xml
             yield _format_section_end(paper.create_section_properties(sheet))
         else:
-            yield _close_section(piece.xml, paper.create_section_properties(sheet))
+            place = piece.xml.rindex("</w:pPr>")
+            yield f"{piece.xml[:place]}{_format_element(paper.create_section_properties(sheet))}{piece.xml[place:]}"
     if template.after:
         if sheet != paper.base:
             yield _format_section_end(paper.create_section_properties(sheet))
@@ -61,12 +62,6 @@ def _iter_body(
         yield from _format_elements(template.after)
     # The last section's properties are the body's own (ECMA-376 17.6.17).
     yield _format_element(paper.create_section_properties(sheet))
-
-
-def _close_section(xml: str, section: etree._Element) -> str:
-    """Let a piece's last paragraph end a section. A paragraph's properties end with those of its section (17.3.1.26)."""
-    place = xml.rindex("</w:pPr>")
-    return f"{xml[:place]}{_format_element(section)}{xml[place:]}"
 
 
 def _format_section_end(section: etree._Element) -> str:

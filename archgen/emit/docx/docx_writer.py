@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
 from urllib.parse import quote, urlsplit
 
 from docx.document import Document
@@ -19,6 +18,7 @@ from archgen.emit.docx.paper_sheets import PaperSet
 from archgen.emit.docx.style_table import StyleTable
 from archgen.emit.docx.word_xml import clean_word_text, name_bookmark, name_label_bookmark
 from archgen.emit.picture import Picture
+from archgen.frozen import dataclass, field
 
 _IMAGE_TYPES = {
     "png": CONTENT_TYPE.PNG,

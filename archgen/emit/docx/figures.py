@@ -6,7 +6,6 @@ import re
 import struct
 import zlib
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
 from typing import Literal
 
 from docx.oxml.ns import nsdecls, qn
@@ -20,6 +19,7 @@ from archgen.emit.docx.docx_writer import DocxWriter
 from archgen.emit.docx.page_flow import FlowPiece, ScalablePicture
 from archgen.emit.docx.paper_sheets import PaperSheet
 from archgen.emit.docx.word_xml import clean_line, format_paragraph, format_run
+from archgen.frozen import dataclass, replace
 from archgen.views.shapes import Figure
 
 _SCREEN_DPI = 96.0
@@ -160,7 +160,8 @@ def write_figure(writer: DocxWriter, shape: Figure) -> Iterator[FlowPiece]:
         if writer.pictures:  # where there is none at all, who draws has said why, once
             reason = (picture.warning if picture else None) or "it was not drawn"
             writer.warn(f"the report lacks the picture `{shape.graph}`: {reason}")
-        yield from _write_missing(writer, shape)
+        yield _write_note(writer, f"This picture could not be drawn. {shape.alt}".strip(), None, keep_next=True)
+        yield write_caption(writer, shape.anchor, shape.caption, None)
         return
     sheet, scale = choose_sheet(writer, picture.width, picture.height)
     width, height = picture.width * scale, picture.height * scale
@@ -179,15 +180,15 @@ def write_figure(writer: DocxWriter, shape: Figure) -> Iterator[FlowPiece]:
     scalable_picture = ScalablePicture(height, least, draw_piece) if sheet is None and least < 1 else None
     yield draw_piece(1.0)
     if shape.numbered:
-        yield write_caption(writer, shape.anchor, _note_scale(shape.caption, scale), sheet)
+        yield write_caption(
+            writer,
+            shape.anchor,
+            f"{shape.caption} (reduced to {scale:.0%})" if scale * _TYPE_SIZE < _LEGIBLE_SIZE else shape.caption,
+            sheet,
+        )
     # Whoever reads the page must know what the picture lacks, not only whoever wrote it.
     if picture.warning:
         yield _write_note(writer, picture.warning, sheet)
-
-
-def _note_scale(caption: str, scale: float) -> str:
-    """Return a caption; one below a picture that is hard to read says by how much it was made smaller."""
-    return f"{caption} (reduced to {scale:.0%})" if scale * _TYPE_SIZE < _LEGIBLE_SIZE else caption
 
 
 def choose_sheet(writer: DocxWriter, width: float, height: float) -> tuple[PaperSheet | None, float]:
@@ -254,12 +255,6 @@ def _read_raster(writer: DocxWriter, path: str, size: tuple[float, float]) -> by
 
 def _scale_to_sheet(sheet: PaperSheet, width: float, height: float) -> float:
     return min(1.0, sheet.text_width / width, (sheet.text_height - _CAPTION_HEIGHT) / height)
-
-
-def _write_missing(writer: DocxWriter, shape: Figure) -> Iterator[FlowPiece]:
-    """Write what stands in a picture's place."""
-    yield _write_note(writer, f"This picture could not be drawn. {shape.alt}".strip(), None, keep_next=True)
-    yield write_caption(writer, shape.anchor, shape.caption, None)
 
 
 def _write_note(writer: DocxWriter, text: str, sheet: PaperSheet | None, *, keep_next: bool = False) -> FlowPiece:

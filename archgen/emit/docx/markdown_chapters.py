@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field, replace
 from urllib.parse import unquote
 
 from markdown_it import MarkdownIt
@@ -31,6 +30,7 @@ from archgen.emit.docx.text_pieces import (
 )
 from archgen.emit.docx.word_xml import format_run
 from archgen.emit.term_mentions import MentionFinder, begin_text
+from archgen.frozen import dataclass, field, replace
 from archgen.views.shapes import Inlines, Markdown, Text
 
 
@@ -56,14 +56,6 @@ class ChapterSource:
         if not path:
             return replace(text, ref=self.anchor)
         return replace(text, ref=f"chapter:{posixpath.normpath(posixpath.join(self.folder, unquote(path)))}")
-
-
-def _read_content(writer: DocxWriter, node: SyntaxTreeNode, source: ChapterSource) -> ParagraphContent:
-    """Return what stands in a paragraph, pictures among the words too."""
-    spans = list(_walk_children(writer, node, source))
-    runs = [format_runs(writer, (span,)) if isinstance(span, Text) else span.xml for span in spans]
-    height = max((span.height for span in spans if isinstance(span, PictureRun)), default=0.0)
-    return ParagraphContent("".join(runs), join_text(span for span in spans if isinstance(span, Text)), height)
 
 
 def _read_inlines(node: SyntaxTreeNode, source: ChapterSource) -> Inlines:
@@ -217,7 +209,10 @@ def _write_paragraph(writer: DocxWriter, node: SyntaxTreeNode, context: BlockCon
         if pieces:
             yield from pieces
             return
-    content = _read_content(writer, node, context.source)
+    spans = list(_walk_children(writer, node, context.source))
+    runs = [format_runs(writer, (span,)) if isinstance(span, Text) else span.xml for span in spans]
+    height = max((span.height for span in spans if isinstance(span, PictureRun)), default=0.0)
+    content = ParagraphContent("".join(runs), join_text(span for span in spans if isinstance(span, Text)), height)
     if context.sign is not None:
         yield _write_item_text(writer, content, context.sign, context.lists)
         return

@@ -9,10 +9,10 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
 from typing import Literal
 
 from archgen.emit.docx.paper_sheets import PaperSheet
+from archgen.frozen import dataclass, replace
 
 _SLACK = 6.0
 """Points that a picture is smaller than the estimate asks for, which may be off by a line."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Collection
-from dataclasses import dataclass
 from typing import cast
 
 from docx.enum.section import WD_ORIENTATION, WD_SECTION
@@ -17,6 +16,7 @@ from docx.shared import Length, Twips
 from lxml import etree
 
 from archgen.emit.docx.word_xml import points_to_twips
+from archgen.frozen import dataclass
 
 _A4 = (595.3, 841.9)
 _MARGIN = 70.85  # 25 mm
@@ -109,7 +109,9 @@ def measure_paper(section: etree._Element | None, relation_ids: Collection[str],
         base = PaperSheet(*_A4)
         _write_sheet(section, base, part)
     wide = base if base.width >= base.height else _turn_sheet(base)
-    return PaperSet(base, wide, _list_large_sheets(base), section, part)
+    short, long = sorted((base.width, base.height))
+    upright = PaperSheet(long, 2 * short, base.top, base.right, base.bottom, base.left)
+    return PaperSet(base, wide, (upright, _turn_sheet(upright)) if 2 * short <= _MAX_SIDE else (), section, part)
 
 
 def _read_sheet(section: etree._Element) -> PaperSheet | None:
@@ -161,12 +163,6 @@ def _open_section(properties: etree._Element, part: DocumentPart) -> Section:
 
 def _turn_sheet(sheet: PaperSheet) -> PaperSheet:
     return PaperSheet(sheet.height, sheet.width, sheet.top, sheet.right, sheet.bottom, sheet.left)
-
-
-def _list_large_sheets(base: PaperSheet) -> tuple[PaperSheet, ...]:
-    short, long = sorted((base.width, base.height))
-    upright = PaperSheet(long, 2 * short, base.top, base.right, base.bottom, base.left)
-    return (upright, _turn_sheet(upright)) if 2 * short <= _MAX_SIDE else ()
 
 
 def _read_points(item: etree._Element, name: str) -> float:

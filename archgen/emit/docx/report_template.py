@@ -9,7 +9,6 @@ from __future__ import annotations
 import copy
 import io
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import cast
 
 import docx
@@ -32,6 +31,7 @@ from archgen.emit.docx.paper_sheets import measure_paper
 from archgen.emit.docx.style_table import match_styles
 from archgen.emit.docx.template_repair import TemplateError, repair_package, unpack_template
 from archgen.emit.picture import Picture
+from archgen.frozen import dataclass
 
 _REPORT_MARK = "{{report}}"
 _VISIBLE_TAGS = [

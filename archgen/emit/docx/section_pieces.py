@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from archgen.emit.docx.column_widths import choose_table_sheet
 from archgen.emit.docx.docx_writer import DocxWriter
@@ -13,6 +12,7 @@ from archgen.emit.docx.markdown_chapters import write_chapter
 from archgen.emit.docx.page_flow import FlowPiece
 from archgen.emit.docx.table_pieces import drop_spacer, write_facts, write_table
 from archgen.emit.docx.text_pieces import Heading, keep_with_next, write_bullets, write_heading, write_paragraph
+from archgen.frozen import dataclass
 from archgen.views.shapes import Block, Bullets, Facts, Figure, Markdown, Outline, Paragraph, Section, Table, Text
 
 _SCOPE_LEVEL = 2

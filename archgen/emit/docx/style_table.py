@@ -13,13 +13,13 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 
 from docx.oxml.ns import qn
 from lxml import etree
 
 from archgen.emit.docx.text_metrics import BOLD_FACTOR, TextFace, find_font_factor
 from archgen.emit.docx.word_xml import escape_text
+from archgen.frozen import dataclass, field
 
 HEADING_LEVELS = 9
 _PARAGRAPHS = (
@@ -163,19 +163,14 @@ def _add_style(table: StyleTable, own: etree._Element) -> etree._Element:
     for name in ("basedOn", "next"):
         reference = new.find(qn(f"w:{name}"))
         if reference is not None:
-            _redirect_reference(table, new, reference)
+            target = reference.get(qn("w:val"), "")
+            part = _OWN_IDS.get(target, target)
+            if part in table.ids:
+                reference.set(qn("w:val"), table.ids[part])
+            elif table.find_style(target) is None:
+                new.remove(reference)
     table.root.append(new)
     return new
-
-
-def _redirect_reference(table: StyleTable, style: etree._Element, reference: etree._Element) -> None:
-    """Let a reference of an added style point at the style that plays the same part in the document."""
-    target = reference.get(qn("w:val"), "")
-    part = _OWN_IDS.get(target, target)
-    if part in table.ids:
-        reference.set(qn("w:val"), table.ids[part])
-    elif table.find_style(target) is None:
-        style.remove(reference)
 
 
 def _read_id(style: etree._Element) -> str:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
 
 from archgen.emit.docx.captions import write_caption
 from archgen.emit.docx.column_widths import (
@@ -21,6 +20,7 @@ from archgen.emit.docx.paper_sheets import PaperSheet
 from archgen.emit.docx.text_metrics import TextFace, measure_word
 from archgen.emit.docx.text_pieces import MUTED_COLOUR, RunSetting, format_runs, join_text
 from archgen.emit.docx.word_xml import escape_text, format_paragraph, format_run, points_to_twips
+from archgen.frozen import dataclass, replace
 from archgen.views.shapes import Column, Facts, Inlines, Table
 
 _SPACER_HEIGHT = 8.0
@@ -87,7 +87,15 @@ def _write_table_rows(
         # The header row stays with the first row, a short table with all of them.
         keep = "<w:keepNext/>" if index < last and (short or index in kept_rows) else ""
         rows.append(_format_row(starts, row, text_style + keep, _KEEP_WHOLE if heights[index] < max_height else ""))
-    xml = _format_opening(writer, frame, headed=bool(header)) + "".join(rows) + _TABLE_END + _format_spacer(writer)
+    # Exactly so high: the style's own spaces would add to it.
+    line = points_to_twips(_SPACER_HEIGHT)
+    spacing = f'<w:spacing w:before="0" w:after="0" w:line="{line}" w:lineRule="exact"/>'
+    xml = (
+        _format_opening(writer, frame, headed=bool(header))
+        + "".join(rows)
+        + _TABLE_END
+        + format_paragraph(writer.styles.find_style_id("Normal"), "", spacing)
+    )
     # What stays together is one row to the estimate of pages.
     together = heights if short else heights[:2]
     piece_rows = (header_height + math.fsum(together), *heights[len(together) :], _SPACER_HEIGHT)
@@ -129,13 +137,6 @@ def _format_row(starts: Sequence[str], cells: Sequence[WordCell], paragraph_styl
         ]
     )
     return f"<w:tr>{f'<w:trPr>{row_properties}</w:trPr>' if row_properties else ''}{inner}</w:tr>"
-
-
-def _format_spacer(writer: DocxWriter) -> str:
-    # Exactly so high: the style's own spaces would add to it.
-    line = points_to_twips(_SPACER_HEIGHT)
-    spacing = f'<w:spacing w:before="0" w:after="0" w:line="{line}" w:lineRule="exact"/>'
-    return format_paragraph(writer.styles.find_style_id("Normal"), "", spacing)
 
 
 def _measure_row(cells: Sequence[WordCell], widths: Sequence[float], face: TextFace) -> float:

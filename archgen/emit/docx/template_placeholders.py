@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 
 from docx.opc.constants import RELATIONSHIP_TYPE
 from docx.opc.part import XmlPart
@@ -14,6 +13,7 @@ from lxml import etree
 
 from archgen.emit.docx.report_template import ReportTemplate
 from archgen.emit.docx.word_xml import NAMESPACES, clean_word_text
+from archgen.frozen import replace
 
 _PLACEHOLDER = re.compile(r"\{\{(?:\s++(?!\}\}))?+([^{}]{1,80}?)(?:(?<!\s)\s++)?+\}\}")
 _CONTENTS_MARK = "{{contents}}"

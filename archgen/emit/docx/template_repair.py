@@ -104,7 +104,8 @@ def _repair_relations(parts: dict[str, bytes], types: dict[str, str], main: str)
     """Mend the relationships of the package, of its document and of all other parts; `types` are the parts' content types."""
     for name in [name for name in parts if "_rels/" in name and name.endswith(".rels")]:
         root = _parse_relations(parts, name)
-        source = _find_source_part(name)
+        folder, file = posixpath.split(name)
+        source = posixpath.join(posixpath.dirname(folder), file.removesuffix(".rels"))
         if name == _PACKAGE_RELATIONS:
             _repair_package_relations(root, parts, main)
         elif source == main:
@@ -185,12 +186,6 @@ def _is_external(relation: etree._Element) -> bool:
 def _read_relation_kind(relation: etree._Element) -> str:
     """Return the last word of a relationship's type: `styles`, `image`, `hyperlink`."""
     return relation.get("Type", "").rpartition("/")[2]
-
-
-def _find_source_part(name: str) -> str:
-    """Return the name of the part whose relationships a part holds."""
-    folder, file = posixpath.split(name)
-    return posixpath.join(posixpath.dirname(folder), file.removesuffix(".rels"))
 
 
 def _resolve_target(folder: str, target: str) -> str:

@@ -9,8 +9,9 @@ from __future__ import annotations
 import math
 import re
 import unicodedata
-from dataclasses import dataclass
 from functools import lru_cache
+
+from archgen.frozen import dataclass
 
 _FIRST_CODE = 32
 # Calibri from the blank to the tilde; other letters of Europe are close to the mean of these.

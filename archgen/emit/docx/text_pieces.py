@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
 
 from archgen.emit.docx.docx_writer import ContentsEntry, DocxWriter
 from archgen.emit.docx.list_numbering import format_heading_number
@@ -20,6 +19,7 @@ from archgen.emit.docx.word_xml import (
     name_bookmark,
     name_label_bookmark,
 )
+from archgen.frozen import dataclass, replace
 from archgen.views.shapes import Bullets, Inlines, Paragraph, Text
 from archgen.views.short_figures import write_comparisons
 
@@ -175,7 +175,13 @@ def write_heading(writer: DocxWriter, heading: Heading) -> FlowPiece:
     """Write a numbered heading; it goes into the table of contents."""
     level = min(heading.level, HEADING_LEVELS)
     anchor = writer.find_free_anchor(heading.anchor)
-    label = _count_heading(writer, level, appendix=heading.appendix)
+    counts = writer.heading_counts
+    counts[level:] = []
+    counts += [0] * (level - len(counts))
+    counts[level - 1] += 1
+    label = format_heading_number(
+        writer.numbering.appendices if heading.appendix else writer.numbering.headings, counts
+    )
     entry = ContentsEntry(name_bookmark(anchor), label, heading.title, level)
     writer.headings.append(entry)
     # The heading styles number chapters; an appendix has the same style and the lettered list.
@@ -238,15 +244,6 @@ def write_list_item(
     """Write an item of a list; the outermost list has depth 0."""
     style = "List Number" if ordered else "List Bullet"
     return write_text(writer, content, style, _format_number(depth, list_id), _LIST_STEP * (depth + 1))
-
-
-def _count_heading(writer: DocxWriter, level: int, *, appendix: bool) -> str:
-    """Count a heading, and return its number as text."""
-    counts = writer.heading_counts
-    counts[level:] = []
-    counts += [0] * (level - len(counts))
-    counts[level - 1] += 1
-    return format_heading_number(writer.numbering.appendices if appendix else writer.numbering.headings, counts)
 
 
 def _format_number(depth: int, list_id: int) -> str:

@@ -58,7 +58,10 @@ def draw_pictures(  # noqa: PLR0913 - what to draw, and how, each by its name
     """
     cache = cache if cache and _is_usable(cache) else None
     wanted_formats = [
-        _order_formats(formats[each.id] if isinstance(formats, Mapping) else formats) for each in drawings
+        tuple(
+            form for form in PICTURE_FORMATS if form in (formats[each.id] if isinstance(formats, Mapping) else formats)
+        )
+        for each in drawings
     ]
     # Addresses are resolved here: a function cannot be sent to a worker process, and the cache's key needs them.
     hidden = [hide_texts(graph, dict(_link_addresses(graph, resolve_link))) for graph in drawings]
@@ -100,10 +103,6 @@ def draw_pictures(  # noqa: PLR0913 - what to draw, and how, each by its name
         graph.id: hidden[at].restore_texts(pictures[at], with_dot="dot" in wanted_formats[at])
         for at, graph in enumerate(drawings)
     }
-
-
-def _order_formats(formats: Sequence[str]) -> tuple[str, ...]:
-    return tuple(form for form in PICTURE_FORMATS if form in formats)
 
 
 @contextmanager

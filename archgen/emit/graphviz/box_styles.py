@@ -22,11 +22,11 @@ corners where it runs on events of unknown rate.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
 
 from archgen.emit.graphviz import palette
 from archgen.emit.graphviz.dot_text import escape_label, quote_value, safe_address, wrap_text
 from archgen.emit.graphviz.placed_scene import DotAttributes, Scene, ScenePart
+from archgen.frozen import replace
 from archgen.views.picture_shapes import Box
 
 LinkResolver = Callable[[str], str | None]

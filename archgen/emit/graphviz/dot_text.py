@@ -69,18 +69,12 @@ def wrap_text(text: str, width: int, lines: int = 4) -> tuple[str, ...]:
     text = clean_label_text(text)
     width = max(width, -(-len(text) // lines))
     rows = [""]
-    for piece in _split_pieces(text, width):
+    # Where a line may end: after blanks; in longer words before `/`, then after other signs; else anywhere.
+    for piece in (piece for word in re.findall(r"\S+\s*", text) for piece in _cut_word(word, width, _BREAKS)):
         if rows[-1] and len(rows[-1]) + len(piece.rstrip()) > width:
             rows.append("")
         rows[-1] += piece
     return tuple(row.strip() for row in rows if row.strip()) or ("",)
-
-
-def _split_pieces(text: str, width: int) -> list[str]:
-    """Split a text where a line may end: after blanks; in longer words before `/`, then after other signs; else
-    anywhere.
-    """
-    return [piece for word in re.findall(r"\S+\s*", text) for piece in _cut_word(word, width, _BREAKS)]
 
 
 def _cut_word(word: str, width: int, breaks: Sequence[re.Pattern[str]]) -> list[str]:

@@ -77,7 +77,8 @@ def lay_out_group(styled_graph: StyledGraph) -> Scene:
     if graph.direction != "top-bottom" and (wrapped := _wrap_wide_frame(scene, inside_names)):
         rows = _lay_out_framed_boxes(styled_graph, wrapped)
         wrapped_scene = finish(route_between_rows(rows, wrapped))
-        if _is_complete(styled_graph, wrapped_scene):
+        labels = sum(part.kind == "label" for part in wrapped_scene.parts)
+        if len(wrapped_scene.lines) == len(styled_graph.graph.arrows) and labels == len(styled_graph.label_attributes):
             return wrapped_scene
     finished_scene = finish(_lay_out_framed_boxes(styled_graph) if looks_wide else scene)
     # dot loses a line now and then where many run back, and a label may find no place.
@@ -97,12 +98,6 @@ def _count_ranks(styled_graph: StyledGraph, boxes: Sequence[Box]) -> int:
             if arrow.tail != arrow.head:
                 ranks[arrow.head] = max(ranks[arrow.head], min(ranks[arrow.tail] + 1, len(boxes)))
     return max(ranks.values(), default=0)
-
-
-def _is_complete(styled_graph: StyledGraph, scene: Scene) -> bool:
-    """Return whether every arrow has its line and every label its place."""
-    labels = sum(part.kind == "label" for part in scene.parts)
-    return len(scene.lines) == len(styled_graph.graph.arrows) and labels == len(styled_graph.label_attributes)
 
 
 def _count_contents(scene: Scene) -> tuple[int, int]:

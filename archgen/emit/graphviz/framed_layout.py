@@ -42,13 +42,10 @@ def _count_lost_labels(styled_graph: StyledGraph, scene: Scene) -> int:
 
 def _reading_cost(scene: Scene) -> float:
     """Return how hard a scene is to read: how small it gets on a screen, and how many titles of frames cut lines."""
-    return _screen_overflow(scene) * (1 + _CUT_PENALTY * count_cut_titles(scene))
-
-
-def _screen_overflow(scene: Scene) -> float:
-    """Return how many times too large a scene is for a page on a screen. All that fit are equally good (1.0)."""
     left, bottom, right, top = scene.bounds()
-    return max(1.0, (right - left) / _SCREEN_SIZE[0], (top - bottom) / _SCREEN_SIZE[1])
+    return max(1.0, (right - left) / _SCREEN_SIZE[0], (top - bottom) / _SCREEN_SIZE[1]) * (
+        1 + _CUT_PENALTY * count_cut_titles(scene)
+    )
 
 
 def _lay_out_direction(styled_graph: StyledGraph, direction: str) -> Scene:
@@ -59,15 +56,15 @@ def _lay_out_direction(styled_graph: StyledGraph, direction: str) -> Scene:
     statements = list(write_frames(styled_graph, None))
     statements += [styled_graph.write_node(box) for box in graph.boxes if box.cluster not in frame_ids]
     statements += [styled_graph.write_edge(at, arrow, with_text=False) for at, arrow in enumerate(graph.arrows)]
-    layout = layout_engine.lay_out_dot(write_dot(_layout_settings(styled_graph, direction), statements))
+    ranksep = find_rank_distance(styled_graph.graph) if direction == "LR" else 0.7
+    layout = layout_engine.lay_out_dot(
+        write_dot(
+            f'rankdir="{direction}" nodesep="0.28" ranksep="{ranksep:.2f}" remincross="true" mclimit="3"', statements
+        )
+    )
     scene = read_scene(layout, styled_graph.box_attributes, styled_graph.arrow_attributes)
     frames = read_frames(styled_graph, layout, graph.clusters)
     return declutter_labels(place_labels_on_lines(styled_graph, clear_titles(scene.joined(frames))))
-
-
-def _layout_settings(styled_graph: StyledGraph, direction: str) -> str:
-    ranksep = find_rank_distance(styled_graph.graph) if direction == "LR" else 0.7
-    return f'rankdir="{direction}" nodesep="0.28" ranksep="{ranksep:.2f}" remincross="true" mclimit="3"'
 
 
 _CLUSTER_MARGIN = 14

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from archgen.emit.graphviz.placed_scene import Rectangle, Scene
+from archgen.frozen import dataclass, replace
 
 _SAME_RANK = 4.0
 """Boxes whose middles are no farther apart than this, in points, are in one rank."""

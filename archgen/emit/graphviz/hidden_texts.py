@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields
 from functools import lru_cache
 from html import escape
 from operator import attrgetter
 
 from archgen.emit.graphviz.dot_text import clean_label_text, quote_value, safe_address
 from archgen.emit.picture import Picture
-from archgen.frozen import replace
+from archgen.frozen import dataclass, field, fields, replace
 from archgen.views.picture_shapes import Arrow, Box, Cluster, Drawing, Graph
 
 _ALT = "archgen.alt"

@@ -9,11 +9,11 @@ from collections.abc import Sequence
 from functools import lru_cache
 from itertools import pairwise
 from pathlib import Path
-from typing import NamedTuple
 
 from archgen.cache.file_store import FileStore, digest_text
 from archgen.emit.graphviz.label_places import sample_curve
 from archgen.emit.graphviz.placed_scene import Rectangle, SceneLine, ScenePoint
+from archgen.frozen import NamedTuple
 
 _SUFFIX = ".layout"
 _MOST_LAYOUTS = 400

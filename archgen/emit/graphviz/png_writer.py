@@ -28,6 +28,8 @@ _FEW_COLOURS = 16
 _MAX_OWN_COLOURS = 12
 """Of 16 colours so many may be the drawing's own."""
 _HIGH_HALVES = bytes((index << 4) & 0xFF for index in range(256))
+_COMPRESSION = 8
+"""Of zlib's levels: 9 takes three times as long, a fifth of drawing a picture, for files that are 1.2 % smaller."""
 _STEP_BITS = 5
 """Colours that agree in all but this many bits of red, green and blue are one, unless the drawing has them."""
 
@@ -133,7 +135,7 @@ def _write_png(width: int, rows: list[bytes], table: _ColourTable) -> bytes:
     chunks = (
         (b"IHDR", struct.pack(">IIBBBBB", width, len(rows), depth, _INDEXED, 0, 0, 0)),
         (b"PLTE", b"".join(palette)),
-        (b"IDAT", zlib.compress(b"".join(b"\0" + row for row in rows), 9)),
+        (b"IDAT", zlib.compress(b"".join(b"\0" + row for row in rows), _COMPRESSION)),
         (b"IEND", b""),
     )
     return _SIGNATURE + b"".join(

@@ -7,7 +7,6 @@ break the syntax, and a layout does not depend on what things are called.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 from archgen.emit.graphviz import arrow_styles, box_styles, layout_engine, palette
 from archgen.emit.graphviz.box_styles import LinkResolver
@@ -22,6 +21,7 @@ from archgen.emit.graphviz.placed_scene import (
     format_attributes,
     read_scene,
 )
+from archgen.frozen import dataclass
 from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph
 
 

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from functools import cache, partial
 
 from archgen.emit.graphviz import layout_engine
@@ -29,6 +28,7 @@ from archgen.emit.graphviz.styled_graph import (
     title_attributes,
     write_dot,
 )
+from archgen.frozen import dataclass, replace
 from archgen.views.picture_shapes import Arrow
 
 _PAGE_SIZE = (1105.0, 728.0)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from archgen.compare.edits import Edit
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.common_wording import join_words, keep_first
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.emit.markdown.comment_sentences import (
     ElementNames,
@@ -50,9 +50,15 @@ def write_comparison_markdown(
     """Write the comment, at most `limit` characters long; `command` shows the whole comparison in a terminal."""
     # Very long names leave the command without them.
     comment = LimitedComment(limit, write_code(command if len(command) <= _MAX_COMMAND else _PLAIN_COMMAND))
-    comment.add_block(_heading_line(document))
+    broken, further = document.broken_partners, document.further_partners
+    notes = [f"breaks {_join_partners(broken)}"] if broken else []
+    notes += [f"{'also ' if broken else ''}concerns {_join_partners(further)}"] if further else []
+    # The obstacle has a colon of its own.
+    lead = ": " if not document.obstacle else ", "
+    comment.add_block(f"### {write_sentence(document.headline)}" + (f"{lead}{', '.join(notes)}" if notes else ""))
     names = " → ".join(write_code(version.name) for version in document.versions)
-    comment.add_block(names + _count_line(document))
+    phrases = [phrase for phrase in (document.kind_counts, *document.finding_counts) if phrase]
+    comment.add_block(names + (f": {'; '.join(phrases)}" if phrases else ""))
     for version in document.versions:
         _add_reading_errors(comment, version)
     if document.all_clear:
@@ -75,25 +81,8 @@ def write_unjudged_markdown(reason: str) -> str:
     return f"### Cannot be judged\n\n{write_sentence(reason)}\n"
 
 
-def _heading_line(document: ComparisonDocument) -> str:
-    """Return the heading: how many changes there are, and whom they break and concern."""
-    broken, further = document.broken_partners, document.further_partners
-    notes = [f"breaks {_join_partners(broken)}"] if broken else []
-    notes += [f"{'also ' if broken else ''}concerns {_join_partners(further)}"] if further else []
-    # The obstacle has a colon of its own.
-    lead = ": " if not document.obstacle else ", "
-    return f"### {write_sentence(document.headline)}" + (f"{lead}{', '.join(notes)}" if notes else "")
-
-
 def _join_partners(partners: Sequence[str]) -> str:
-    shown_names = [write_sentence(name) for name in partners[:_SHOWN_PARTNERS]]
-    surplus = len(partners) - _SHOWN_PARTNERS
-    return join_words([*shown_names, *([f"{surplus} more"] if surplus > 0 else [])])
-
-
-def _count_line(document: ComparisonDocument) -> str:
-    phrases = [phrase for phrase in (document.kind_counts, *document.finding_counts) if phrase]
-    return f": {'; '.join(phrases)}" if phrases else ""
+    return join_words(keep_first([write_sentence(name) for name in partners], _SHOWN_PARTNERS))
 
 
 def _add_reading_errors(comment: LimitedComment, version: NamedVersion) -> None:
@@ -251,18 +240,14 @@ def _write_holders(finding: Diagnostic) -> str:
 def _add_picture(comment: LimitedComment, graph: Graph | None) -> None:
     if graph is None:
         return
-    text = _mermaid_block(graph)
+    signs = "\\+ added, \u2212 removed, \\~ changed, → renamed or moved; the rest is as before."
+    if any(box.broken for box in graph.boxes) or any(arrow.broken for arrow in graph.arrows):
+        signs = f"Red with \\!: breaks another partner. {signs}"
+    notes = " ".join((signs, *(write_sentence(note) for note in graph.notes)))
+    text = "\n".join(("```mermaid", *write_flowchart(graph), "```", "", f"<sub>{notes}</sub>"))
     if fits_budget(graph, SMALL_BUDGET) and comment.has_room_for(text):
         comment.add_block(text)
     else:
         comment.add_block(
             f"The picture of what changed is too large for a comment: {comment.command}, with `--format svg` or `html`."
         )
-
-
-def _mermaid_block(graph: Graph) -> str:
-    signs = "\\+ added, \u2212 removed, \\~ changed, → renamed or moved; the rest is as before."
-    if any(box.broken for box in graph.boxes) or any(arrow.broken for arrow in graph.arrows):
-        signs = f"Red with \\!: breaks another partner. {signs}"
-    notes = " ".join((signs, *(write_sentence(note) for note in graph.notes)))
-    return "\n".join(("```mermaid", *write_flowchart(graph), "```", "", f"<sub>{notes}</sub>"))

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+
+from archgen.frozen import dataclass, field
 
 MAX_COMMENT_SIZE = 65_536 - 200
 """GitHub's limit for one comment (GitLab's is higher), minus room for the mark by which the comment is found again."""

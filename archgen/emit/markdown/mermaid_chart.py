@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 
 from archgen.emit.safe_names import make_identifier
+from archgen.frozen import replace
 from archgen.views.graphs.graph_folding import fold_graph
 from archgen.views.picture_shapes import (
     Arrow,

@@ -94,7 +94,9 @@ def make_frame(
 ) -> SiteFrame:
     """Make what the pages of a site have in common: titles, links and navigation."""
     links = collect_links(pages)
-    navigation = build_navigation(pages, links, _navigation_kinds(_read_backend()))
+    navigation = build_navigation(
+        pages, links, tuple((entry["kind"], entry["title"]) for entry in _read_backend().options["navigation"])
+    )
     return SiteFrame(title, revision, notices, links, navigation, version=version)
 
 
@@ -162,10 +164,6 @@ def _add_explorer(framed_page: PageFrame, page: Page, writer: PageWriter, map_pa
         explorer_begin=root + begin_script,
         explorer_scripts=[root + script for script in scripts],
     )
-
-
-def _navigation_kinds(backend: backend_manifests.Backend) -> tuple[tuple[str, str], ...]:
-    return tuple((entry["kind"], entry["title"]) for entry in backend.options["navigation"])
 
 
 def _picture_files(pictures: Mapping[str, Picture], links: SiteLinks) -> Iterator[tuple[str, bytes]]:

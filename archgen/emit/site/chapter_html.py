@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import field
 from functools import cache
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -14,7 +13,7 @@ from archgen.emit.safe_names import make_safe_path
 from archgen.emit.site.html_text import escape_html, web_address
 from archgen.emit.site.page_links import CurrentPage
 from archgen.emit.term_mentions import MentionFinder, begin_text
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.views.shapes import Markdown
 
 if TYPE_CHECKING:
@@ -153,36 +152,34 @@ def _chapter_parser() -> MarkdownIt:
 
     # The rules below replace all that writes an address or raw text; everything else is markdown-it's own HTML.
     parser = MarkdownIt("commonmark", {"html": False}).enable("table")
-    for name, rule in (
-        ("link_open", _render_link_open),
-        ("link_close", _render_link_close),
-        ("image", _render_image),
-        ("fence", _render_code),
-        ("code_block", _render_code),
-        ("text", _render_text),
-        ("table_open", _render_table_open),
-        ("table_close", _render_table_close),
-        ("th_open", _render_cell_open),
-        ("td_open", _render_cell_open),
-    ):
-        parser.add_render_rule(name, rule)
+    rules: dict[str, Callable[[Token], str]] = {
+        "link_open": lambda token: f'<a href="{token.meta["address"]}">' if token.meta["address"] else "<span>",
+        "link_close": lambda token: "</a>" if token.meta["address"] else "</span>",
+        "image": _render_image,
+        **dict.fromkeys(("fence", "code_block"), _render_code),
+        "text": lambda token: escape_html(token.content),
+        "table_open": lambda _: '<div class="scroll" role="group" tabindex="0" aria-label="Table"><table>\n',
+        "table_close": lambda _: "</table></div>\n",
+        # Alignment as a class: a page's policy refuses style attributes.
+        **dict.fromkeys(
+            ("th_open", "td_open"),
+            lambda token: f"<{token.tag}{_CELL_CLASSES.get(str(token.attrs.get('style', '')), '')}>",
+        ),
+    }
+    for name, rule in rules.items():
+        parser.add_render_rule(name, _take_token(rule))
     return parser
 
 
-def _render_link_open(_: object, tokens: Sequence[Token], index: int, *__: object) -> str:
-    address = tokens[index].meta["address"]
-    return f'<a href="{address}">' if address else "<span>"
+def _take_token(rule: Callable[[Token], str]) -> Callable[..., str]:
+    """Return what markdown-it calls with its renderer, all tokens and the place of one, to write this one."""
+    return lambda _renderer, tokens, index, *_options: rule(tokens[index])
 
 
-def _render_link_close(_: object, tokens: Sequence[Token], index: int, *__: object) -> str:
-    return "</a>" if tokens[index].meta["address"] else "</span>"
-
-
-def _render_image(_: object, tokens: Sequence[Token], index: int, *__: object) -> str:
+def _render_image(token: Token) -> str:
     """Render a copied picture; one from the web as a link (a page loads nothing from elsewhere), a missing one as its
     words.
     """
-    token = tokens[index]
     alt = escape_html("".join(child.content for child in token.children or ()))
     if token.meta["source"]:
         return f'<img src="{token.meta["source"]}" alt="{alt}">'
@@ -191,24 +188,5 @@ def _render_image(_: object, tokens: Sequence[Token], index: int, *__: object) -
     return f'<span class="muted">[{alt or "a picture"}: not shown]</span>'
 
 
-def _render_code(_: object, tokens: Sequence[Token], index: int, *__: object) -> str:
-    return f'<pre tabindex="0"><code>{escape_html(tokens[index].content)}</code></pre>\n'
-
-
-def _render_text(_: object, tokens: Sequence[Token], index: int, *__: object) -> str:
-    return escape_html(tokens[index].content)
-
-
-def _render_table_open(*_: object) -> str:
-    return '<div class="scroll" role="group" tabindex="0" aria-label="Table"><table>\n'
-
-
-def _render_cell_open(_: object, tokens: Sequence[Token], index: int, *__: object) -> str:
-    """Render the begin of a cell, its alignment as a class: a page's policy refuses style attributes."""
-    token = tokens[index]
-    alignment = _CELL_CLASSES.get(str(token.attrs.get("style", "")), "")
-    return f"<{token.tag}{alignment}>"
-
-
-def _render_table_close(*_: object) -> str:
-    return "</table></div>\n"
+def _render_code(token: Token) -> str:
+    return f'<pre tabindex="0"><code>{escape_html(token.content)}</code></pre>\n'

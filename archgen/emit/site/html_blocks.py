@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import field
 from functools import lru_cache
 
 from archgen.emit.picture import Picture
@@ -22,7 +21,7 @@ from archgen.emit.site.html_text import (
     write_signs,
 )
 from archgen.emit.site.page_links import CurrentPage
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.views.sequences.sequence_charts import CHART_PREFIX
 from archgen.views.shapes import (
     Block,

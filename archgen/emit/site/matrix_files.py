@@ -37,11 +37,6 @@ def is_drawable(matrix: Matrix) -> bool:
     return len(shown.rows) <= MAX_DRAWN_ROWS and len(shown.rows) * len(shown.column_entries) <= MAX_DRAWN_CELLS
 
 
-def list_file_endings(matrix: Matrix) -> tuple[str, ...]:
-    """Return the endings of the files to download: the picture only where it can be drawn."""
-    return ("csv", "svg") if is_drawable(matrix) else ("csv",)
-
-
 def build_matrix_files(matrix: Matrix, current_page: CurrentPage) -> Iterator[tuple[str, bytes]]:
     """Yield the matrix as CSV and, where it can be drawn, as SVG and as the data for the page's script."""
     yield matrix_path(matrix, "csv"), _write_csv(matrix)
@@ -174,7 +169,7 @@ def write_matrix(matrix: Matrix, current_page: CurrentPage) -> str:
     table = _write_table(shown, cells, current_page) if is_readable else _write_refusal(shown)
     files = "".join(
         f'<a class="button" href="{current_page.root}{matrix_path(matrix, ending)}" download>{ending.upper()}</a> '
-        for ending in list_file_endings(matrix)
+        for ending in (("csv", "svg") if is_drawable(matrix) else ("csv",))
     )
     return (
         f'<section class="matrix-view" aria-label="{escape_html(matrix.title)}">\n'

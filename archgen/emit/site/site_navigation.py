@@ -8,12 +8,11 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import field
 
 from archgen.emit.site import status_marks
 from archgen.emit.site.html_text import escape_breakable, escape_html
 from archgen.emit.site.page_links import SiteLinks
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.views.shapes import Page
 
 MAX_LISTED = 60

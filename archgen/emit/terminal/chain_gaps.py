@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.common_wording import join_first, join_words
 from archgen.diagnostics.safe_text import make_visible
 from archgen.diagnostics.text_columns import TextRow
 from archgen.simulation.drawn_orders import describe_orders
@@ -42,7 +42,7 @@ def describe_gaps(result: ChainResult, analysis: Analysis) -> str:
         name for name in result.bound.missing if name not in named_elements and not is_missing_cores(name)
     )
     if elsewhere and result.terms:
-        phrases.append(f"on other ways, figures of {figure_wording.join_first_names(elsewhere)} unknown")
+        phrases.append(f"on other ways, figures of {join_first(elsewhere)} unknown")
     notes = (NO_MATCH_NOTE, NO_USE_NOTE)
     phrases += [text for text in result.bound.assumptions if not result.terms or text.split(":")[0] in notes]
     unfound_text = describe_unfound_places(find_unfound_places(analysis, result.terms))
@@ -74,7 +74,7 @@ def _describe_unknown_figures(result: ChainResult, system: TimingSystem) -> Iter
     link_names = [name for name in latencies if _HOST_SEPARATOR not in name and not is_missing_cores(name)]
     for quantity, names in (("period or rate", periods), ("execution time", times), ("latency", link_names)):
         if names:
-            yield f"{quantity} of {figure_wording.join_first_names(tuple(names))} unknown"
+            yield f"{quantity} of {join_first(tuple(names))} unknown"
     yield from (f"{name} not written" for name in cores)
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 from typing import Any
 
+from archgen.diagnostics.common_wording import join_first
 from archgen.diagnostics.text_columns import TextRow, align_rows
 from archgen.emit.data import timing_json
 from archgen.emit.terminal import chain_gaps, chain_remedies
@@ -143,15 +144,15 @@ def format_budget(
     else:
         yield f"All together, each times {figure_wording.format_number(budget.shared.factor)}: who may take how much"
         header = ("partner", "element", "written", "may take", "")
-        rows = [_share_row(share, partner_titles) for share in _sort_shares(budget.shared.shares)]
+        rows = [
+            _share_row(share, partner_titles)
+            for share in sorted(
+                budget.shared.shares, key=lambda share: (not share.owners, share.owners, not share.on_chain)
+            )
+        ]
         yield from align_rows([header, *rows], width)
     if budget.untried:
-        yield f"not tried, as {len(budget.untried)} figures are too many: {figure_wording.join_first_names(budget.untried)}"
-
-
-def _sort_shares(shares: tuple[PartnerShare, ...]) -> list[PartnerShare]:
-    """Return shares by partner, what is on the chain first, and else in their order."""
-    return sorted(shares, key=lambda share: (not share.owners, share.owners, not share.on_chain))
+        yield f"not tried, as {len(budget.untried)} figures are too many: {join_first(budget.untried)}"
 
 
 def _figure_row(budget: FigureBudget) -> TextRow:

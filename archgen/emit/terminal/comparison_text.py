@@ -10,8 +10,7 @@ from archgen.diagnostics.safe_text import defuse_command, make_visible
 from archgen.diagnostics.source_span import SourceTexts
 from archgen.emit.terminal import findings_text
 from archgen.views.changes import comparison_document
-from archgen.views.changes.breaking_items import BreakingChange
-from archgen.views.changes.comparison_document import ComparisonDocument, FindingGroup, NamedVersion
+from archgen.views.changes.comparison_document import ComparisonDocument
 from archgen.views.changes.figure_lines import MINUS_SIGN, ChainRow, FigureLine
 
 # Plain ASCII, as terminals of build servers show it.
@@ -32,7 +31,12 @@ def write_comparison_lines(
     """Yield the lines of a comparison. `sources` are the files of both versions, which errors of reading quote."""
     for version, source_texts in zip(document.versions, sources, strict=True):
         if version.errors:
-            yield from _unsound_lines(version, source_texts, colour=colour)
+            yield make_visible(
+                f"{version.name} {comparison_document.UNSOUND_LEAD} ({version.error_count}). {comparison_document.UNSOUND_SENTENCE}"
+            )
+            yield ""
+            yield from findings_text.render_findings_text(version.errors, source_texts, colour=colour)
+            yield ""
     yield from _breaking_lines(document, colour=colour)
     if document.only_breaking:
         yield from map(make_visible, document.verdict[:1])
@@ -53,17 +57,14 @@ def write_comparison_lines(
     yield from _figure_lines(comparison_document.LOAD_HEADING, document.load_lines, colour=colour)
     yield from _chain_lines(document.chain_rows, colour=colour)
     for finding_group in document.finding_groups:
-        yield from _finding_lines(finding_group, colour=colour)
+        yield _paint_text(finding_group.heading, "1", colour=colour)
+        for finding in finding_group.findings:
+            severity = finding.effective_severity
+            place_note = f" ({finding.span})" if finding.span.file else ""
+            rule = _paint_text(f"{severity}[{finding.rule}]", _SEVERITY_COLOURS[severity], colour=colour)
+            yield f"  {rule}: {make_visible(finding.message + place_note)}"
+        yield ""
     yield make_visible(document.summary + (f"; {document.obstacle}" if document.obstacle else ""))
-
-
-def _unsound_lines(version: NamedVersion, sources: SourceTexts, *, colour: bool) -> Iterator[str]:
-    yield make_visible(
-        f"{version.name} {comparison_document.UNSOUND_LEAD} ({version.error_count}). {comparison_document.UNSOUND_SENTENCE}"
-    )
-    yield ""
-    yield from findings_text.render_findings_text(version.errors, sources, colour=colour)
-    yield ""
 
 
 def _breaking_lines(document: ComparisonDocument, *, colour: bool) -> Iterator[str]:
@@ -73,7 +74,10 @@ def _breaking_lines(document: ComparisonDocument, *, colour: bool) -> Iterator[s
     # One cause often breaks several changes: its reason is written once, then "as above".
     told_reasons = set[str]()
     for item in document.breaking_changes:
-        yield _change_line(item.change, _breaks_note(item, colour=colour), colour=colour)
+        partners = make_visible(", ".join(item.partners))
+        yield _change_line(
+            item.change, _paint_text(f"breaks {partners} ({item.categories}): ", "1;31", colour=colour), colour=colour
+        )
         reasons = dict.fromkeys(loss.reason for loss in item.losses).keys()
         yield from (make_visible(f"      {reason}") for reason in reasons if reason not in told_reasons)
         if not told_reasons.isdisjoint(reasons):
@@ -89,11 +93,6 @@ def _breaking_lines(document: ComparisonDocument, *, colour: bool) -> Iterator[s
 def _entry_lines(document: ComparisonDocument) -> Iterator[str]:
     for entries in document.missing_entries:
         yield from (make_visible(f"      {line}") for line in entries.splitlines())
-
-
-def _breaks_note(item: BreakingChange, *, colour: bool) -> str:
-    partners = make_visible(", ".join(item.partners))
-    return _paint_text(f"breaks {partners} ({item.categories}): ", "1;31", colour=colour)
 
 
 def _change_line(change: Edit, note: str = "", *, colour: bool) -> str:
@@ -124,16 +123,6 @@ def _chain_lines(chain_rows: Sequence[ChainRow], *, colour: bool) -> Iterator[st
         yield make_visible(f"  {row.id}: {row.before} → {row.after}{growth}{deadline}")
         if row.reason:
             yield make_visible(f"      because of {row.reason}")
-    yield ""
-
-
-def _finding_lines(finding_group: FindingGroup, *, colour: bool) -> Iterator[str]:
-    yield _paint_text(finding_group.heading, "1", colour=colour)
-    for finding in finding_group.findings:
-        severity = finding.effective_severity
-        place_note = f" ({finding.span})" if finding.span.file else ""
-        rule = _paint_text(f"{severity}[{finding.rule}]", _SEVERITY_COLOURS[severity], colour=colour)
-        yield f"  {rule}: {make_visible(finding.message + place_note)}"
     yield ""
 
 

@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from fractions import Fraction
 
+from archgen.diagnostics.common_wording import join_first
 from archgen.diagnostics.text_columns import TextRow, format_section
-from archgen.emit.terminal import chain_gaps, chain_remedies, timing_legend
+from archgen.emit.terminal import chain_gaps, chain_remedies
 from archgen.emit.terminal.chain_gaps import describe_gaps
 from archgen.simulation.chain_evidence import NO_EVIDENCE, ChainEvidence
 from archgen.timing.analysis import Analysis, ChainResult, HostLoad
 from archgen.timing.chains.chain_advice import advise_on_chain
-from archgen.timing.chains.chain_verdicts import VERDICT_WORDS
+from archgen.timing.chains.chain_verdicts import VERDICT_MEANINGS, VERDICT_WORDS
 from archgen.timing.chains.figure_explanations import describe_behaviour
 from archgen.timing.chains.fused_inputs import find_fused_inputs
 from archgen.timing.chains.loop_rounds import LoopRound
 from archgen.timing.figures import figure_wording
+from archgen.timing.figures.figure_wording import name_unknown_reason
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import NO_MATCH_NOTE, is_unfound
 from archgen.timing.load.host_verdicts import name_host_verdict
+from archgen.timing.load.resource_loads import list_turn_notes
 from archgen.timing.system.thread_pools import find_joint_nodes
 
 
@@ -58,7 +61,7 @@ def format_timing(
     )
     lines = [line for title, rows in sections for line in format_section(title, rows, width)]
     yield from lines
-    yield from timing_legend.format_legend(analysis, chains, "\n".join(lines), width)
+    yield from format_legend(analysis, chains, "\n".join(lines), width)
     yield from _fault_lines(analysis)
 
 
@@ -123,7 +126,7 @@ def _describe_unproven(load: HostLoad) -> str:
     """Say of a host that can do its work which of its elements are not proven to be done in time."""
     if load.verdict != "undecided" or not load.unproven:
         return ""
-    return f"the cores can do it; not proven to be done in time: {figure_wording.join_first_names(load.unproven)}"
+    return f"the cores can do it; not proven to be done in time: {join_first(load.unproven)}"
 
 
 def _format_bounds(load: HostLoad) -> str:
@@ -219,12 +222,15 @@ def _assumption_rows(analysis: Analysis) -> Iterator[TextRow]:
         )
     measured_ids = tuple(activity.id for activity in analysis.system.activities.values() if activity.wcet_measured)
     if measured_ids:
-        names = figure_wording.join_first_names(measured_ids)
+        names = join_first(measured_ids)
         yield (f"the execution time of {names} is the longest that was seen, and not proven",)
     joint_count = len(find_joint_nodes(analysis.system))
     if joint_count:
         subject = "node of several components" if joint_count == 1 else "nodes of several components"
         yield (f"{joint_count} {subject}: one thread{' each' if joint_count > 1 else ''}",)
+    said = {note for response in analysis.responses.values() for note in response.worst.assumptions}
+    fair_notes = [share.assumption for share in analysis.system.fair_shares.values()]
+    yield from ((note,) for note in (*fair_notes, *list_turn_notes(analysis.system).values()) if note in said)
 
 
 def _fault_lines(analysis: Analysis) -> Iterator[str]:
@@ -233,12 +239,12 @@ def _fault_lines(analysis: Analysis) -> Iterator[str]:
     for ring in analysis.deadlocked:
         yield f"deadlock: each waits for the other in {' > '.join(ring)}"
     if analysis.diverged:
-        yield f"no bound was found for {figure_wording.join_first_names(analysis.diverged)}"
+        yield f"no bound was found for {join_first(analysis.diverged)}"
 
 
 def format_missing(value: TimingValue) -> str:
     """Return which elements' figures a value lacks."""
-    return f"unknown: {figure_wording.join_first_names(value.missing)}" if value.missing and not value.complete else ""
+    return f"unknown: {join_first(value.missing)}" if value.missing and not value.complete else ""
 
 
 def format_figure(value: TimingValue | None, write: Callable[[Fraction], str] = figure_wording.format_duration) -> str:
@@ -250,3 +256,89 @@ def format_figure(value: TimingValue | None, write: Callable[[Fraction], str] = 
         return f"unbounded ({reason})" if reason == "overload" else reason
     sign = "" if value.complete else {"at least": ">= ", "at most": "<= "}.get(value.side, ">= ")
     return sign + write(value.value)
+
+
+_MOST_LINES = 10
+_CHAIN_FIGURES = {
+    "reaction time": "from a change in the world until the last element has acted on it: what a deadline is about",
+    "data age": "how old what the last element sends may be, until its next output replaces it",
+}
+_SIGNS = {
+    "~": "rounded to what is shown",
+    ">=": "what is known adds up to so much: no bound",
+    "<=": "at most so much, whatever is missing",
+    "(inferred)": "nobody wrote how it works",
+}
+_FIGURES = {
+    "unknown": "figures are missing",
+    "unbounded": "there is no largest one (overload, what works once, what need not come)",
+    "no bound found": "the search found none; there may be one",
+}
+_BEHAVIOURS = {
+    "periodic": "works by its own clock",
+    "event": "when something arrives",
+    "on_demand": "when it is called",
+    "once": "at the start",
+}
+_TIERS = {
+    "declared": "as it is written",
+    "dedicated": "no host is written: a core of its own",
+    "host": "one core in any order",
+    "priorities": "by priority",
+    "fair": "Linux shares the cores",
+    "executor": "one thread in any order",
+    "non_preemptive": "by priority, without interruption",
+    "fifo": "first come, first served",
+    "ros2_executor": "by the rounds of ROS 2",
+    "edf": "the earliest deadline first",
+    "cores": "several cores in any order",
+    "whole host": "several cores taken as one, in any order",
+    "whole way": "ways over hosts and links as wholes, in any order",
+    "unknown": "an execution time, or the number of cores, is not written",
+}
+
+
+def format_legend(
+    analysis: Analysis, chains: Mapping[str, ChainResult], summary: str, width: int | None
+) -> Iterator[str]:
+    """Yield the section of words below a summary. In a narrow terminal the last ones give way to the name of their page."""
+    rows = list(_list_words(analysis, chains, summary))
+    lines = list(format_section("Words", rows, width))
+    while len(lines) > _MOST_LINES + 2 and rows:  # the title, and an empty line
+        rows.pop()
+        lines = list(format_section("Words", [*rows, ("...", "docs/timing.md has the others")], width))
+    yield from lines
+
+
+def _list_words(analysis: Analysis, chains: Mapping[str, ChainResult], summary: str) -> Iterator[TextRow]:
+    """Yield the words with what they mean, those of verdicts first; words of one kind share a row."""
+    verdicts = {result.verdict for result in chains.values() if result.deadline}
+    yield from ((VERDICT_WORDS[word], text) for word, text in VERDICT_MEANINGS.items() if word in verdicts)
+    if chains:
+        yield from _CHAIN_FIGURES.items()
+    reasons = {
+        *map(name_unknown_reason, _list_shown_values(analysis, chains)),
+        *(load.verdict for load in analysis.hosts.values()),
+    }
+    yield from _join_words(_FIGURES, reasons)
+    # Signs are no part of any id: where one stands in the text, it is a sign.
+    yield from _join_words(_SIGNS, {sign for sign in _SIGNS if sign in summary})
+    tiers = {response.tier for response in analysis.responses.values()}
+    yield from _join_words({f"({word})": text for word, text in _TIERS.items()}, {f"({word})" for word in tiers})
+    yield from _join_words(_BEHAVIOURS, {pace.behaviour for pace in analysis.paces.values()})
+
+
+def _join_words(meanings: Mapping[str, str], used: Collection[str | None]) -> Iterator[TextRow]:
+    """Yield one row for the words of a kind that are used, the first in front of the others."""
+    first, *others = [(word, text) for word, text in meanings.items() if word in used] or [("", "")]
+    if first[0]:
+        yield first[0], "; ".join((first[1], *(f"{word}: {text}" for word, text in others)))
+
+
+def _list_shown_values(analysis: Analysis, chains: Mapping[str, ChainResult]) -> Iterator[TimingValue]:
+    """Yield the figures that the summary prints."""
+    yield from (result.bound for result in chains.values())
+    yield from (load.worst for load in analysis.services.values())
+    yield from (value for link in analysis.links.values() for value in (link.traffic, link.share))
+    for name, pace in analysis.paces.items():
+        yield from (pace.rate, pace.gap, analysis.responses[name].worst)

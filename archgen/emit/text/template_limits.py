@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import contextlib
-from dataclasses import dataclass
+
+from archgen.frozen import dataclass
 
 MAX_TEMPLATE_BYTES = 1_000_000
 

@@ -13,7 +13,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from traceback import walk_tb
-from typing import Any, NamedTuple, NoReturn
+from typing import Any, NoReturn
 
 from jinja2 import StrictUndefined, Template, TemplateError, TemplateNotFound, TemplateSyntaxError
 from jinja2.loaders import BaseLoader
@@ -22,6 +22,7 @@ from jinja2.sandbox import ImmutableSandboxedEnvironment
 from archgen.emit.safe_names import explain_long_path, is_safe_path, make_safe_path
 from archgen.emit.text.template_filters import TEMPLATE_FILTERS, make_escape_filter
 from archgen.emit.text.template_limits import MAX_TEMPLATE_BYTES, TemplateLimits, confine_process
+from archgen.frozen import NamedTuple
 
 _ESCAPED_ENDINGS = (".html", ".htm", ".xhtml", ".xml", ".svg")
 _MAX_OBJECT_NAME = 200

@@ -6,11 +6,11 @@ import os
 import stat
 import unicodedata
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 from archgen.emit.file_tree import digest_named_file, list_files_below
 from archgen.emit.safe_names import explain_long_path, is_safe_path
+from archgen.frozen import dataclass
 
 _MAX_PART_BYTES = 200
 """What every file system takes as one name, with room for what other tools append."""
@@ -50,7 +50,8 @@ def find_path_problems(files: Iterable[GeneratedFile]) -> Iterator[str]:
             continue
         fold = fold_file_path(file.path)
         other = files_by_fold.get(fold) or folders_by_fold.get(fold)
-        for parent in _list_parents(fold):
+        parts = fold.split("/")
+        for parent in ["/".join(parts[:count]) for count in range(1, len(parts))]:
             other = other or files_by_fold.get(parent)
             folders_by_fold.setdefault(parent, file)
         if other is not None:
@@ -71,11 +72,6 @@ def explain_bad_path(path: str) -> str:
     if any(part in _TOOL_FOLDERS or part.startswith("git~") for part in folded_parts):
         return "leads into a folder of another tool"
     return ""
-
-
-def _list_parents(path: str) -> list[str]:
-    parts = path.split("/")
-    return ["/".join(parts[:count]) for count in range(1, len(parts))]
 
 
 def _name_file(file: GeneratedFile) -> str:

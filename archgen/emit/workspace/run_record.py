@@ -10,12 +10,12 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from archgen.emit.file_tree import OutputError
 from archgen.emit.workspace.disk_files import explain_bad_path, fold_file_path
+from archgen.frozen import dataclass, field
 
 RECORD_FOLDER = ".archgen"
 _FORMAT = 1

@@ -13,46 +13,25 @@ import shutil
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from archgen.emit.file_tree import OutputError
+from archgen.emit.file_tree import OutputError, lock_folder
 from archgen.emit.workspace.run_record import RECORD_FOLDER, RunRecord, write_run_record
 from archgen.emit.workspace.workspace_plan import WorkspacePlan
-
-with contextlib.suppress(ImportError):  # Windows has none
-    import fcntl
 
 
 @contextlib.contextmanager
 def lock_workspace(workspace: Path) -> Iterator[None]:
     """Keep other runs of archgen out of a workspace. Raise OutputError where one is at work."""
     folder = workspace / RECORD_FOLDER
-    _refuse_link(folder)
-    new_folders = [each for each in (workspace, *workspace.parents) if not each.exists()]
-    folder.mkdir(parents=True, exist_ok=True)
+    if folder.is_symlink():
+        msg = f"{folder} is a link"
+        raise OutputError(msg, "take the link away: archgen writes there what it made")
     try:
-        with _lock_folder(folder):
+        with lock_folder(folder):
             yield
     finally:
-        # Only empty ones go: of a workspace that got no file.
+        # Of a workspace that has no file any more.
         with contextlib.suppress(OSError):
-            for each in (folder, *new_folders):
-                each.rmdir()
-
-
-@contextlib.contextmanager
-def _lock_folder(folder: Path) -> Iterator[None]:
-    """Hold the lock of a folder, where the system has such locks. Raise OutputError where another process does."""
-    if "fcntl" not in globals():
-        yield
-        return
-    descriptor = os.open(folder, os.O_RDONLY)
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        yield
-    except BlockingIOError:
-        msg = f"another archgen is writing into {folder.parent}"
-        raise OutputError(msg, "wait until it is done, and run this again") from None
-    finally:
-        os.close(descriptor)
+            folder.rmdir()
 
 
 def carry_out(plan: WorkspacePlan, workspace: Path) -> None:
@@ -134,12 +113,6 @@ def _put_record(record: RunRecord, workspace: Path, staging: Path) -> None:
     staging.mkdir(exist_ok=True)
     (staging / "record").write_bytes(data)
     os.replace(staging / "record", path)  # noqa: PTH105
-
-
-def _refuse_link(folder: Path) -> None:
-    if folder.is_symlink():
-        msg = f"{folder} is a link"
-        raise OutputError(msg, "take the link away: archgen writes there what it made")
 
 
 def _refuse_closed_folders(plan: WorkspacePlan, workspace: Path) -> None:

@@ -10,11 +10,11 @@ import io
 import re
 import zipfile
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Any
 
 from archgen.emit.own_file_marks import PROGRAM_NAME, PROGRAM_PART
+from archgen.frozen import dataclass, field
 from archgen.views.shapes import Facts, Inlines, Outline, Section, Table
 
 _MAX_NAME = 31
@@ -57,7 +57,14 @@ def write_workbook(outline: Outline) -> bytes:
     workbook.set_properties({"title": _replace_forbidden(outline.title), "created": datetime(*_STAMP[:3])})  # noqa: DTZ001 - no clock
     names: set[str] = set()
     for content in collect_sheets(outline):
-        _write_sheet(workbook, content, _name_sheet(content.title, names))
+        base = _FORBIDDEN_NAME.sub(" ", _replace_forbidden(content.title)).strip("' ")[:_MAX_NAME] or "Table"
+        name, number = base, 1
+        while name.casefold() in names:
+            number += 1
+            suffix = f" {number}"
+            name = base[: _MAX_NAME - len(suffix)] + suffix
+        names.add(name.casefold())
+        _write_sheet(workbook, content, name)
     if not names:
         workbook.add_worksheet("No tables")
     workbook.close()
@@ -123,18 +130,6 @@ def _join_text(cell: Inlines | str) -> str:
 def _replace_forbidden(text: str) -> str:
     """Return text with a visible sign for each character that XML cannot hold."""
     return _FORBIDDEN_TEXT.sub("\ufffd", text)
-
-
-def _name_sheet(title: str, names: set[str]) -> str:
-    """Return a name for a sheet that Excel allows and that no other has, whatever the case of its letters."""
-    base = _FORBIDDEN_NAME.sub(" ", _replace_forbidden(title)).strip("' ")[:_MAX_NAME] or "Table"
-    name, number = base, 1
-    while name.casefold() in names:
-        number += 1
-        suffix = f" {number}"
-        name = base[: _MAX_NAME - len(suffix)] + suffix
-    names.add(name.casefold())
-    return name
 
 
 def _sign_package(data: bytes) -> bytes:

@@ -9,11 +9,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
-from typing import NamedTuple
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import Span, first_written_span
+from archgen.frozen import NamedTuple, replace
 from archgen.link.data_types.field_reading import explain_bad_text, write_literal
 from archgen.link.data_types.field_types import FieldTypeReader, TypeSources, is_bound_name
 from archgen.model.generic_names import read_generic_name

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
-from typing import NamedTuple
 
+from archgen.frozen import NamedTuple, replace
 from archgen.link.data_types.field_types import is_bound_name, list_held_names, make_bound_type
 from archgen.model.generic_names import MAX_NAME_LENGTH, read_generic_name
 from archgen.model.message_types import PART_KEYS, ConceptualType, full_message_name

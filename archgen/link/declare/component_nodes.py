@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import NamedTuple
 
 from archgen.compose.expanded_project import ExpandedProject
 from archgen.compose.instance_overlay import lay_node
 from archgen.diagnostics.diagnostic import Diagnostic, Label
+from archgen.frozen import NamedTuple
 from archgen.link import mapping_values
-from archgen.link.declare.group_declaration import DeclaredGroups
+from archgen.link.declare.component_declaration import DeclaredGroups
 from archgen.link.declare.handed_parameters import HandedParameters
 from archgen.link.declare.start_declaration import diagnose_idle_start, inherit_start, resolve_start
 from archgen.link.element_outline import ElementOutline
@@ -123,7 +123,7 @@ class ComponentNodes:
                 body = lay_node(own_bodies[0][1], body)
             for component_id in component_ids:
                 self._report_unused(component_id, entry, is_one=len(component_ids) == 1)
-            self.entries[entry.key] = entry.with_value(_drop_whole(body))
+            self.entries[entry.key] = entry.with_value(body.without("whole"))
 
     def _report_unused(self, component_id: str, node: MappingEntry, *, is_one: bool) -> None:
         """Report `node` inside of what a node implements as a whole, and at one of several components of a node."""
@@ -161,7 +161,7 @@ class ComponentNodes:
             self._report_unused(component_id, self.entries[node_id], is_one=True)
 
     def _add_node(self, component_id: str, node_id: str, used_names: set[tuple[str, str]]) -> None:
-        body, entry = _drop_whole(self.find_body(component_id)), self._entry_of(component_id)
+        body, entry = self.find_body(component_id).without("whole"), self._entry_of(component_id)
         reference = ScalarNode(component_id, component_id, entry.key_span)
         entries = {"implements": MappingEntry("implements", entry.key_span, SequenceNode([reference], entry.key_span))}
         if "name" not in body.entries:
@@ -207,10 +207,6 @@ def _list_inherited(around: MappingNode) -> dict[str, MappingEntry]:
         start = inherit_start(entries.pop("start"))
         entries |= {"start": start} if start else {}
     return entries
-
-
-def _drop_whole(body: MappingNode) -> MappingNode:
-    return MappingNode({e.key: e for e in body if e.key != "whole"}, body.span) if "whole" in body.entries else body
 
 
 def _join_namespaces(body: MappingNode, around: Mapping[str, MappingEntry], own: MappingNode) -> None:

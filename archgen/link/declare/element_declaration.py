@@ -17,7 +17,7 @@ from archgen.diagnostics.diagnostic import Diagnostic, Label, diagnose_repetitio
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.language.language_tables import KEYS, OFFERS, SECTION_KINDS
 from archgen.link import mapping_values, sanity_checks
-from archgen.link.declare.deadline_declaration import read_deadline
+from archgen.link.declare.timing_declaration import read_deadline
 from archgen.link.reference_resolution import SECTIONS_OF_PLAIN_NAMES, ReferenceResolver
 from archgen.link.value_readers import find_type, find_value_reader, list_held_keys, read_element, store_value
 from archgen.model.architecture import GlossaryTerm, Partner
@@ -42,7 +42,7 @@ def read_range(
     message = f"the range of the property `{property_id}` is not its smallest and its greatest number"
     help_line = "write `range: [1, 9]`; what they are measured in is `unit`"
     span = mapping_values.get_span(body, key)
-    resolver.diagnostics.append(Diagnostic("wrong-value", message, span, help=help_line, element=property_id))
+    resolver.report("wrong-value", message, span, help_line=help_line, element=property_id)
     return None
 
 
@@ -61,7 +61,7 @@ def read_required(body: MappingNode, key: str, property_id: str, resolver: Refer
     message = f"the property `{property_id}` is required of every kind of element"
     help_line = "say of which ones: `of: [component]`"
     span = mapping_values.get_span(body, key)
-    resolver.diagnostics.append(Diagnostic("wrong-value", message, span, help=help_line, element=property_id))
+    resolver.report("wrong-value", message, span, help_line=help_line, element=property_id)
     return False
 
 
@@ -256,15 +256,13 @@ def read_verifications(
         use_case_span = resolver.plain_spans["use case"].get(text)
         chain_span = resolver.plain_spans["chain"].get(text)
         if use_case_span and chain_span:
-            resolver.diagnostics.append(
-                Diagnostic(
-                    "ambiguous-reference",
-                    f"`{text}` can mean the use case or the chain of this name",
-                    scalar.span,
-                    labels=(Label(use_case_span, "the use case"), Label(chain_span, "the chain")),
-                    help="rename one of them",
-                    element=requirement_id,
-                )
+            resolver.report(
+                "ambiguous-reference",
+                f"`{text}` can mean the use case or the chain of this name",
+                scalar.span,
+                labels=(Label(use_case_span, "the use case"), Label(chain_span, "the chain")),
+                help_line="rename one of them",
+                element=requirement_id,
             )
         elif use_case_span:
             found.append(Verification("use_case", text, scalar.span))

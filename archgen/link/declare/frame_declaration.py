@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Rule, Severity
+from archgen.frozen import NamedTuple
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.declare.handed_parameters import HandedParameters
 from archgen.link.inner_names import find_inner_component

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import replace
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean
+from archgen.frozen import replace
 from archgen.link import mapping_values
 from archgen.link.element_outline import ElementOutline
 from archgen.link.value_readers import read_values

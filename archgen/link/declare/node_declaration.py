@@ -7,11 +7,10 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.link import mapping_values, sanity_checks
 from archgen.link.declare.component_nodes import ImplementingNodes
 from archgen.link.declare.start_declaration import declare_start, read_command
@@ -22,8 +21,7 @@ from archgen.link.merged_timing import TimingMerger
 from archgen.link.parameter_texts import flatten_parameters
 from archgen.link.path_guesses import take_path_end
 from archgen.link.port_resolution import PortResolver
-from archgen.link.reference_resolution import ReferenceResolver
-from archgen.link.unknown_references import diagnose_unknown_reference
+from archgen.link.reference_resolution import ReferenceResolver, diagnose_unknown_reference
 from archgen.link.value_readers import read_element, read_values
 from archgen.model.component import Component
 from archgen.model.deployment import Container
@@ -276,14 +274,12 @@ def _resolve_component(
     if len(matching) == 1:
         return matching[0]
     if matching:
-        resolver.diagnostics.append(
-            Diagnostic(
-                "ambiguous-reference",
-                f"`{reference.text}` can mean {' or '.join(f'`{name}`' for name in matching)}",
-                reference.span,
-                help=f"write `{matching[0]}`, for instance",
-                element=node_id,
-            )
+        resolver.report(
+            "ambiguous-reference",
+            f"`{reference.text}` can mean {' or '.join(f'`{name}`' for name in matching)}",
+            reference.span,
+            help_line=f"write `{matching[0]}`, for instance",
+            element=node_id,
         )
     elif is_complete and not resolver.is_lost(reference.text):
         length = reference.text.count(".") + 1

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
-from archgen.diagnostics.diagnostic import Diagnostic, Label
+from archgen.diagnostics.diagnostic import Label
 from archgen.diagnostics.source_span import NO_SPAN
+from archgen.frozen import NamedTuple, replace
 from archgen.link.declare.handed_parameters import HandedParameters
 from archgen.link.element_outline import ElementOutline
-from archgen.link.port_sources import PortKey, PortSources
 from archgen.link.reference_resolution import ReferenceResolver
 from archgen.model.component import Output
 from archgen.model.promise import PROMISE_KEYS, Deprecation, Promise
+
+if TYPE_CHECKING:
+    from archgen.link.port_sources import PortKey, PortSources
 
 
 class _OutputWords(NamedTuple):
@@ -135,17 +137,15 @@ class PromisedOutputs:
         if not self._resolver.is_lost(text) and not self._resolver.is_lost(f"{component_id}.{text}"):
             guess = self._resolver.guesser.guess_name(text, outputs if "." not in text else known)
             span = outputs[guess].at if guess in outputs else known.get(guess or "", NO_SPAN)
-            self._resolver.diagnostics.append(
-                Diagnostic(
-                    "unknown-reference",
-                    f"`{text}` is no output of `{component_id}`, and no complete path of another one",
-                    deprecated.use_at,
-                    labels=(Label(span, "declared here"),) if guess and span != NO_SPAN else (),
-                    help=f"did you mean `{guess}`?"
-                    if guess
-                    else "name another output of the same component, or a complete path",
-                    element=component_id,
-                )
+            self._resolver.report(
+                "unknown-reference",
+                f"`{text}` is no output of `{component_id}`, and no complete path of another one",
+                deprecated.use_at,
+                labels=(Label(span, "declared here"),) if guess and span != NO_SPAN else (),
+                help_line=f"did you mean `{guess}`?"
+                if guess
+                else "name another output of the same component, or a complete path",
+                element=component_id,
             )
         return None
 

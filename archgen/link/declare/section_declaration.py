@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 
-from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean
 from archgen.link import mapping_values, sanity_checks
@@ -136,9 +136,7 @@ def declare_agreements(root: MappingNode, resolver: ReferenceResolver) -> dict[s
         )
         if fault := _find_fault(agreement, root, agreements, resolver):
             message, help_line = fault
-            resolver.diagnostics.append(
-                Diagnostic("unknown-reference", message, entry.key_span, help=help_line, element=name)
-            )
+            resolver.report("unknown-reference", message, entry.key_span, help_line=help_line, element=name)
         agreements[name] = agreement
         _report_unknown_outputs(mapping_values.get_mapping(body, "interfaces"), name, resolver)
     return agreements
@@ -186,9 +184,7 @@ def _report_unknown_outputs(interfaces: MappingNode, name: str, resolver: Refere
         guess = resolver.guesser.guess_name(entry.key, resolver.spans["output"])
         help_line = f"did you mean `{guess}`?" if guess else "name an output by its complete id, or a topic: `/tf`"
         message = f"no output named `{entry.key}`"
-        resolver.diagnostics.append(
-            Diagnostic("unknown-reference", message, entry.key_span, help=help_line, element=name)
-        )
+        resolver.report("unknown-reference", message, entry.key_span, help_line=help_line, element=name)
 
 
 def declare_policies(root: MappingNode, resolver: ReferenceResolver) -> dict[str, Policy]:

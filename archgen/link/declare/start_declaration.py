@@ -10,7 +10,7 @@ from archgen.link import mapping_values, sanity_checks
 from archgen.link.inner_names import find_inner_component
 from archgen.link.value_readers import read_values
 from archgen.model.start_up import ReadyConditions, StartTarget, StartUp
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, list_entries
 
 if TYPE_CHECKING:
     from archgen.diagnostics.source_span import Span
@@ -98,7 +98,7 @@ def resolve_start(body: MappingNode, resolver: ReferenceResolver, component_id: 
             elif not scalars:
                 del entries[key]
                 continue
-            entries[key] = MappingEntry(key, entries[key].key_span, value)
+            entries[key] = entries[key].with_value(value)
     entry = body.entries["start"]
     completed = MappingEntry("start", entry.key_span, MappingNode(entries, start.span))
     return MappingNode({**body.entries, "start": completed}, body.span)
@@ -115,8 +115,7 @@ def _complete_targets(
 
 def diagnose_idle_start(node_body: MappingNode, component_id: str) -> Iterator[Diagnostic]:
     """Yield what a composed component says that is no process of its own: of each node inside it cannot be meant."""
-    start = node_body.get("start")
-    for entry in start if isinstance(start, MappingNode) else ():
+    for entry in list_entries(node_body, "start"):
         if entry.key in _NOT_INHERITED:
             yield Diagnostic(
                 "idle-start",
@@ -132,4 +131,4 @@ def inherit_start(entry: MappingEntry) -> MappingEntry | None:
     if not isinstance(entry.value, MappingNode):
         return None
     entries = {each.key: each for each in entry.value if each.key not in _NOT_INHERITED}
-    return entry.with_value(MappingNode(entries, entry.value.span)) if entries else None
+    return entry.with_entries(entries) if entries else None

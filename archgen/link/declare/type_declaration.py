@@ -7,13 +7,13 @@ that replace deprecated ones.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from itertools import chain
+from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label
 from archgen.diagnostics.source_span import first_written_span
 from archgen.diagnostics.suggestions import find_closest
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.link import mapping_values
 from archgen.link.data_types.field_reading import TypeReading, read_type_content
 from archgen.link.data_types.field_types import (
@@ -24,7 +24,6 @@ from archgen.link.data_types.field_types import (
     is_bound_name,
     list_held_names,
 )
-from archgen.link.data_types.message_definitions import DefinitionMaker, TypeDefinition, name_messages
 from archgen.link.data_types.used_types import OversizedType, add_used_types
 from archgen.link.element_outline import ElementOutline
 from archgen.link.promise_reading import read_deprecation
@@ -33,6 +32,9 @@ from archgen.model.graph_search import find_rings
 from archgen.model.message_types import PART_KEYS, ConceptualType, DataField, full_message_name
 from archgen.model.ros_distro import is_ros_1
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode
+
+if TYPE_CHECKING:
+    from archgen.link.data_types.message_definitions import TypeDefinition
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,6 +127,8 @@ def _define_messages(
     sources: TypeSources,
     diagnostics: list[Diagnostic],
 ) -> tuple[TypeDefinition, ...]:
+    from archgen.link.data_types.message_definitions import DefinitionMaker, name_messages
+
     spans = {mention.name: mention.span for mention in reversed(list(mentions))}
     defining_types = name_messages(types, sources, spans, diagnostics)
     type_reader = FieldTypeReader(types, sources)

@@ -54,15 +54,13 @@ def _resolve_end(
         return StepEnd("actor", text, written_end.span)
     guess = resolver.guesser.guess_name(text, actors) if "." not in text and not _is_known(text, resolver) else None
     if guess is not None:
-        resolver.diagnostics.append(
-            Diagnostic(
-                "unknown-reference",
-                f"no actor, component or output named `{text}`",
-                written_end.span,
-                labels=(Label(actors[guess].at, "declared here"),),
-                help=f"did you mean `{guess}`?",
-                element=use_case_id,
-            )
+        resolver.report(
+            "unknown-reference",
+            f"no actor, component or output named `{text}`",
+            written_end.span,
+            labels=(Label(actors[guess].at, "declared here"),),
+            help_line=f"did you mean `{guess}`?",
+            element=use_case_id,
         )
         return StepEnd("unknown", text, written_end.span)
     count = len(resolver.diagnostics)
@@ -81,15 +79,13 @@ def _warn_hidden(written_end: ScalarNode, actor: Actor, use_case_id: str, resolv
     """Warn where an actor has the name of a component: the actor is meant."""
     component_ids = resolver.names.ids_ending_in("component", actor.id)
     if component_ids:
-        resolver.diagnostics.append(
-            Diagnostic(
-                "hidden-reference",
-                f"`{actor.id}` is the actor, which hides the component `{component_ids[0]}`",
-                written_end.span,
-                labels=(Label(actor.at, "the actor"), Label(resolver.spans["component"][component_ids[0]], "hidden")),
-                help=f"write `{component_ids[0]}` if that is meant, or call the actor otherwise",
-                element=use_case_id,
-            )
+        resolver.report(
+            "hidden-reference",
+            f"`{actor.id}` is the actor, which hides the component `{component_ids[0]}`",
+            written_end.span,
+            labels=(Label(actor.at, "the actor"), Label(resolver.spans["component"][component_ids[0]], "hidden")),
+            help_line=f"write `{component_ids[0]}` if that is meant, or call the actor otherwise",
+            element=use_case_id,
         )
 
 

@@ -6,9 +6,9 @@ What a variant writes to: it may add elements, but a slip in an id must not make
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
 
 from archgen.compose import expand_project
-from archgen.compose.type_table import MissingTypeDescriber
 from archgen.compose.variant_overlay import MissingKey, drop_key, lay_changes
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.suggestions import did_you_mean
@@ -22,6 +22,9 @@ from archgen.link.variants.variant_selectors import prune_selectors, select_left
 from archgen.model.architecture import Architecture
 from archgen.model.selector_evaluation import SelectorEvaluator
 from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode
+
+if TYPE_CHECKING:
+    from archgen.compose.type_table import MissingTypeDescriber
 
 _NAMING_SECTIONS = ("groups", "nodes", "component_types", "libraries", "project")
 """Sections that have a say in what the inputs of components read."""
@@ -180,19 +183,17 @@ class ChangeTargets:
         self.diagnostics: list[Diagnostic] = []
         self._root = root
         self._lost_keys = lost_keys
-        self.sound = changes.with_entries({section.key: self._keep_sound(section) for section in changes})
+        self.sound = changes.change_each(self._keep_sound)
 
     def _keep_sound(self, section: MappingEntry) -> MappingEntry:
-        if not isinstance(section.value, MappingNode):
-            return section
         known = mapping_values.get_mapping(self._root, section.key)
         if section.key == "groups":
-            kept = {e.key: self._keep_group(known, e) for e in section.value if self._is_known_group(known, e)}
-        elif (kind := SECTION_KINDS.get(section.key, "")) in DECLARING_KEYS:
-            kept = {e.key: e for e in section.value if self._is_sound(kind, known, e)}
-        else:
-            return section
-        return section.with_value(MappingNode(kept, section.value.span))
+            return section.change_each(
+                lambda group: self._keep_group(known, group) if self._is_known_group(known, group) else None
+            )
+        if (kind := SECTION_KINDS.get(section.key, "")) in DECLARING_KEYS:
+            return section.change_each(lambda entry: entry if self._is_sound(kind, known, entry) else None)
+        return section
 
     def _is_sound(self, kind: str, known_body: MappingNode, entry: MappingEntry) -> bool:
         body = mapping_values.get_body(entry)
@@ -227,21 +228,18 @@ class ChangeTargets:
         if "components" not in body.entries or not _INSTANCE_KEYS.isdisjoint({*body.entries, *known_body.entries}):
             return holder
         known = mapping_values.get_mapping(known_body, "components")
-        kept: dict[str, MappingEntry] = {}
-        for part in mapping_values.get_mapping(body, "components"):
+
+        def keep_part(part: MappingEntry) -> MappingEntry | None:
             part_id = f"{holder_id}.{part.key}"
             if part.key in known.entries:
-                kept[part.key] = self._keep_parts(part, mapping_values.get_body(known.entries[part.key]), part_id)
-            elif declares_itself(part.value) or _is_stub(part) or part.key in self._lost_keys:
-                kept[part.key] = part
-            else:
-                names = [f"{holder_id}.{name}" for name in known.entries]
-                help_line = "a new one has a title, a functionality, inputs or outputs"
-                self._report(part, "component", part_id, names, help_line)
-        components = body.entries["components"]
-        parts = MappingNode(kept, components.value.span)
-        entries = {**body.entries, "components": MappingEntry("components", components.key_span, parts)}
-        return holder.with_value(body.with_entries(entries))
+                return self._keep_parts(part, mapping_values.get_body(known.entries[part.key]), part_id)
+            if declares_itself(part.value) or _is_stub(part) or part.key in self._lost_keys:
+                return part
+            names = [f"{holder_id}.{name}" for name in known.entries]
+            self._report(part, "component", part_id, names, "a new one has a title, a functionality, inputs or outputs")
+            return None
+
+        return holder.change_keys({"components": lambda parts: parts.change_each(keep_part)})
 
     def _report(self, entry: MappingEntry, kind: str, name: str, known_names: list[str], new_help: str) -> None:
         self.diagnostics.append(

@@ -6,16 +6,15 @@ What a variant takes out with the components and nodes that it selects: what the
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
 
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import Span
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass
 from archgen.link import mapping_values
 from archgen.link.element_outline import ElementOutline
 from archgen.model.selector_evaluation import SelectorEvaluator
 from archgen.model.selector_parser import parse_selector, split_selector
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, list_entries
 
 _SELECTOR_SECTIONS = ("views", "policies")
 _SELECTOR_KEYS = frozenset({"show", "from", "to", "of", "inputs_from", "outputs_to"})
@@ -78,42 +77,30 @@ def _find_span(selector: ScalarNode, start: int, end: int) -> Span:
 
 def prune_selectors(root: MappingNode, removed: RemovedElements, evaluator: SelectorEvaluator) -> MappingNode:
     """Return a merged project whose views and policies name nothing that is gone; those that named nothing else go too."""
-    entries = dict(root.entries)
-    for section_name in _SELECTOR_SECTIONS:
-        section = entries.get(section_name)
-        if section is None or not isinstance(section.value, MappingNode):
-            continue
-        kept = {
-            entry.key: pruned
-            for entry in section.value
-            if (pruned := _prune_holder(entry, removed, evaluator)) is not None
-        }
-        entries[section_name] = MappingEntry(section_name, section.key_span, MappingNode(kept, section.value.span))
-    return root.with_entries(entries)
+    return root.change_each(
+        lambda section: (
+            section.change_each(lambda holder: _prune_holder(holder, removed, evaluator))
+            if section.key in _SELECTOR_SECTIONS
+            else section
+        )
+    )
 
 
 def _prune_holder(entry: MappingEntry, removed: RemovedElements, evaluator: SelectorEvaluator) -> MappingEntry | None:
     """Return an element with selectors, to any depth, that names nothing that is gone; None where a selector is empty then."""
-    if not isinstance(entry.value, MappingNode):
-        return entry
-    entries: dict[str, MappingEntry] = {}
-    for each in entry.value:
-        kept: MappingEntry | None = each
+
+    def prune(each: MappingEntry) -> MappingEntry | None:
         if isinstance(each.value, MappingNode):
-            kept = _prune_holder(each, removed, evaluator)
-        elif each.key in _SELECTOR_KEYS and isinstance(each.value, ScalarNode):
-            text = _prune_text(each.value.text, removed, evaluator)
-            if text is None:
-                return None
-            if text != each.value.text:
-                scalar = ScalarNode(text, text, each.value.span, is_plain=False)
-                kept = each.with_value(scalar)
-        if kept is None:
-            return None
-        entries[each.key] = kept
-    if all(entries[each.key] is each for each in entry.value):
-        return entry
-    return entry.with_value(entry.value.with_entries(entries))
+            return _prune_holder(each, removed, evaluator)
+        if each.key not in _SELECTOR_KEYS or not isinstance(each.value, ScalarNode):
+            return each
+        text = _prune_text(each.value.text, removed, evaluator)
+        if text == each.value.text:
+            return each
+        return each.with_value(ScalarNode(text, text, each.value.span, is_plain=False)) if text is not None else None
+
+    kept = entry.change_each(prune)
+    return kept if len(list_entries(kept.value)) == len(list_entries(entry.value)) else None
 
 
 def _prune_text(text: str, removed: RemovedElements, evaluator: SelectorEvaluator) -> str | None:

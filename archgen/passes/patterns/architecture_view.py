@@ -21,7 +21,7 @@ from archgen.passes.patterns.view_elements import (
 )
 from archgen.passes.patterns.view_values import read_view_value
 from archgen.passes.project_tree import ProjectTree
-from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, YamlNode
+from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, YamlNode, find_value, list_entries
 
 _PORT_KEYS = ("inputs", "outputs")
 
@@ -167,8 +167,7 @@ class ArchitectureView:
         entry = self._component_types.entries.get(element.type_name)
         node = entry.value if entry else None
         for inner_id in element.inner_ids:
-            components = node.get("components") if isinstance(node, MappingNode) else None
-            node = components.get(inner_id) if isinstance(components, MappingNode) else None
+            node = find_value(node, "components", inner_id)
         return node
 
     def _expand(self, key: str) -> MappingNode:
@@ -216,8 +215,7 @@ class ArchitectureView:
         for item in _list_items(own.get("from")):
             self._resolve_item(item, key, is_output=False)
         for port_key in _PORT_KEYS:
-            ports = own.get(port_key)
-            for port in ports if isinstance(ports, MappingNode) else ():
+            for port in list_entries(own, port_key):
                 body = port.value if isinstance(port.value, MappingNode) else MappingNode({}, port.key_span)
                 for item in _list_items(body.get("from")):
                     self._resolve_item(item, key, is_output=port_key == "outputs")

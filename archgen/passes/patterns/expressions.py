@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
 
 from archgen.diagnostics.suggestions import did_you_mean
+from archgen.frozen import NamedTuple
 from archgen.passes.patterns.pattern_shapes import Pattern, list_variables, parse_text_pattern
 
 _WORD = re.compile(r"""(?:(?<!\s)\s++)?+(==|!=|[()\[\],]|"[^"]*"|'[^']*'|=|[^\s()\[\],="'!]+|\S)""")

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from archgen.diagnostics.element_origins import TreePath
+from archgen.frozen import NamedTuple
 from archgen.passes.patterns.architecture_view import ArchitectureView
 from archgen.passes.patterns.pattern_shapes import ViewValue
 from archgen.passes.patterns.type_layers import Layer
-from archgen.syntax.yaml_tree import MappingNode, ScalarNode, YamlNode
+from archgen.syntax.yaml_tree import ScalarNode, find_value
 
 TYPE_NAME_KEYS = frozenset({"is", "same_as"})
 """The keys whose values name a component type."""
@@ -58,19 +57,13 @@ def _find_written(layers: list[Layer], path: DataPath, present: ViewValue, *, is
     """Return the layer that writes a value, else the one that declares the element that it belongs to."""
     own = layers[0]
     for layer in layers[1:] if is_reference and path[0] != "title" else layers:
-        written = _get_node(layer.node, path)
+        written = find_value(layer.node, *path)
         if written is not None:
             # What a generic name stands for is the instance's: the type says the name.
             is_bound = isinstance(written, ScalarNode) and isinstance(present, str) and written.text != present
             return own if is_bound and layer is not own and not is_reference else layer
-    declaring = [layer for layer in layers if len(path) > 1 and _get_node(layer.node, path[:2]) is not None]
+    declaring = [layer for layer in layers if len(path) > 1 and find_value(layer.node, *path[:2]) is not None]
     return declaring[-1] if declaring else None
-
-
-def _get_node(node: YamlNode | None, path: DataPath) -> YamlNode | None:
-    for key in path:
-        node = node.get(key) if isinstance(node, MappingNode) else None
-    return node
 
 
 def find_source(view: ArchitectureView, layer: Layer, path: DataPath) -> TreePath:

@@ -7,8 +7,9 @@ hold. All work is counted in steps, so that the same input ends at the same plac
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
+from archgen.frozen import NamedTuple
 from archgen.passes.patterns.pattern_shapes import (
     INNER_KEY,
     TYPE_KEYS,

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple
+from typing import Literal
 
 from archgen.diagnostics.source_span import Span
+from archgen.frozen import NamedTuple
 from archgen.passes.patterns.expressions import Condition, Operand
 from archgen.passes.patterns.matching import ViewPattern
 from archgen.passes.patterns.pattern_shapes import Pattern

@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from typing import NamedTuple, Self
+from typing import Self
 
 from archgen.diagnostics.source_span import Span
+from archgen.frozen import NamedTuple
 from archgen.syntax.yaml_tree import PlainValue, ScalarNode
 
 TYPE_KEYS = frozenset({"type", "is", "same_as", "message"})

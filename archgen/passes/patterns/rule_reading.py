@@ -37,7 +37,15 @@ from archgen.passes.patterns.pattern_shapes import (
     parse_text_pattern,
 )
 from archgen.passes.patterns.view_values import check_view_keys
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode, list_spans
+from archgen.syntax.yaml_tree import (
+    MappingEntry,
+    MappingNode,
+    ScalarNode,
+    SequenceNode,
+    YamlNode,
+    find_value,
+    list_spans,
+)
 
 
 def _check_rule(rule: RewriteRule) -> Iterator[Diagnostic]:
@@ -280,7 +288,7 @@ class RuleReader:
         items = node.items if isinstance(node, SequenceNode) else [] if node is None else [node]
         for item in items:
             pattern = self._read_view(item, "unless")
-            where = item.get("where") if isinstance(item, MappingNode) else None
+            where = find_value(item, "where")
             yield NegativePattern(pattern, tuple(self._read_where(where)), _list_distinct(pattern))
 
     def _read_where(self, node: YamlNode | None) -> Iterator[WrittenCondition]:

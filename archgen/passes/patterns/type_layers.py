@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from archgen.compose.instance_overlay import InstanceOverlay
 from archgen.compose.library_types import library_of_type, list_libraries, list_type_entries
@@ -11,8 +10,9 @@ from archgen.compose.type_expressions import TypeExpression, parse_type_expressi
 from archgen.compose.type_table import TypeTable, list_generic_names
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.element_origins import TreePath
+from archgen.frozen import NamedTuple
 from archgen.passes.patterns.view_elements import path_of_type
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlNode, find_value, list_entries
 
 
 class Layer(NamedTuple):
@@ -69,7 +69,7 @@ class TypeLayers:
         name = self.find_type_name(node)
         if name is not None:
             yield name
-        for entry in node if isinstance(node, MappingNode) else ():
+        for entry in list_entries(node):
             yield from self._list_names(entry.value)
 
     def list_inherited(self, name: str) -> frozenset[str]:
@@ -119,7 +119,7 @@ def _get_type_reference(node: MappingNode) -> ScalarNode | None:
 def _read_library_type(root: MappingNode, library: str, name: str) -> MappingEntry | None:
     """Return one component type of a library, as the project knows it."""
     for entry in list_libraries(root):
-        types = entry.value.get("component_types") if isinstance(entry.value, MappingNode) else None
+        types = find_value(entry.value, "component_types")
         own_name = name.removeprefix(f"{library}.")
         if entry.key == library and isinstance(types, MappingNode) and own_name in types.entries:
             node: YamlNode = MappingNode({own_name: types.entries[own_name]}, types.span)

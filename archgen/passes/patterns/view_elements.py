@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from typing import Literal, NamedTuple
+from typing import Literal
 
 from archgen.compose.library_types import library_of_type, list_libraries
 from archgen.diagnostics.element_origins import TreePath
+from archgen.frozen import NamedTuple
 from archgen.model.path_resolver import PathResolver
 from archgen.passes.patterns.matching import IndexToken, list_tokens
 from archgen.passes.patterns.pattern_shapes import PortReference, ViewValue
 from archgen.passes.patterns.view_values import read_view_value
 from archgen.passes.project_tree import ProjectTree
 from archgen.schema import fold_type_name
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlNode, find_value, list_entries
 
 _KINDS = ("group", "component", "output")
 _SELF = "self."
@@ -214,10 +215,10 @@ class ConceptualTypes:
         sections: list[tuple[TreePath, YamlNode | None]] = [(("types",), self._tree.root.get("types"))]
         for library in list_libraries(self._tree.root):
             body = library.value
-            types = body.get("types") if isinstance(body, MappingNode) else None
+            types = find_value(body, "types")
             sections.append((("libraries", library.key, "types"), types))
         for path, section in sections:
-            for entry in section if isinstance(section, MappingNode) else ():
+            for entry in list_entries(section):
                 yield path, entry
 
 
@@ -268,8 +269,7 @@ def path_of_type(name: str) -> TreePath:
 
 
 def _list_groups(root: MappingNode) -> Iterator[ViewElement]:
-    groups = root.get("groups")
-    for group in groups if isinstance(groups, MappingNode) else ():
+    for group in list_entries(root, "groups"):
         path = ("groups", group.key)
         yield ViewElement(group.key, group.key, "group", None, path, None)
         yield from list_inside(group.value, group.key, path, None, (), frozenset())
@@ -287,8 +287,7 @@ def list_inside(  # noqa: PLR0913, PLR0917 - what the recursion carries
     # What an instance writes of components inside belongs to its type.
     if not isinstance(node, MappingNode) or (len(path) > 2 and is_instance(node) and not _is_type(path)):  # noqa: PLR2004
         return
-    components = node.get("components")
-    for part in components if isinstance(components, MappingNode) else ():
+    for part in list_entries(node, "components"):
         if part.key in left_out:
             continue
         key, inner_path = f"{parent}.{part.key}", (*path, "components", part.key)

@@ -11,7 +11,7 @@ from archgen.diagnostics.suggestions import did_you_mean
 from archgen.passes.patterns.pass_shapes import WRONG_PASS
 from archgen.passes.patterns.pattern_shapes import PortReference, ScalarText, ViewValue
 from archgen.schema.language_schema import load_schema
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode, list_entries
 
 FindReference = Callable[[YamlNode], PortReference | None]
 """Returns what a reference in the tree means, None for what is no reference."""
@@ -57,11 +57,11 @@ _PORT_KINDS = {"inputs": ("input", "type_input"), "outputs": ("output",)}
 
 def check_view_keys(view: MappingNode, *, is_edit: bool) -> Iterator[Diagnostic]:
     """Yield what is no key of the language where a rule looks for it, or writes it."""
-    for component in _list_entries(view.get("components")):
-        for entry in _list_entries(component.value):
+    for component in list_entries(view, "components"):
+        for entry in list_entries(component.value):
             yield from _check_component_key(entry, is_edit=is_edit)
-    for named_type in _list_entries(view.get("types")):
-        for entry in _list_entries(named_type.value):
+    for named_type in list_entries(view, "types"):
+        for entry in list_entries(named_type.value):
             yield from _check_key(entry, _list_keys("type"), "a type")
 
 
@@ -77,8 +77,8 @@ def _check_component_key(entry: MappingEntry, *, is_edit: bool) -> Iterator[Diag
             entry, _list_keys("component", "component_type", "group", extra=VIRTUAL_KEYS), "a component"
         )
     kinds = _PORT_KINDS.get(entry.key)
-    for port in _list_entries(entry.value) if kinds else ():
-        for inner in _list_entries(port.value):
+    for port in list_entries(entry.value) if kinds else ():
+        for inner in list_entries(port.value):
             yield from _check_key(inner, _list_keys(*(kinds or ())), f"an {(kinds or ('',))[0]}")
 
 
@@ -93,10 +93,6 @@ def _list_keys(*kinds: str, extra: tuple[str, ...] = ()) -> tuple[str, ...]:
     definitions = load_schema()["$defs"]
     keys = {key: None for kind in kinds for key in definitions[kind]["properties"] if key != "components"}
     return (*keys, *extra)
-
-
-def _list_entries(node: YamlNode | None) -> Iterator[MappingEntry]:
-    return iter(node) if isinstance(node, MappingNode) else iter(())
 
 
 def _diagnose_word(message: str, span: Span, help_line: str | None) -> Diagnostic:

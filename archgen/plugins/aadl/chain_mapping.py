@@ -50,6 +50,11 @@ class ChainMapper:
     def _add_chain(self, system: LaunchedSystem, place: _FlowPlace, flow: AadlFlow) -> None:
         own_way = place.own_words["flow_ways"].get(flow.name, "")
         through = own_way.split(", ") if own_way else []
+        known = {".".join(instance.ids) for instance in system.instances.values()} if own_way else set()
+        if gone := next((each for each in through if "." in each and each not in known), None):
+            words = f"`{gone}` of archgen::Flow_Ways is no component any more: flow {flow.name} leads as its steps do"
+            self._notes.add_contradiction("end to end flow", words, flow.span)
+            through = []
         for step in () if through else flow.steps:
             if _leads_nowhere(place.structure, step):
                 words = f"step {'.'.join(step)} of flow {flow.name} is neither a part nor a connection; it is left out"

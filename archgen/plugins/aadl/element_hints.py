@@ -62,7 +62,7 @@ def keep_structure(structure: ClassifierStructure, scope: PropertyScope, notes: 
         for connection in known.classifier.connections
     }
     joined = {
-        _name_connection(connection): {
+        (connection.name or f"{'.'.join(connection.source)} -> {'.'.join(connection.target)}"): {
             "from": ".".join(connection.source),
             "to": ".".join(connection.target),
             "kind": connection.kind,
@@ -82,10 +82,6 @@ def keep_structure(structure: ClassifierStructure, scope: PropertyScope, notes: 
 def _list_own_ends(connection: AadlConnection) -> list[Path]:
     """Return the ends of a connection that are features of what it stands in."""
     return [end for end in (connection.source, connection.target) if len(end) == 1]
-
-
-def _name_connection(connection: AadlConnection) -> str:
-    return connection.name or f"{'.'.join(connection.source)} -> {'.'.join(connection.target)}"
 
 
 def _keep_flows(structure: ClassifierStructure, scope: PropertyScope) -> dict[str, Any]:

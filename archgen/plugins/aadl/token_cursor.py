@@ -14,6 +14,7 @@ from itertools import islice
 from typing import NamedTuple, NoReturn, TypeVar
 
 from archgen.plugin import dataclass
+from archgen.plugin.generating import AADL_KEYWORDS
 from archgen.plugin.importing import Span
 
 # An annex is one token: its text is of another language, and ends where its first `**}` stands.
@@ -123,17 +124,7 @@ SECTION_WORDS = frozenset(
         "end", "private", "public"
     ]
 )  # fmt: skip
-RESERVED_WORDS = SECTION_WORDS | frozenset(
-    [
-        "aadlboolean", "aadlinteger", "aadlreal", "aadlstring", "abstract", "access", "all", "and", "applies",
-        "binding", "bus", "calls", "classifier", "compute", "connections", "constant", "data", "delta", "device",
-        "enumeration", "event", "extends", "false", "feature", "flow", "group", "implementation", "in", "inherit",
-        "initial", "inverse", "is", "list", "memory", "mode", "not", "of", "or", "out", "package", "parameter",
-        "path", "port", "process", "processor", "property", "provides", "range", "record", "reference", "refined",
-        "renames", "requires", "self", "set", "sink", "source", "subprogram", "system", "thread", "to", "true",
-        "type", "units", "virtual", "with"
-    ]
-)  # fmt: skip
+RESERVED_WORDS = AADL_KEYWORDS - {"client", "none", "server"}
 """Words that name nothing. `internal`, `none` and such are told by their place alone: models use them as names."""
 
 

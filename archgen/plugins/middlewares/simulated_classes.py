@@ -219,7 +219,7 @@ def record_class(
             {
                 "name": name,
                 "java_name": _name_java_port(own, direction, name),
-                "java_method": _name_java_method(own, direction, name),
+                "java_method": f"serve{make_camel_name(_name_port(own, direction, name))}",
                 "python_name": _name_python_port(own, direction, name),
                 "types": value_types,
                 "is_action": len(value_types) > 2,  # noqa: PLR2004
@@ -266,10 +266,6 @@ def _name_port(own: SimulatedClass, direction: str, name: str) -> str:
 def _name_java_port(own: SimulatedClass, direction: str, name: str) -> str:
     java_name = name_java_field(_name_port(own, direction, name))
     return f"{java_name}_" if java_name in _JAVA_FIELDS else java_name
-
-
-def _name_java_method(own: SimulatedClass, direction: str, name: str) -> str:
-    return f"serve{make_camel_name(_name_port(own, direction, name))}"
 
 
 def _name_python_port(own: SimulatedClass, direction: str, name: str) -> str:

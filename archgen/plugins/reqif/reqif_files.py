@@ -54,7 +54,7 @@ def _read_archive(name: str, stream: IO[bytes], document: ReqifDocument) -> None
             for member in members:
                 with archive.open(member) as part:
                     parse_reqif(f"{name} [{member.filename}]", limit.read_chunks(part), document)
-    except ARCHIVE_DAMAGE as error:
+    except (*ARCHIVE_DAMAGE, OSError) as error:  # a member that begins before the file does, too
         words = f"the zip file is damaged ({error})"
         raise ForeignFileError(words, Span.of_file(name), "export it again") from None
 

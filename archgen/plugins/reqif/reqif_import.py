@@ -107,7 +107,7 @@ class _RequirementTaker:
             self._result.use_cases[name] = {"title": title} if title and title != name else {}
             self._verifier_by_object[entry.id] = name
             self._account("taken", entry, name, name=name)
-        elif _is_true(values.get("deleted", "")):
+        elif values.get("deleted", "").strip().casefold() in {"true", "1", "yes"}:
             self._account("left out", entry, reason="it is marked as deleted", name=name)
         elif self._is_heading(values):
             self._headings[entry.id] = _fold_blanks(
@@ -245,10 +245,6 @@ def _fold_blanks(text: str) -> str:
 def _make_word(text: str) -> str:
     """Return a text as one word: `Must have` is `Must_have`."""
     return _WORD_SIGNS.sub("_", text.strip()).strip("_")[:64]
-
-
-def _is_true(text: str) -> bool:
-    return text.strip().casefold() in {"true", "1", "yes"}
 
 
 def cut_circles(parents: Mapping[str, dict[str, None]]) -> tuple[tuple[str, str], ...]:

@@ -116,19 +116,20 @@ def join_cell_lines(cell: TableCell) -> str:
 
 def read_topic(project: ImportedProject, cell: TableCell) -> str | None:
     """Read a topic's name."""
-    if _TOPIC_PATTERN.match(cell.one_line):
-        return cell.one_line
-    message = f"`{cell.quotation}` is no topic's name and was not taken"
-    project.reject_cell("wrong-value", message, cell, "write /camera/image")
-    return None
+    return _read_name(project, cell, _TOPIC_PATTERN, "topic", "write /camera/image")
 
 
 def read_package(project: ImportedProject, cell: TableCell) -> str | None:
     """Read a package's name."""
-    if _PACKAGE_PATTERN.match(cell.one_line):
+    return _read_name(project, cell, _PACKAGE_PATTERN, "package", "write lower-case words joined by `_`")
+
+
+def _read_name(
+    project: ImportedProject, cell: TableCell, pattern: re.Pattern[str], kind: str, help_line: str
+) -> str | None:
+    if pattern.match(cell.one_line):
         return cell.one_line
-    text = f"`{cell.quotation}` is no package's name and was not taken"
-    project.reject_cell("wrong-value", text, cell, "write lower-case words joined by `_`")
+    project.reject_cell("wrong-value", f"`{cell.quotation}` is no {kind}'s name and was not taken", cell, help_line)
     return None
 
 

@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 
 from archgen.plugin.importing import XmlElement
 from archgen.plugins.xmi import uml_values
-from archgen.plugins.xmi.import_ledger import ImportLedger
-from archgen.plugins.xmi.made_names import choose_id, name_parameter
+from archgen.plugins.xmi.import_ledger import ImportLedger, choose_id, name_parameter
 from archgen.plugins.xmi.uml_catalogue import read_description
 from archgen.plugins.xmi.uml_index import UmlIndex, get_kind, get_name, is_true, list_child_elements
 

@@ -7,8 +7,7 @@ from collections import defaultdict
 from archgen.plugin.importing import XmlElement, make_id
 from archgen.plugins.xmi.class_features import ClassFeatures, read_features
 from archgen.plugins.xmi.component_facts import ClassFacts, ClassSorting
-from archgen.plugins.xmi.import_ledger import ImportLedger
-from archgen.plugins.xmi.made_names import choose_id
+from archgen.plugins.xmi.import_ledger import ImportLedger, choose_id
 from archgen.plugins.xmi.port_facts import InterfaceUses, PortFacts
 from archgen.plugins.xmi.uml_catalogue import UmlCatalogue
 from archgen.plugins.xmi.uml_index import UmlIndex, get_kind, get_name, is_true, list_child_elements

@@ -7,8 +7,7 @@ from collections import defaultdict
 from archgen.plugin.importing import XmlElement, make_unique_id
 from archgen.plugins.xmi.component_assembly import ComponentAssembly
 from archgen.plugins.xmi.component_facts import ClassFacts
-from archgen.plugins.xmi.import_ledger import OWN_PREFIX, ImportLedger, make_hints, name_element
-from archgen.plugins.xmi.made_names import choose_id, say_title
+from archgen.plugins.xmi.import_ledger import OWN_PREFIX, ImportLedger, choose_id, make_hints, name_element, say_title
 from archgen.plugins.xmi.uml_catalogue import UmlCatalogue, read_description
 from archgen.plugins.xmi.uml_index import UmlIndex, get_id, get_kind, get_name, list_child_elements
 

@@ -1,11 +1,16 @@
-"""The account of an import: how many of each construct were taken, and each that was not."""
+"""The account of an import: how many of each construct were taken, and each that was not.
+
+Ids, titles and names of the language for elements of UML.
+"""
 
 from __future__ import annotations
 
+import re
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Mapping
+from types import MappingProxyType
 
-from archgen.plugin.importing import ImportNote, XmlElement
+from archgen.plugin.importing import ImportNote, XmlElement, is_id, make_id, make_unique_id, title_from_id
 from archgen.plugins.xmi.uml_index import UmlIndex, get_id, get_kind, get_name
 
 OWN_PREFIX = "archgen."
@@ -87,3 +92,37 @@ def make_hints(element: XmlElement, **others: object) -> dict[str, object]:
     kept: dict[str, object] = {} if not element_id or element_id.startswith(OWN_PREFIX) else {"id": element_id}
     kept |= {key: value for key, value in others.items() if value}
     return {"hints": {"uml": kept}} if kept else {}
+
+
+_PARAMETER_NAME = re.compile(r"[^\s.]+(?:\.[^\s.]+)*\Z")
+MAX_TYPE_LENGTH = 200
+_NO_IDS: Mapping[str, str] = MappingProxyType({})
+
+
+def choose_id(
+    element: XmlElement, kind: str, taken_ids: Collection[str], name: str = "", known_ids: Mapping[str, str] = _NO_IDS
+) -> str:
+    """Return a free id for an element: the known one, or that which archgen exported it from, else one of its name."""
+    own_id = get_id(element)
+    known_id = known_ids.get(own_id, "")
+    if is_id(known_id) and known_id not in taken_ids:
+        return known_id
+    if own_id.startswith(OWN_PREFIX) and is_id(last_word := own_id.rpartition(".")[2]) and last_word not in taken_ids:
+        return last_word
+    wanted = make_id(name or get_name(element) or get_kind(element), kind)
+    return make_unique_id(wanted, taken_ids)
+
+
+def say_title(name: str, element_id: str) -> dict[str, object]:
+    """Return `title` where the id alone would give another one."""
+    return {"title": name} if name and name != title_from_id(element_id) else {}
+
+
+def name_parameter(name: str) -> str:
+    """Return a name that a parameter may have."""
+    return name if _PARAMETER_NAME.match(name) and len(name) <= MAX_TYPE_LENGTH else make_id(name, "parameter")
+
+
+def name_conceptual_type(name: str) -> str:
+    """Return the name of a conceptual type: brackets of templates would be generics."""
+    return name.replace("<", "(").replace(">", ")")[:MAX_TYPE_LENGTH].strip()

@@ -136,7 +136,11 @@ class PortWiring:
     @staticmethod
     def _refer(source: PortEnd, reader: ClassFacts) -> str | None:
         """Return how a component names an output; None where it cannot."""
-        if source.facts is reader:
+        # Neither itself, nor what it stands in.
+        around: ClassFacts | None = reader
+        while around is not None and around is not source.facts:
+            around = around.owner
+        if around is not None:
             return None
         if source.facts.owner is not None and source.facts.owner is reader.owner:
             return f"{source.facts.id}.{source.port.output_id}"

@@ -9,8 +9,7 @@ from archgen.plugin.importing import XmlElement, make_unique_id, title_from_id
 from archgen.plugins.xmi.class_features import ClassFeatures
 from archgen.plugins.xmi.component_assembly import ComponentAssembly
 from archgen.plugins.xmi.component_facts import ClassFacts
-from archgen.plugins.xmi.import_ledger import OWN_PREFIX, ImportLedger, make_hints, name_element
-from archgen.plugins.xmi.made_names import choose_id, say_title
+from archgen.plugins.xmi.import_ledger import OWN_PREFIX, ImportLedger, choose_id, make_hints, name_element, say_title
 from archgen.plugins.xmi.port_facts import InterfaceUses, PortFacts, get_interface_name
 from archgen.plugins.xmi.port_wiring import PortWiring, list_inner_references, name_port
 from archgen.plugins.xmi.uml_catalogue import read_description
@@ -165,7 +164,7 @@ class ComponentSections:
             return body | make_hints(facts.element)
         if (
             get_kind(facts.element) == "Component"
-            and not _is_exported(facts)
+            and not get_id(facts.element).startswith(OWN_PREFIX)
             and facts.base is None
             and not features.list_sections()
         ):
@@ -271,7 +270,3 @@ def _keep_values(features: ClassFeatures) -> dict[str, object]:
 
 def _leave_out_empty(**sections: dict[str, object]) -> dict[str, object]:
     return {key: value for key, value in sections.items() if value}
-
-
-def _is_exported(facts: ClassFacts) -> bool:
-    return get_id(facts.element).startswith(OWN_PREFIX)

@@ -6,8 +6,7 @@ import re
 from decimal import Decimal, InvalidOperation
 
 from archgen.plugin.importing import XmlElement
-from archgen.plugins.xmi.import_ledger import OWN_PREFIX
-from archgen.plugins.xmi.made_names import name_conceptual_type
+from archgen.plugins.xmi.import_ledger import OWN_PREFIX, name_conceptual_type
 from archgen.plugins.xmi.uml_index import Reference, UmlIndex, get_id, get_kind
 
 _PARAMETER_TYPES = {

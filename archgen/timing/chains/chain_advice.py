@@ -7,9 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from typing import Literal, NamedTuple
+from typing import Literal
 
 from archgen.diagnostics.common_wording import join_words
+from archgen.frozen import NamedTuple
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm
 from archgen.timing.chains.unfound_bounds import find_overloaded_hosts
 from archgen.timing.figures import figure_wording

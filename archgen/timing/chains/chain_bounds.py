@@ -6,11 +6,10 @@ F = S0 + R0 + sum over later steps of (link worst + S_i + R_i)
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
 
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture, Chain, Waypoint
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, ChainVerdict, ShareDeadline
 from archgen.timing.chains import chain_regions

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
 from fractions import Fraction
 
 from archgen.diagnostics.source_span import Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture, Chain
 from archgen.model.declared_timing import Timing
 from archgen.model.graph_search import find_reachable

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import field
 from math import lcm
 from typing import Literal
 
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, RunResponse
 from archgen.timing.chains.element_index import ElementIndex, MeasuredBasis

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from archgen.diagnostics.common_wording import join_first
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture, Waypoint
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.analysis import Analysis
 from archgen.timing.chains.trigger_arrivals import TriggerArrivals
-from archgen.timing.figures.figure_wording import join_first_names
 from archgen.timing.system.timing_system import TimingSystem
 
 
@@ -91,9 +91,7 @@ class MeasuredBasis:
         for name in through if self._basis_of else ():
             basis |= self._basis_of[name]
         names = tuple(name for number, name in enumerate(self._measured) if basis >> number & 1)
-        return (
-            f"the execution time of {join_first_names(names)} is the longest that was seen, not proven" if names else ""
-        )
+        return f"the execution time of {join_first(names)} is the longest that was seen, not proven" if names else ""
 
 
 def _list_neighbours(analysis: Analysis) -> dict[str, list[str]]:

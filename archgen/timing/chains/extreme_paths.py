@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from fractions import Fraction
-from typing import NamedTuple
 
+from archgen.diagnostics.common_wording import join_first
+from archgen.frozen import NamedTuple, replace
 from archgen.timing.chains.cost_network import CostNetwork, PathAim
 from archgen.timing.chains.path_search import CostedPath, PathSet, RouteRegion, find_paths
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
@@ -119,6 +119,5 @@ def _list_parallel_arcs(
 
 
 def _cut_arcs_text(arcs: Sequence[Arc]) -> str:
-    pairs = [f"{arc.source} > {arc.target}" for arc in arcs[:3]]
-    more_text = f" and {len(arcs) - 3} more" if len(arcs) > 3 else ""  # noqa: PLR2004 - as many as are named
-    return f"the loops are large: ways that go back along {', '.join(pairs)}{more_text} are left out"
+    pairs = [f"{arc.source} > {arc.target}" for arc in arcs]
+    return f"the loops are large: ways that go back along {join_first(pairs, 3)} are left out"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 
+from archgen.diagnostics.common_wording import join_first
 from archgen.diagnostics.source_span import NO_SPAN, Span
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, EventPace, HostLoad, Reason
 from archgen.timing.chains.gap_formulas import (
@@ -308,7 +309,7 @@ def _span_of_activity(analysis: Analysis, name: str) -> Span:
 def _format_figure(value: TimingValue, kind: str = "duration") -> str:
     """Format a figure with the sign of its side, or what is missing of it."""
     if value.value is None:
-        missing_text = f" ({figure_wording.join_first_names(value.missing)})" if value.missing else ""
+        missing_text = f" ({join_first(value.missing)})" if value.missing else ""
         return f"{figure_wording.name_unknown_reason(value)}{missing_text}"
     format_value = _FIGURE_FORMATS[kind]
     if is_known_bound(value):

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import field, replace
 from fractions import Fraction
 from typing import Literal
 
 from archgen.diagnostics.diagnostic import Diagnostic
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field, replace
 from archgen.model.quantity import Quantity
 from archgen.timing.analysis import Analysis, ChainResult, EventPace
 from archgen.timing.chains.chain_verdicts import SeenVerdict, judge_seen_share

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import NamedTuple
 
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass
 from archgen.model.graph_search import find_reachable, find_rings
 
 MAX_STATES = 20_000

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import replace
 from fractions import Fraction
 
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.timing.analysis import Analysis
 from archgen.timing.chains.limit_states import LimitState, judge_upper_limit
 from archgen.timing.chains.step_delays import StepDelays

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import field
 from fractions import Fraction
 
 from archgen.diagnostics.source_span import Span
-from archgen.frozen import dataclass, replace
+from archgen.frozen import dataclass, field, replace
 
 PERCENTILES = {"p50": 50, "p90": 90, "p95": 95, "p99": 99}
 """The percentiles that are given, by the name that the language has for them."""

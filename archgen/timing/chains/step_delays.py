@@ -8,11 +8,10 @@ Hard Real-time Distributed Automotive Systems", DAC 2007: T_i + R_i for each ele
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field, replace
 from fractions import Fraction
 
 from archgen.diagnostics.source_span import Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field, replace
 from archgen.timing.analysis import Analysis, RunResponse
 from archgen.timing.chains.trigger_arrivals import TriggerArrivals
 from archgen.timing.figures import figure_wording
@@ -51,6 +50,8 @@ class StepDelays:
     analysis: Analysis
     arrivals: TriggerArrivals
     _latencies: dict[tuple[str | None, int], TimingValue] = field(default_factory=dict)
+    _sampling_waits: dict[int, TimingValue] = field(default_factory=dict)
+    """By the identity of an arc, which the system keeps: each view of the costs asks for the same ones."""
 
     @classmethod
     def of_analysis(cls, analysis: Analysis) -> StepDelays:
@@ -71,6 +72,12 @@ class StepDelays:
 
     def sampling_wait(self, arc: Arc) -> TimingValue:
         """Return S of a step: how long a sample may lie until the reader takes it, and until it is sent at all."""
+        key = id(arc)
+        if key not in self._sampling_waits:
+            self._sampling_waits[key] = self._find_sampling_wait(arc)
+        return self._sampling_waits[key]
+
+    def _find_sampling_wait(self, arc: Arc) -> TimingValue:
         reading_wait, condition_wait = self._reading_wait(arc), self._condition_wait(arc)
         overtaking_wait = self.overtaking_wait(arc)
         if overtaking_wait is not ZERO_VALUE:

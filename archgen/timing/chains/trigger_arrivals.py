@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import field, replace
 from fractions import Fraction
 from math import ceil
 
-from archgen.frozen import dataclass
+from archgen.diagnostics.common_wording import join_first
+from archgen.frozen import dataclass, field, replace
 from archgen.timing.analysis import Analysis
-from archgen.timing.figures.figure_wording import join_first_names
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, ZERO_VALUE, TimingValue, UnknownCause
 from archgen.timing.figures.value_arithmetic import (
     NO_USE_NOTE,
@@ -127,7 +126,7 @@ class TriggerArrivals:
             reason = f"keeps {arc.depth} of {count} messages of {arc.topic} that may wait (`depth: {count}` keeps all)"
         else:
             reason = f"keeps the last message of {arc.topic}"
-        others = join_first_names(tuple(dict.fromkeys(each.source for each in rivals)))
+        others = join_first(tuple(dict.fromkeys(each.source for each in rivals)))
         text = f"{NO_USE_NOTE}: {reader.id} {reason}: one of {others} {REPLACED_WORDS} that of {arc.source}"
         return TimingValue(None, assumptions=("diverged", text))
 

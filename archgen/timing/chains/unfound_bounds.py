@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.common_wording import join_first, join_words
 from archgen.frozen import dataclass
 from archgen.timing.analysis import Analysis, ChainTerm
 from archgen.timing.chains.trigger_arrivals import TriggerArrivals
@@ -90,11 +90,7 @@ def describe_unfound_places(places: Iterable[UnfoundPlace]) -> str:
 
 
 def _describe_place(place: UnfoundPlace) -> str:
-    subject = (
-        f"on {place.host}{place.load_text}"
-        if place.host
-        else f"for {figure_wording.join_first_names(place.activities)}"
-    )
+    subject = f"on {place.host}{place.load_text}" if place.host else f"for {join_first(place.activities)}"
     phrases = join_words([phrase for tier in place.tiers if (phrase := _TIER_PHRASES.get(tier))])
     return f"{subject} ({phrases})" if phrases else subject
 

@@ -9,10 +9,9 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from typing import NamedTuple
 
 from archgen.diagnostics.source_span import Span
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass
 from archgen.model.architecture import Architecture, Waypoint
 from archgen.model.component import Component
 from archgen.model.quantity import Quantity

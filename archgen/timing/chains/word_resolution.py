@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from archgen.diagnostics.common_wording import join_first
 from archgen.diagnostics.suggestions import NAMES_HELP, did_you_mean, find_closest
 from archgen.model.architecture import Architecture, Waypoint
 from archgen.timing.system.timing_system import TimingSystem
@@ -27,7 +28,7 @@ def resolve_waypoint(architecture: Architecture, system: TimingSystem, word: str
     if len(matches) == 1:
         return Waypoint("component" if components else "output", matches[0])
     if matches:
-        msg = f"`{word}` may mean {_format_alternatives(matches)}"
+        msg = f"`{word}` may mean {join_first([f'`{name}`' for name in matches])}"
         raise UnknownNameError(msg)
     known_names = [*system.activities, *architecture.nodes, *architecture.components, *architecture.outputs]
     raise UnknownNameError(unknown_name_text(word, known_names))
@@ -53,9 +54,3 @@ def unknown_name_text(word: str, known_names: Iterable[str]) -> str:
     names = {part: name for name in known_names for part in (name.rpartition(".")[2], name)}
     guess = did_you_mean(word, names) if find_closest(word, names) else None
     return f"nothing is called `{word}`; {guess or NAMES_HELP}"
-
-
-def _format_alternatives(matches: list[str], limit: int = 6) -> str:
-    """List possible meanings, at most so many."""
-    first_names = ", ".join(f"`{name}`" for name in matches[:limit])
-    return first_names + (f" and {len(matches) - limit} more" if len(matches) > limit else "")

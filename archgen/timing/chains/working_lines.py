@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
-from typing import NamedTuple
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass
 from archgen.timing.figures import figure_wording
-from archgen.timing.load.work_terms import FigureWorking, ThreadShare, WorkTerm
+from archgen.timing.load.work_terms import ANY_AMOUNT, FigureWorking, ThreadShare, WorkTerm
 from archgen.timing.rates.link_traffic import LinkWorking
 
 
@@ -39,7 +38,7 @@ class WorkingLines:
             for addend in working.addends:
                 yield from self.explain_response(addend, depth + 1)
             return
-        if working.core_count > 1:
+        if working.core_count > 1 or working.leads:
             yield from self._explain_shared(working, depth)
         else:
             has_counts = any(term.events.formula != str(term.events.number) for term in working.terms)
@@ -65,15 +64,19 @@ class WorkingLines:
             if working.is_hold
             else "the least t > 0 with A + B <= t"
         )
+        beside = f"B the time in which all {working.core_count} cores may be busy with others"
+        if working.leads:
+            beside, head = "F what others are served before it on its core", head.replace("B", "F")
         yield ReasonLine(
-            depth, f"{head} is {self._write(working.window)}: A is the work of its own threads, "
-            f"B the time in which all {working.core_count} cores may be busy with others"
+            depth, f"{head} is {self._write(working.window)}: A is the work of its own threads, {beside}"
         )  # fmt: skip
         yield from self.list_terms(working.terms, depth + 1)
         parts = [self._write(term.total) for term in working.terms]
         sum_text = f" = {self._write(own_work)}" if len(parts) > 1 else ""
         yield ReasonLine(depth + 1, f"A = {' + '.join(parts)}{sum_text}" if parts else "A = 0 ms")
-        if working.blocked_time:
+        if working.leads:
+            yield from self._explain_serving(working, own_work, depth + 1)
+        elif working.blocked_time:
             yield from self._explain_blocking(working, depth + 1)
         else:
             count = len(working.shares)
@@ -82,7 +85,22 @@ class WorkingLines:
         relation = "=" if working.work == working.window else "<=" if working.work < working.window else ">="
         yield ReasonLine(
             depth + 1,
-            f"{self._write(own_work)} + {self._write(working.blocked_time)} {relation} {self._write(working.window)}, A + B{' until then' if working.is_hold else ''}",
+            f"{self._write(own_work)} + {self._write(working.blocked_time)} {relation} {self._write(working.window)}, A + {'F' if working.leads else 'B'}{' until then' if working.is_hold else ''}",
+        )
+
+    def _explain_serving(self, working: FigureWorking, own_work: int, depth: int) -> Iterator[ReasonLine]:
+        """Yield what others are served before a thread that shares its core fairly: no thread more than A and a lead."""
+        yield from self.list_terms(working.beside_terms, depth)
+        leads = f"{len(working.leads)} x " if len(working.leads) > 1 else ""
+        cut = self._write(own_work + sum(working.leads))
+        yield ReasonLine(
+            depth,
+            f"no other thread is served more than {self._write(own_work)} + {leads}{self._write(working.leads[0])} = {cut}, "
+            f"A and a lead{' for each job' if leads else ''}{self._describe_cuts(working.shares, 'that')}",
+        )
+        parts = [f"{self._write(share.counted)} {'/'.join(share.unit)}" for share in working.shares]
+        yield ReasonLine(
+            depth, " = ".join(["F", *filter(None, (" + ".join(parts),)), self._write(working.blocked_time)])
         )
 
     def _explain_blocking(self, working: FigureWorking, depth: int) -> Iterator[ReasonLine]:
@@ -120,12 +138,15 @@ class WorkingLines:
             f"{' and what is done after this' if working.unfinished else ''}",
         )
 
-    def _describe_cuts(self, shares: Iterable[ThreadShare]) -> str:
+    def _describe_cuts(self, shares: Iterable[ThreadShare], word: str = "B") -> str:
         cuts = [share for share in shares if share.counted < share.work]
         if not cuts:
             return ""
-        names = ", ".join(f"{' '.join(share.unit)} ({self._write(share.work)})" for share in cuts)
-        return f", but none for longer than B: {names}"
+        names = ", ".join(
+            f"{' '.join(share.unit)} ({'any amount' if share.work >= ANY_AMOUNT else self._write(share.work)})"
+            for share in cuts
+        )
+        return f", but none for longer than {word}: {names}" if word == "B" else f"; more to do have {names}"
 
     def _explain_rest(self, working: FigureWorking, depth: int) -> Iterator[ReasonLine]:
         """Yield what is taken off the window, where it does not begin with the activation."""

@@ -109,12 +109,6 @@ def _round_digits(value: Fraction, digits: int, *, upwards: bool) -> Fraction:
     return step * (ceil if upwards else floor)(value / step)
 
 
-def join_first_names(names: tuple[str, ...], limit: int = 6) -> str:
-    """Write the first names separated by commas, and count the others."""
-    first_names = ", ".join(names[:limit])
-    return first_names + (f" and {len(names) - limit} more" if len(names) > limit else "")
-
-
 _UNKNOWN_REASONS = {"overload": "overload", "unbounded": "unbounded", "diverged": "no bound found"}
 """Words for a figure that is unknown though all figures are there, by the assumption that explains it."""
 

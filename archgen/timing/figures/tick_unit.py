@@ -12,7 +12,7 @@ from math import gcd, lcm
 
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
-from archgen.model.declared_timing import Timing
+from archgen.model.declared_timing import ASSUMED_SLICE, ASSUMED_TICK, FairScheduling, Timing
 from archgen.model.quantity import Quantity
 
 NS_PER_SECOND = 10**9
@@ -50,8 +50,9 @@ def choose_tick_unit(architecture: Architecture) -> TickUnit:
         *_collect_byte_times(architecture),
     }
     denominator = lcm(*(duration.denominator for duration in durations))
-    # Work is divided by the number of cores (path_work): with this divisor such quotients are whole ticks.
-    cores = lcm(*(host.cores or 1 for host in architecture.hosts.values()))
+    # Work is divided by the number of cores (path_work), and by what other programs leave of them (load_system): with this
+    # divisor such quotients are whole ticks.
+    cores = lcm(*(host.cores or 1 for host in architecture.hosts.values()), *_list_left_shares(architecture))
     threads = lcm(
         *(container.threads or 1 for container in architecture.containers.values()),
         *(node.threads or 1 for node in architecture.nodes.values()),
@@ -62,6 +63,12 @@ def choose_tick_unit(architecture: Architecture) -> TickUnit:
     # gcd of fractions: of the numerators over the common denominator. `or 1`: a project without any duration.
     numerator = gcd(*(duration.numerator * (denominator // duration.denominator) for duration in durations)) or 1
     return TickUnit(Fraction(numerator, denominator * core_divisor))
+
+
+def _list_left_shares(architecture: Architecture) -> Iterator[int]:
+    """Yield the numerators of the shares that other programs leave of cores."""
+    fair_orders = (host.fair for host in architecture.hosts.values())
+    return ((1 - fair.other_load).numerator for fair in fair_orders if fair is not None and fair.other_load)
 
 
 def written_period(timing: Timing) -> Fraction | None:
@@ -93,6 +100,15 @@ def _collect_quantities(architecture: Architecture) -> Iterator[Quantity | None]
         yield port.freshness
     for link in architecture.links.values():
         yield from (link.best, link.worst)
+    yield from _collect_turns(architecture)
+
+
+def _collect_turns(architecture: Architecture) -> Iterator[Quantity]:
+    """Yield the slices and ticks of fair hosts."""
+    for host in architecture.hosts.values():
+        if host.scheduling in {None, "fair"}:
+            fair = host.fair or FairScheduling()
+            yield from (fair.slice or ASSUMED_SLICE, fair.tick or ASSUMED_TICK)
 
 
 def _collect_rates(architecture: Architecture) -> Iterator[Quantity]:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from fractions import Fraction
 from math import lcm
-from typing import Literal, NamedTuple
+from typing import Literal
 
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,8 +13,8 @@ and jitter are one term.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import NamedTuple
 
+from archgen.frozen import NamedTuple
 from archgen.timing.load.event_streams import EventStream, EventStreams, earliest_arrivals
 
 _MAX_TERMS = 40_000_000

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import field
-from typing import NamedTuple
 
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass, field
 from archgen.timing.load.inner_core import urgency_of
 from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.run_ways import EntryWay, Priority

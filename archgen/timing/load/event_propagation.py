@@ -8,9 +8,9 @@ point (K. Tindell, J. Clark 1994; compositional analysis as in pyCPA).
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
 from typing import TypeVar
 
+from archgen.frozen import replace
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.figures.timing_values import UnknownCause, sum_ratios
 from archgen.timing.load.core_responses import CoreResponses
@@ -115,9 +115,9 @@ class _Propagation(StepUpdates):
             elif names and step not in self.inner_triggers:
                 models = self.models_of(step)
                 waits = find_core_waits(state.system, resource, models, names, self.budget_of[step])
-                state.storing_waits |= limit_responses(
-                    CoreResponses({}, {}, waits), self._limits_of(step)
-                ).storing_waits
+                waits = limit_responses(CoreResponses({}, {}, waits), self._limits_of(step)).storing_waits
+                responses = {name: state.responses[name] for name in resource.members}
+                state.storing_waits |= self._limit_to_fair(step, CoreResponses(responses, {}, waits), {}).storing_waits
             if queue is not None and queue.works_in_rounds:
                 for name in names:
                     wait = state.storing_waits[name]

@@ -12,8 +12,8 @@ from fractions import Fraction
 from heapq import merge
 from itertools import count
 from math import lcm
-from typing import NamedTuple
 
+from archgen.frozen import NamedTuple
 from archgen.timing.system.timing_system import Activity
 
 MAX_STREAMS = 8

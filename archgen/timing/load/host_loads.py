@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from fractions import Fraction
 
+from archgen.frozen import replace
 from archgen.timing.analysis import EventPace, HostLoad, Reason, ResponseTime, RunResponse
+from archgen.timing.figures.figure_wording import format_share
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
 from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue
 from archgen.timing.figures.value_arithmetic import (
@@ -18,6 +19,7 @@ from archgen.timing.figures.value_arithmetic import (
 )
 from archgen.timing.load.host_verdicts import HostJudge, rate_monotonic_bound
 from archgen.timing.load.propagation_state import PropagationState
+from archgen.timing.load.resource_loads import list_turn_notes
 from archgen.timing.load.run_ways import EntryWay
 from archgen.timing.load.thread_work import OVERLOAD_CAUSE, WorstResponse
 from archgen.timing.system.core_placement import ProcessingResource
@@ -29,6 +31,7 @@ _TIER_SENTENCES = {
     "dedicated": "its own queue, on a core of its own",
     "host": "the longest time for which all work on {0} can keep it busy, in whatever order",
     "priorities": "everything of its priority or a higher one on {0}, over all activations of the busy period",
+    "fair": "all work of its own thread, and of each other one on {0} no more than that and {2}",
     "executor": "all work of its executor on {0}, in whatever order",
     "non_preemptive": "everything of its priority or a higher one on {0}, and the longest that may just have begun",
     "fifo": "all that may have come to {0} before it",
@@ -40,16 +43,21 @@ _TIER_SENTENCES = {
     "unknown": "no execution time is written",
 }
 _OWN_CORE_SENTENCE = "its own work: {0} has no more threads than cores"
+_SHARED_SENTENCE = "other programs take {1} of each core of {0}: all execution times are that much longer there"
 _OPEN_CORES_SENTENCE = "nobody wrote how many cores {0} has"
 
 
 def build_response_times(state: PropagationState, resources: Iterable[ProcessingResource]) -> dict[str, ResponseTime]:
     """Return the best and worst response of every activity, in ns."""
     resource_of = {name: resource for resource in resources for name in resource.members}
-    return {
-        name: _build_response_time(state, name, state.responses[name], resource_of.get(name))
-        for name in state.system.activities
-    }
+    turn_notes = list_turn_notes(state.system)
+    responses: dict[str, ResponseTime] = {}
+    for name, activity in state.system.activities.items():
+        response = _build_response_time(state, name, state.responses[name], resource_of.get(name))
+        notes = [turn_notes[key] for key in activity.uses if key in turn_notes and response.tier != "declared"]
+        worst = replace(response.worst, assumptions=(*response.worst.assumptions, *notes))
+        responses[name] = replace(response, worst=worst) if notes else response
+    return responses
 
 
 def _build_response_time(
@@ -63,15 +71,20 @@ def _build_response_time(
         sentence = _OWN_CORE_SENTENCE
     if resource is not None and worst_response.tier == "unknown" and activity.wcet is not None:
         sentence = _OPEN_CORES_SENTENCE
-    sentence_arguments = (_cores_text(resource), resource.cores) if resource else ("", 1)
+    sentence_arguments: tuple[str | int, ...] = (_cores_text(resource), resource.cores) if resource else ("", 1)
     if worst_response.tier == "whole host":
         sentence_arguments = (activity.host or "", 1)
+    if share := state.system.fair_shares.get(activity.host or ""):
+        sentence_arguments = (*sentence_arguments, share.figures)
     span = activity.places.get("response" if worst_response.tier == "declared" else "wcet", activity.at)
+    reasons = [Reason(sentence, span, sentence_arguments)]
+    if share and share.other_load:
+        reasons.append(Reason(_SHARED_SENTENCE, span, (activity.host or "", format_share(share.other_load))))
     return ResponseTime(
         best,
-        _worst_value(activity, worst_response, tick, resource),
+        _worst_value(state.system, activity, worst_response, resource),
         worst_response.tier,
-        (Reason(sentence, span, sentence_arguments),),
+        tuple(reasons),
     )
 
 
@@ -87,7 +100,10 @@ def build_run_responses(
         delays = [way.delay for way in ways if way.delay is not None]
         arcs = run_arcs.get(name, ())
         if len(delays) == len(ways) and arcs and responses[name].tier != "declared":
-            runs[name] = RunResponse(replace(responses[name].worst, value=max(delays) * state.system.tick), arcs)
+            step_notes = (note for way in ways for step in way.steps for note in responses[step].worst.assumptions)
+            worst = responses[name].worst
+            notes = tuple(dict.fromkeys((*worst.assumptions, *step_notes)))
+            runs[name] = RunResponse(replace(worst, value=max(delays) * state.system.tick, assumptions=notes), arcs)
     return runs
 
 
@@ -102,7 +118,8 @@ def _build_storing_wait(state: PropagationState, name: str, wait: WorstResponse)
     It does not where activations of that length keep its thread for more time than there is.
     """
     if wait.value is not None:
-        return TimingValue(wait.value * state.system.tick) if wait.value else ZERO_VALUE
+        notes = _list_fair_notes(state.system, state.system.activities[name], wait)
+        return TimingValue(wait.value * state.system.tick, assumptions=notes) if wait.value else ZERO_VALUE
     if state.responses[name].value is None:
         return ZERO_VALUE  # the response says what is missing: to say it twice makes it no worse
     if state.system.activities[name].response is not None and wait.cause != OVERLOAD_CAUSE:
@@ -118,11 +135,18 @@ def _cores_text(resource: ProcessingResource | None) -> str:
     return f"{resource.id} and on those that wait with it for a container's threads (one of them works while any waits)"
 
 
+def _list_fair_notes(system: TimingSystem, activity: Activity, worst: WorstResponse) -> tuple[str, ...]:
+    """Return what a figure assumes of how the threads of its host share the cores."""
+    share = system.fair_shares.get(activity.host or "")
+    return (share.assumption,) if worst.tier == "fair" and share is not None and share.assumption else ()
+
+
 def _worst_value(
-    activity: Activity, worst_response: WorstResponse, tick: Fraction, resource: ProcessingResource | None
+    system: TimingSystem, activity: Activity, worst_response: WorstResponse, resource: ProcessingResource | None
 ) -> TimingValue:
     """Return the worst response with what it assumes, or what is missing."""
-    notes = list(worst_response.cause.notes)
+    tick = system.tick
+    notes = [*worst_response.cause.notes, *_list_fair_notes(system, activity, worst_response)]
     if worst_response.tier == "declared":
         notes.append("assumed")
     elif resource is None:
@@ -205,13 +229,26 @@ def _add_storing_share(
     return add_values((share, *storing_shares)) if storing_shares else share
 
 
+def _add_other_load(system: TimingSystem, host: str, core_count: int, shares: Iterable[TimingValue]) -> TimingValue:
+    """Return the sum of shares of some cores, with what other programs take of them."""
+    fair_share = system.fair_shares.get(host)
+    load = add_values(shares)
+    if fair_share is None or not fair_share.other_load:
+        return load
+    return add_values((load, TimingValue(fair_share.other_load * core_count)))
+
+
 def _build_host_load(
     host: str, host_resources: list[ProcessingResource], share_of: Mapping[str, TimingValue], judge: HostJudge
 ) -> HostLoad:
     """Return the load of one host."""
     shares = {name: share_of[name] for resource in host_resources for name in resource.members}
     loads = tuple(
-        (resource.id, resource.cores, add_values(shares[name] for name in resource.members))
+        (
+            resource.id,
+            resource.cores,
+            _add_other_load(judge.system, host, resource.cores, [shares[name] for name in resource.members]),
+        )
         for resource in host_resources
         if not resource.missing
     )
@@ -222,7 +259,7 @@ def _build_host_load(
     # Elements that add nothing to the load are no tasks in the sense of the bound, which falls with their number.
     working = sum(1 for utilisation in shares.values() if utilisation.value != 0)
     return HostLoad(
-        utilisation=add_values(shares.values()),
+        utilisation=_add_other_load(judge.system, host, cores or 1, shares.values()),
         cores=cores,
         rate_monotonic_bound=TimingValue(rate_monotonic_bound(working)) if cores == 1 else _ONE_CORE_ONLY,
         verdict="unknown" if is_open and verdict != "overload" else verdict,

@@ -12,6 +12,7 @@ from archgen.frozen import dataclass
 from archgen.timing.analysis import EventPace, HostLoad, ResponseTime
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
 from archgen.timing.figures.timing_values import ZERO_VALUE, TimingValue
+from archgen.timing.system.fair_hosts import PREEMPTIVE_ORDERS
 from archgen.timing.system.thread_pools import name_lane
 from archgen.timing.system.timing_system import TimingSystem
 
@@ -89,7 +90,7 @@ def _fits_rate_monotonic(
     )
     orders = {system.host_orders.get(activity.host or "") for activity in working_activities}
     orders |= {order for (host, _), order in system.core_orders.items() if host in {a.host for a in working_activities}}
-    if not is_plain or not orders <= {None, "fixed_priority"}:
+    if not is_plain or not orders <= PREEMPTIVE_ORDERS:
         return False
     by_rate = sorted(working_activities, key=lambda activity: -(paces[activity.id].rate.value or 0))
     priorities = [activity.priority for activity in by_rate]

@@ -29,8 +29,8 @@ from fractions import Fraction
 from functools import cache
 from heapq import nlargest
 from itertools import islice
-from typing import NamedTuple
 
+from archgen.frozen import NamedTuple
 from archgen.timing.load.busy_windows import DivergedError, SearchBudget, WorstActivation
 from archgen.timing.load.cascade_demand import CascadeDemand
 from archgen.timing.load.core_paths import SharedWork, WayWork

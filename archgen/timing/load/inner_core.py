@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import replace
 from fractions import Fraction
 
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.event_streams import EventStreams
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers

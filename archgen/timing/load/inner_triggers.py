@@ -9,9 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
-from typing import NamedTuple
 
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.system.core_placement import ProcessingResource
 from archgen.timing.system.timing_system import (

@@ -13,9 +13,8 @@ activation no longer than the longest use of each other thread, and its own.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
 
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.busy_windows import SearchBudget
@@ -99,8 +98,7 @@ def _list_uses(system: TimingSystem) -> dict[str, int]:
 
 def _list_turns(system: TimingSystem) -> dict[str, int]:
     """Return how long each activation waits for resources and uses them, where all come in the order of arrival."""
-    times = {name: find_turn_times(system, name) for name in _list_uses(system)}
-    return {name: time for name, time in times.items() if time is not None}
+    return {name: time for name, time in find_turn_times(system).items() if time is not None}
 
 
 def _list_groups(

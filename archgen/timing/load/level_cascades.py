@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from fractions import Fraction
-from typing import Literal, NamedTuple
+from typing import Literal
 
+from archgen.frozen import NamedTuple
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers
 from archgen.timing.system.timing_system import TimingSystem
 

@@ -8,9 +8,9 @@ nothing changes.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from itertools import count
 
+from archgen.frozen import replace
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
 from archgen.timing.figures.timing_values import UnknownCause, sum_ratios, unite_causes
 from archgen.timing.load.busy_windows import ActivityWork, DivergedError, GrowingLoad, SearchBudget, longest_busy_period

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 
+from archgen.frozen import replace
 from archgen.model.declared_timing import SchedulingOrder
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.system.core_sets import CoreSet, find_core_sets, find_free_cores
+from archgen.timing.system.fair_hosts import PREEMPTIVE_ORDERS
 from archgen.timing.system.timing_system import Activity, TimingSystem, group_arcs
 
 
@@ -15,7 +16,8 @@ def build_load_system(system: TimingSystem) -> TimingSystem:
     """Return the system of what loads processors, itself where nothing differs."""
     unranked_ids = frozenset(_find_unranked(system))
     storing_activities = dict(_build_storing_activities(system))
-    if not unranked_ids and not storing_activities:
+    is_shared = any(share.other_load for share in system.fair_shares.values())
+    if not unranked_ids and not storing_activities and not is_shared:
         return system
     activities = {
         name: replace(activity, priority=None) if name in unranked_ids else activity
@@ -23,6 +25,8 @@ def build_load_system(system: TimingSystem) -> TimingSystem:
     }
     for activity in storing_activities.values():
         activities[activity.id] = replace(activity, priority=activities[_find_reader(activity)].priority)
+    if is_shared:
+        activities = {name: _stretch_work(system, activity) for name, activity in activities.items()}
     storing_arcs = [
         # An answer as well: for the processor it is a message like any other.
         replace(arc, target=storing_activities[arc.target, arc.input].id, role="data")
@@ -43,6 +47,15 @@ def build_load_system(system: TimingSystem) -> TimingSystem:
         arcs_from=group_arcs((arc.source, arc) for arc in arcs),
         external_inputs={**system.external_inputs, **outside_inputs},
     )
+
+
+def _stretch_work(system: TimingSystem, activity: Activity) -> Activity:
+    """Return an activity whose work takes as long as it does beside other programs, which take a share of its core."""
+    share = system.fair_shares.get(activity.host or "")
+    if share is None or not share.other_load or not activity.wcet:
+        return activity
+    left = 1 - share.other_load
+    return replace(activity, wcet=-(-activity.wcet * left.denominator // left.numerator))
 
 
 def name_storing_callback(reader_id: str, input_key: str) -> str:
@@ -92,18 +105,15 @@ def _build_storing_activities(system: TimingSystem) -> Iterator[tuple[tuple[str,
                 )
 
 
-_PREEMPTIVE_ORDERS = frozenset({None, "fixed_priority"})
-
-
 def _find_unranked(system: TimingSystem) -> Iterator[str]:
     """Yield the activities whose priority lets nobody wait who has begun: on cores of another order, or sharing with them."""
-    hosts = {host for host, order in system.host_orders.items() if order not in _PREEMPTIVE_ORDERS}
-    hosts |= {host for (host, _), order in system.core_orders.items() if order not in _PREEMPTIVE_ORDERS}
+    hosts = {host for host, order in system.host_orders.items() if order not in PREEMPTIVE_ORDERS}
+    hosts |= {host for (host, _), order in system.core_orders.items() if order not in PREEMPTIVE_ORDERS}
     for host in sorted(hosts):
         members = [activity for activity in system.activities.values() if activity.host == host]
         core_sets = find_core_sets(system, members)
         for core_set, names in _group_connected(system, host, core_sets):
-            if any(order_of_core(system, host, core) not in _PREEMPTIVE_ORDERS for core in core_set):
+            if any(order_of_core(system, host, core) not in PREEMPTIVE_ORDERS for core in core_set):
                 yield from names
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
 
+from archgen.frozen import NamedTuple
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.event_streams import EventStream, EventStreams, collapse_streams, delay_streams
 from archgen.timing.load.propagation_state import PropagationState

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import NamedTuple
 
+from archgen.frozen import NamedTuple
 from archgen.timing.load.busy_cores import divide_among_cores
 from archgen.timing.load.cascade_demand import CascadeDemand
 from archgen.timing.load.core_paths import CorePath

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from fractions import Fraction
 
+from archgen.frozen import dataclass, field
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.event_streams import (
     EventStreams,
 )
 from archgen.timing.load.run_ways import EntryWay
-from archgen.timing.load.thread_work import WorstResponse
+from archgen.timing.load.thread_work import ThreadWork, WorstResponse
 from archgen.timing.system.timing_system import Arc, TimingSystem
 from archgen.timing.system.trigger_graph import TriggerGraph
 
@@ -49,5 +50,13 @@ class PropagationState:
     """Event models of what comes by the arcs that enter such a core (by identity), as its responses rest on them."""
     leaving_models: dict[str, EventStreams | UnknownCause] = field(default_factory=dict)
     """Event models of what leaves each activity; filled on demand by sent_models, once everything else is found."""
+    turn_times: dict[tuple[str, tuple[str, ...]], dict[str, int | None]] = field(default_factory=dict)
+    """How long each use of a resource takes that serves its users in the order in which they come."""
+    resource_users: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    """The activities that use each resource."""
+    resource_loads: dict[str, tuple[tuple[object, ...], Fraction]] = field(default_factory=dict)
+    """The share of each resource that is used, for the event models for which it was found last."""
+    late_threads: dict[tuple[str, ...], tuple[tuple[object, ...], ThreadWork]] = field(default_factory=dict)
+    """What threads do on a core as others see it, for what it was found from last."""
     searched_terms: int = 0
     """How many terms the searches looked at: what finding all this has cost."""

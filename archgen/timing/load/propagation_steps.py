@@ -1,17 +1,20 @@
 """The steps of a propagation: what each core, host and activity is looked at as, and what must be looked at again behind it."""
 
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
+from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from archgen.frozen import replace
 from archgen.timing.figures.timing_values import UnknownCause
-from archgen.timing.load.core_paths import CorePaths
 from archgen.timing.load.event_streams import EventStreams
+from archgen.timing.load.fair_shares import FairCores, prepare_fair_cores
 from archgen.timing.load.inner_core import InnerCore, prepare_inner_core
 from archgen.timing.load.inner_triggers import InnerTriggers, find_inner_triggers
 from archgen.timing.load.joined_resources import JoinedResources, find_joined_resources
 from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.queue_responses import find_core_queue
-from archgen.timing.load.run_ways import find_run_arcs
+from archgen.timing.load.run_ways import EntryWay, begin_way, find_run_arcs
 from archgen.timing.load.search_budgets import GroupBudgets
 from archgen.timing.load.shared_cores import prepare_shared_cores
 from archgen.timing.load.single_cores import SingleCores, find_single_cores
@@ -22,6 +25,9 @@ from archgen.timing.system.core_placement import ProcessingResource
 from archgen.timing.system.resource_division import split_resources
 from archgen.timing.system.timing_system import Arc, find_request, is_taken_answer
 from archgen.timing.system.trigger_graph import has_own_rate
+
+if TYPE_CHECKING:
+    from archgen.timing.load.core_paths import CorePaths
 
 _MAX_WAITING_ACTIVATIONS = 200
 """Activations of one activity that may come within its response, in a loop, before the loop is given up."""
@@ -71,6 +77,9 @@ class PropagationSteps:
         self.shared_cores: dict[str, CorePaths] = {}
         self.inner_triggers: dict[str, InnerTriggers] = {}
         self._prepare_inner_cores()
+        self.fair_cores = {
+            step: cores for step, resource in self.resources.items() if (cores := self._find_fair_cores(step, resource))
+        }
         self.whole_hosts: dict[str, InnerCore] = {}
         self.resources_of_host: dict[str, list[str]] = {}
         self.host_limits: dict[str, dict[str, HostLimit]] = {}
@@ -123,10 +132,22 @@ class PropagationSteps:
                 core = self.inner_cores[step] = replace(core, queue=self.queues.get(step))
                 self.inner_triggers[step], ways_to = core.inner_triggers, core.ways_to
             else:
+                # Imported here: most projects have no such host.
+                from archgen.timing.load.core_paths import CorePaths
+
                 cores = prepare_shared_cores(system, resource, inner_triggers)
                 self.shared_cores[step] = CorePaths(cores)
                 self.inner_triggers[step], ways_to = cores.inner_triggers, cores.ways_to
             self.state.run_arcs.update(find_run_arcs(self.inner_triggers[step], ways_to))
+
+    def _find_fair_cores(self, step: str, resource: ProcessingResource) -> FairCores | None:
+        """Return the cores of a resource as threads share them fairly, if they do."""
+        ways_to: Mapping[str, tuple[EntryWay, ...]] = {name: (begin_way(name),) for name in resource.members}
+        if step in self.inner_cores:
+            ways_to = self.inner_cores[step].ways_to
+        elif step in self.shared_cores:
+            ways_to = self.shared_cores[step].cores.ways_to
+        return prepare_fair_cores(self.state.system, resource, ways_to)
 
     def _prepare_whole_hosts(self) -> None:
         """Prepare the hosts that bound their activities as if they had one core."""

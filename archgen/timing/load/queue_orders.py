@@ -17,8 +17,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from heapq import merge
-from typing import NamedTuple
 
+from archgen.frozen import NamedTuple
 from archgen.timing.load.busy_windows import SearchBudget
 from archgen.timing.load.event_streams import EventStreams, earliest_arrivals, max_arrivals
 

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import field
 from fractions import Fraction
 from typing import Literal
 
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.model.declared_timing import SchedulingOrder
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.busy_windows import DivergedError, SearchBudget

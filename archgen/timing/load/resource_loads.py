@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from fractions import Fraction
 from typing import Literal
@@ -23,11 +24,16 @@ def find_resource_loads(state: PropagationState, paces: Mapping[str, EventPace])
         (*system.resources, *(key for activity in system.activities.values() for key in activity.uses))
     )
     budget = SearchBudget()
-    return {resource_id: _build_load(state, paces, resource_id, budget) for resource_id in resource_ids}
+    notes = list_turn_notes(system)
+    return {key: _build_load(state, paces, key, budget, (notes[key],) if key in notes else ()) for key in resource_ids}
 
 
 def _build_load(
-    state: PropagationState, paces: Mapping[str, EventPace], resource_id: str, budget: SearchBudget
+    state: PropagationState,
+    paces: Mapping[str, EventPace],
+    resource_id: str,
+    budget: SearchBudget,
+    notes: tuple[str, ...],
 ) -> ResourceLoad:
     system = state.system
     resource = system.resources.get(resource_id)
@@ -40,8 +46,18 @@ def _build_load(
         utilisation,
         _judge_load(utilisation),
         tuple(shares.items()),
-        {name: _find_wait(state, name, resource_id, budget) for name in users},
+        {name: _find_wait(state, name, resource_id, budget, notes) for name in users},
     )
+
+
+def list_turn_notes(system: TimingSystem) -> dict[str, str]:
+    """Return what waits for each resource assume that several use, and of which nobody wrote the order."""
+    user_counts = Counter(key for activity in system.activities.values() for key in activity.uses)
+    return {
+        each.id: f"{each.id} serves whoever came first"
+        for each in system.resources.values()
+        if each.is_order_assumed and user_counts[each.id] > 1
+    }
 
 
 def _find_share(system: TimingSystem, activity: Activity, resource_id: str, pace: EventPace) -> TimingValue:
@@ -59,8 +75,10 @@ def _judge_load(utilisation: TimingValue) -> Literal["bearable", "overload", "un
     return "unknown" if utilisation.value is None or not utilisation.complete else "bearable"
 
 
-def _find_wait(state: PropagationState, name: str, resource_id: str, budget: SearchBudget) -> TimingValue:
-    """Return the longest time from asking for a resource until being done with it, in ns.
+def _find_wait(
+    state: PropagationState, name: str, resource_id: str, budget: SearchBudget, notes: tuple[str, ...]
+) -> TimingValue:
+    """Return the longest time from asking for a resource until being done with it, in ns; `notes` are what it assumes.
 
     Waiting is within the activation: where no bound of its own is found, that of the response less its execution time holds.
     """
@@ -69,8 +87,8 @@ def _find_wait(state: PropagationState, name: str, resource_id: str, budget: Sea
     response = state.responses[name]
     limit = None if response.value is None or activity.response is not None else response.value - (activity.bcet or 0)
     if isinstance(time, UnknownCause):
-        return value_of_cause(time) if limit is None else TimingValue(limit * tick)
-    return TimingValue((time if limit is None else min(time, limit)) * tick)
+        return value_of_cause(time) if limit is None else TimingValue(limit * tick, assumptions=notes)
+    return TimingValue((time if limit is None else min(time, limit)) * tick, assumptions=notes)
 
 
 def explain_waits(load_of: Mapping[str, ResourceLoad], activity: Activity, tick: Fraction) -> tuple[Reason, ...]:

@@ -9,11 +9,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from heapq import nlargest
-from typing import NamedTuple
 
+from archgen.frozen import NamedTuple
 from archgen.model.declared_timing import SchedulingOrder
 from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, unite_causes
 from archgen.timing.load.busy_windows import (
@@ -46,6 +46,12 @@ def find_users(system: TimingSystem, resource_id: str) -> tuple[str, ...]:
     )
 
 
+def _look_up_users(state: PropagationState, resource_id: str) -> tuple[str, ...]:
+    if resource_id not in state.resource_users:
+        state.resource_users[resource_id] = find_users(state.system, resource_id)
+    return state.resource_users[resource_id]
+
+
 def find_use_times(state: PropagationState, name: str, budget: SearchBudget) -> int | UnknownCause:
     """Return how long an activation waits for all resources and uses them, and waits for the world outside, in ticks."""
     times = [find_use_time(state, name, resource_id, budget) for resource_id in state.system.activities[name].uses]
@@ -63,8 +69,10 @@ def find_use_time(state: PropagationState, name: str, resource_id: str, budget: 
     order = _find_order(state.system, resource_id)
     if find_load(state, resource_id) > 1:
         return OVERLOAD_CAUSE
-    users = [user for user in find_users(state.system, resource_id) if state.event_models[user] != ()]
-    in_turn = bound_in_turn(state.system, name, resource_id, users) if order == "fifo" else None
+    users = tuple([user for user in _look_up_users(state, resource_id) if state.event_models[user] != ()])
+    if order == "fifo" and (resource_id, users) not in state.turn_times:
+        state.turn_times[resource_id, users] = bound_in_turn(state.system, resource_id, users)
+    in_turn = state.turn_times[resource_id, users].get(name) if order == "fifo" else None
     if in_turn is not None:
         return in_turn
     try:
@@ -75,12 +83,18 @@ def find_use_time(state: PropagationState, name: str, resource_id: str, budget: 
 
 def find_load(state: PropagationState, resource_id: str) -> Fraction:
     """Return the share of a resource that is used in the long run; what is not known of it counts as nothing."""
-    loads = [
-        work_utilisation(state.system.activities[user].uses[resource_id].worst, model)
-        for user in find_users(state.system, resource_id)
-        if not isinstance(model := state.event_models[user], UnknownCause)
-    ]
-    return sum_fractions([Fraction(0), *loads])
+    users = _look_up_users(state, resource_id)
+    models = tuple([state.event_models[user] for user in users])
+    known_models, load = state.resource_loads.get(resource_id, ((), Fraction(0)))
+    if known_models != models:
+        loads = [
+            work_utilisation(state.system.activities[user].uses[resource_id].worst, model)
+            for user, model in zip(users, models, strict=True)
+            if not isinstance(model, UnknownCause)
+        ]
+        load = sum_fractions([Fraction(0), *loads])
+        state.resource_loads[resource_id] = models, load
+    return load
 
 
 def _find_order(system: TimingSystem, resource_id: str) -> SchedulingOrder | None:
@@ -92,42 +106,58 @@ def thread_key(activity: Activity) -> str:
     return activity.executor or activity.id
 
 
-def find_turn_times(system: TimingSystem, name: str) -> int | None:
-    """Return how long the uses of an activation take if each comes in the order of arrival; None where one does not."""
-    total = system.activities[name].wait
-    for resource_id in system.activities[name].uses:
-        is_fifo = _find_order(system, resource_id) == "fifo"
-        time = bound_in_turn(system, name, resource_id, find_users(system, resource_id)) if is_fifo else None
-        if time is None:
-            return None
-        total += time
-    return total
+def find_turn_times(system: TimingSystem) -> dict[str, int | None]:
+    """Return how long each activation waits where each use comes in the order of arrival; None where one does not."""
+    in_turn = {
+        resource_id: bound_in_turn(system, resource_id, find_users(system, resource_id))
+        if _find_order(system, resource_id) == "fifo"
+        else {}
+        for resource_id in dict.fromkeys(key for activity in system.activities.values() for key in activity.uses)
+    }
+    times_of = {
+        activity.id: [activity.wait, *(in_turn[resource_id].get(activity.id) for resource_id in activity.uses)]
+        for activity in system.activities.values()
+        if activity.suspends
+    }
+    return {name: None if None in times else sum(each or 0 for each in times) for name, times in times_of.items()}
 
 
-def bound_in_turn(system: TimingSystem, name: str, resource_id: str, users: Iterable[str]) -> int | None:
-    """Return how long a use takes with one of each other thread before it; None where any number may ask at once."""
-    uses_by_thread: dict[str, dict[str | None, list[int]]] = {}
-    for user in dict.fromkeys((name, *users)):
+def bound_in_turn(system: TimingSystem, resource_id: str, users: Iterable[str]) -> dict[str, int | None]:
+    """Return how long each use takes with one of each other thread before it; None where any number may ask at once."""
+    processes: dict[str, dict[str | None, int]] = {}
+    for user in users:
         activity = system.activities[user]
-        groups = uses_by_thread.setdefault(thread_key(activity), {})
-        # Without executors each activity excludes itself.
-        group = activity.callback_group if activity.executor else user
-        groups.setdefault(group, []).append(activity.uses[resource_id].worst)
-    own = system.activities[name]
-    own_group = own.callback_group if own.executor else name
-    total = own.uses[resource_id].worst
-    for key, all_groups in uses_by_thread.items():
-        threads, groups = _count_threads(system, key), all_groups
-        if key == thread_key(own):
-            threads = None if threads is None else threads - 1
-            groups = {group: times for group, times in groups.items() if group != own_group or group is None}
-        concurrent = [max(times) for group, times in groups.items() if group is not None]
-        if groups.get(None):
-            if threads is None:
-                return None
-            concurrent += [max(groups[None])] * threads
-        total += sum(concurrent if threads is None else nlargest(threads, concurrent))
-    return total
+        groups = processes.setdefault(thread_key(activity), {})
+        groups[_group_of(activity)] = max(groups.get(_group_of(activity), 0), activity.uses[resource_id].worst)
+    times = {key: _sum_longest(groups, _count_threads(system, key)) for key, groups in processes.items()}
+    boundless_keys = [key for key, time in times.items() if time is None]
+    total = sum(time or 0 for time in times.values())
+    bounds: dict[str, int | None] = {}
+    for user in users:
+        own = system.activities[user]
+        key, group = thread_key(own), _group_of(own)
+        threads = _count_threads(system, key)
+        rest = {each: time for each, time in processes[key].items() if each != group or group is None}
+        beside = _sum_longest(rest, None if threads is None else threads - 1)
+        is_bounded = beside is not None and all(each == key for each in boundless_keys)
+        own_time = own.uses[resource_id].worst
+        bounds[user] = total - (times[key] or 0) + (beside or 0) + own_time if is_bounded else None
+    return bounds
+
+
+def _group_of(activity: Activity) -> str | None:
+    """Return what an activity excludes: without executors itself."""
+    return activity.callback_group if activity.executor else activity.id
+
+
+def _sum_longest(groups: Mapping[str | None, int], threads: int | None) -> int | None:
+    """Return how long the longest uses take that so many threads may ask for at once; None where any number may."""
+    concurrent = [time for group, time in groups.items() if group is not None]
+    if None in groups:
+        if threads is None:
+            return None
+        concurrent += [groups[None]] * threads
+    return sum(concurrent if threads is None else nlargest(threads, concurrent))
 
 
 def _count_threads(system: TimingSystem, key: str) -> int | None:
@@ -172,12 +202,14 @@ def find_rivals(state: PropagationState, own_ids: Sequence[str], resource_id: st
     waiting = [activity for name in own_ids if resource_id in (activity := system.activities[name]).uses]
     by_priority = _find_order(system, resource_id) == "fixed_priority"
     lowest = min(map(_rank_priority, waiting), default=-1)
+    waiting_keys = {thread_key(activity) for activity in waiting}
     competitors: list[Competitor] = []
     blocking = 0
-    for user in find_users(system, resource_id):
+    for user in _look_up_users(state, resource_id):
         other, model = system.activities[user], state.event_models[user]
         is_own = user in own_ids and not (len(own_ids) == 1 and _may_overlap(other))
-        if model == () or is_own or all(_never_overlap(system, each, other) for each in waiting):
+        is_mate = thread_key(other) in waiting_keys and all(_never_overlap(system, each, other) for each in waiting)
+        if model == () or is_own or is_mate:
             continue
         worst = other.uses[resource_id].worst
         if by_priority and _rank_priority(other) < lowest:

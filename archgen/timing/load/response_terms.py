@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from itertools import chain
 
+from archgen.frozen import replace
 from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.busy_windows import DivergedError, SearchBudget, WorstActivation
-from archgen.timing.load.core_responses import CoreSolver
+from archgen.timing.load.core_responses import CoreResponses, CoreSolver
 from archgen.timing.load.core_terms import CoreTerms, explain_core_hold, explain_core_window, explain_queue_bound
+from archgen.timing.load.fair_terms import FairTerms
 from archgen.timing.load.load_system import list_written_priorities
 from archgen.timing.load.propagation_state import PropagationState
 from archgen.timing.load.queue_responses import QUEUE_TIERS
@@ -65,6 +67,8 @@ class ResponseTerms:
             terms = self._solve_host(step)
             if isinstance(terms, CoreTerms):
                 yield from terms.list_responses(name, self.state.host_ways_to.get(name, ()))
+        elif tier == "fair":
+            yield from self._open_fair(step).list_responses(name)
         elif step not in self._steps.inner_triggers:
             yield from self._list_plain(name, step, tier)
         else:
@@ -102,6 +106,14 @@ class ResponseTerms:
         """Return the host of a step as a whole, None where it is not looked at as one."""
         whole_step = f"whole {self._steps.resources[step].host}"
         return self._solve(whole_step)[0] if whole_step in self._steps.whole_hosts else None
+
+    def _open_fair(self, step: str) -> FairTerms:
+        """Return how the figures of fair shares come about, from what was found in the end."""
+        state, names = self.state, self._steps.resources[step].members
+        ways_to = {name: state.ways_to[name] for name in names if name in state.ways_to}
+        found = CoreResponses({name: state.responses[name] for name in names}, ways_to, {})
+        solver = self._steps.open_fair_solver(self._steps.fair_cores[step], step, found, {})
+        return FairTerms(solver, self.formulas)
 
     def _list_lone(self, name: str) -> Iterator[FigureWorking]:
         """Yield how the response of an activity on a core of its own was found."""
@@ -152,8 +164,10 @@ class ResponseTerms:
         resource = ProcessingResource(name, None, 1, ((name,),)) if step is None else self._steps.resources[step]
         if resource.waits or self.state.system.activities[name].suspends:
             return
-        terms = None
-        if step is not None and tier == "whole host":
+        terms: CoreTerms | SharedCoreTerms | FairTerms | None = None
+        if step is not None and tier == "fair":
+            terms = self._open_fair(step)
+        elif step is not None and tier == "whole host":
             terms = self._solve_host(step)
         elif step in self._steps.inner_triggers:
             terms = self._solve(step)[0]
@@ -197,6 +211,8 @@ class ResponseTerms:
             return None
         way, (terms, _) = max(ways, key=lambda each: each.delay or 0), self._solve(step)
         workings = terms.list_delays(name, way) if isinstance(terms, SharedCoreTerms) else terms.list_delays(way)
+        if step in self._steps.fair_cores:
+            workings = chain(self._open_fair(step).list_delays(way), workings)
         working = choose_working(_until_diverged(workings), way.delay or 0)
         return (way, working) if working else None
 

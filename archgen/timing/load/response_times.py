@@ -11,8 +11,8 @@ from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from itertools import accumulate
 from math import lcm
-from typing import NamedTuple
 
+from archgen.frozen import NamedTuple
 from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, unite_causes
 from archgen.timing.load.busy_windows import (

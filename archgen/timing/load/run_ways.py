@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
 
+from archgen.frozen import NamedTuple
 from archgen.timing.load.event_streams import MAX_STREAMS
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers
 from archgen.timing.load.level_cascades import EventOrigin
@@ -32,15 +32,18 @@ class EntryWay(NamedTuple):
     link_time: int = 0
 
 
+def begin_way(name: str) -> EntryWay:
+    """Return the way to an activity that has events of its own."""
+    return EntryWay(EventOrigin("activity", name), None, (name,))
+
+
 def find_entry_ways(
     system: TimingSystem, inner_triggers: InnerTriggers, arc_numbers: Mapping[int, int]
 ) -> dict[str, tuple[EntryWay, ...]]:
     """Return the ways to each activity of a core. One with too many, or behind a gate, begins a way of its own."""
     ways_to: dict[str, tuple[EntryWay, ...]] = {}
     for name in inner_triggers.order:
-        ways_to[name] = _find_ways_to(system, inner_triggers, arc_numbers, name, ways_to) or (
-            EntryWay(EventOrigin("activity", name), None, (name,)),
-        )
+        ways_to[name] = _find_ways_to(system, inner_triggers, arc_numbers, name, ways_to) or (begin_way(name),)
     return ways_to
 
 

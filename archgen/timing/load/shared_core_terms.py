@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 from fractions import Fraction
-from typing import NamedTuple
 
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass, replace
 from archgen.timing.load.busy_cores import find_blocked_time
 from archgen.timing.load.busy_windows import DivergedError, SearchBudget, WorstActivation
 from archgen.timing.load.core_paths import CorePath, SharedWork, WayWork, build_thread_work

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import replace
-from typing import NamedTuple
 
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass, replace
 from archgen.timing.load.inner_core import rank_threads
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers
 from archgen.timing.load.level_cascades import EventOrigin, LevelCascades, build_level_cascades, number_arcs

@@ -8,8 +8,8 @@ runs, are used up as fast as time passes: the bound is that of the core alone, w
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import replace
 
+from archgen.frozen import replace
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.busy_windows import SearchBudget
 from archgen.timing.load.event_streams import EventStreams, delay_streams

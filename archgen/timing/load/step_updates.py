@@ -1,13 +1,17 @@
 """One step of a propagation at a time: the event model of an activity, or the responses of what a resource runs."""
 
+from __future__ import annotations
+
 from collections import ChainMap
 from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING
 
 from archgen.timing.figures.timing_values import UnknownCause, is_same_cause
 from archgen.timing.load.busy_windows import SearchBudget
 from archgen.timing.load.core_responses import CoreResponses, CoreSolver, open_core_solver
 from archgen.timing.load.event_models import activation_model, arriving_model
 from archgen.timing.load.event_streams import EventStreams
+from archgen.timing.load.fair_shares import FAIR_TERMS, FairCores, FairSolver
 from archgen.timing.load.inner_triggers import FiringArc
 from archgen.timing.load.level_cascades import EventOrigin
 from archgen.timing.load.propagation_steps import PropagationSteps
@@ -15,7 +19,6 @@ from archgen.timing.load.queue_orders import QueueBound
 from archgen.timing.load.queue_responses import CoreQueue
 from archgen.timing.load.response_times import AnalysisEffort, find_dedicated_response, find_responses
 from archgen.timing.load.run_ways import EntryWay
-from archgen.timing.load.shared_core_responses import SharedCoreSolver, open_shared_solver
 from archgen.timing.load.single_cores import delay_by_response
 from archgen.timing.load.thread_work import EventModels, WorstResponse
 from archgen.timing.load.transaction_windows import ENDLESS, TransactionWindows
@@ -24,6 +27,9 @@ from archgen.timing.load.whole_hosts import HostLimit, limit_responses, list_hos
 from archgen.timing.system.core_placement import (
     ProcessingResource,
 )
+
+if TYPE_CHECKING:
+    from archgen.timing.load.shared_core_responses import SharedCoreSolver
 
 
 class StepUpdates(PropagationSteps):
@@ -47,7 +53,9 @@ class StepUpdates(PropagationSteps):
         old_ends = dict(state.work_ends)
         new_responses = {
             name: self._limit_response(name, _name_tier(self.resources[step], response))
-            for name, response in self._find_responses(step).items()
+            for name, response in self._limit_to_fair(
+                step, CoreResponses(self._find_responses(step), {}, {}), {}
+            ).response_of.items()
         }
         changed = old_ends != state.work_ends or any(
             _has_changed(state.responses.get(name), response) for name, response in new_responses.items()
@@ -109,7 +117,9 @@ class StepUpdates(PropagationSteps):
         """Find the responses of a resource on which nothing fires anything else."""
         state, resource, budget = self.state, self.resources[step], self.budget_of[step]
         if resource.waits:
-            return find_waiting_responses(state, resource, self.waiting_ids, budget)
+            fair, nothing = self.fair_cores.get(step), CoreResponses({}, {}, {})
+            serve_others = self.open_fair_solver(fair, step, nothing, {}).serve_others if fair else None
+            return find_waiting_responses(state, resource, self.waiting_ids, budget, serve_others)
         models = self.models_of(step)
         queue, stale_ids = self.queues.get(step), self._stale_activities(step)
         # In a queue each response rests on all that waits there.
@@ -137,8 +147,13 @@ class StepUpdates(PropagationSteps):
         limits = dict(self.host_limits.get(f"whole {resource.host}", {})) if resource else {}
         for name in resource.members if resource else (step,):
             ways = self.state.transaction_ways.get(name)
-            if ways:
-                limit = HostLimit(max((way.delay or 0) - way.best_before for way in ways), None, None, "whole way")
+            response = max((way.delay or 0) - way.best_before for way in ways) if ways else 0
+            # What was found place by place is found again there.
+            is_known = any(
+                way.steps == (name,) and way.delay == response for way in self.state.place_ways.get(name, ())
+            )
+            if ways and not is_known:
+                limit = HostLimit(response, None, None, "whole way")
                 limits[name] = limits[name].limit_to(limit) if name in limits else limit
         return limits
 
@@ -211,6 +226,8 @@ class StepUpdates(PropagationSteps):
         """Return what finds the responses of a core, or several, on which activities fire one another, or of a host."""
         find_model, budget = self._model_finder(step, entering_models), self.budget_of[step]
         if step in self.shared_cores:
+            from archgen.timing.load.shared_core_responses import open_shared_solver
+
             known_bounds = ChainMap(self.state.work_ends, self.state.responses)
             return open_shared_solver(
                 self.shared_cores[step], find_model, (known_bounds, self._limits_of(step)), budget
@@ -222,9 +239,8 @@ class StepUpdates(PropagationSteps):
         state = self.state
         entering_models: dict[int, EventStreams | UnknownCause] = {}
         solved = self.open_solver(step, entering_models).solve()
-        new_responses, new_ways, new_waits = (
-            limit_responses(solved, self._limits_of(step)) if step in self.inner_cores else solved
-        )
+        found = limit_responses(solved, self._limits_of(step)) if step in self.inner_cores else solved
+        new_responses, new_ways, new_waits = self._limit_to_fair(step, found, entering_models)
         old_ends = dict(self.state.single_ends)
         if step in self.single_cores:
             self._limit_to_single_cores(step, new_responses, new_ways)
@@ -244,6 +260,43 @@ class StepUpdates(PropagationSteps):
         state.ways_to.update(new_ways)
         state.storing_waits.update(new_waits)
         return changed
+
+    def _limit_to_fair(
+        self, step: str, found: CoreResponses, entering_models: dict[int, EventStreams | UnknownCause]
+    ) -> CoreResponses:
+        """Limit what was found in any order to what it is on cores that are shared fairly."""
+        cores = self.fair_cores.get(step)
+        if cores is None or self.resources[step].waits:
+            return found
+        solver = self.open_fair_solver(cores, step, found, entering_models)
+        solver.solve()
+        for name, wait in found.storing_waits.items():
+            hold = solver.find_hold(name, wait.value)
+            if hold is not None and (wait.value is None or hold < wait.value):
+                found.storing_waits[name] = WorstResponse(hold, "fair")
+        return found
+
+    def open_fair_solver(
+        self,
+        cores: FairCores,
+        step: str,
+        found: CoreResponses,
+        entering_models: dict[int, EventStreams | UnknownCause],
+    ) -> FairSolver:
+        """Return what finds the responses of threads that share cores fairly."""
+        find_model, inner_triggers = self._model_finder(step, entering_models), self.inner_triggers.get(step)
+
+        def find_way_model(way: EntryWay) -> EventStreams | None:
+            # What comes through a gate of a core has no event model of its own there.
+            is_behind_gate = (
+                inner_triggers is not None and way.entry_arc is None and way.entry.key not in inner_triggers.entry_ids
+            )
+            model = UnknownCause() if is_behind_gate else find_model(way.entry, way.entry_arc)
+            return None if isinstance(model, UnknownCause) else model
+
+        known_responses = ChainMap(self.state.work_ends, self.state.responses)
+        budget = self.budget_of[step].open_part(FAIR_TERMS)
+        return FairSolver(cores, find_way_model, self.state.event_models, found, known_responses, budget)
 
     def _limit_to_single_cores(
         self, step: str, responses: dict[str, WorstResponse], ways_to: dict[str, tuple[EntryWay, ...]]

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache
-from typing import NamedTuple
 
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass, replace
 from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, sum_ratios, unite_causes
 from archgen.timing.load.busy_windows import ActivityWork, WorstActivation
@@ -133,6 +131,8 @@ def lower_crowded_threads(
     urgent as some of its members must let pass the work that piled up while its threads were held: more
     than what comes in a busy period of their priority, but no more than in one of the least urgent member's.
     """
+    if all(thread.highest_priority is None for thread in threads):
+        return list(threads)
     lowest_of = _lowest_in_crowded(system, threads, event_models)
     lowered_threads = [
         replace(thread, lowest_priority=lowest_of[thread.unit[0]]) if thread.unit[0] in lowest_of else thread

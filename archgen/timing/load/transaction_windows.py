@@ -17,8 +17,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
-from typing import NamedTuple
 
+from archgen.frozen import NamedTuple
 from archgen.timing.figures.timing_values import UnknownCause
 from archgen.timing.load.busy_cores import divide_among_cores
 from archgen.timing.load.busy_windows import ActivityWork, DivergedError, GrowingLoad, SearchBudget

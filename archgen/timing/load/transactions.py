@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import NamedTuple
 
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass
 from archgen.model.graph_search import find_strong_components
 from archgen.timing.load.inner_core import rank_threads
 from archgen.timing.load.inner_triggers import FiringArc, InnerTriggers, find_inner_triggers

@@ -13,10 +13,10 @@ is a cascade: what it fires comes from outside.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from typing import NamedTuple
 
+from archgen.frozen import NamedTuple
 from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import UnknownCause, sum_fractions, unite_causes
 from archgen.timing.load.busy_windows import (
@@ -45,16 +45,30 @@ from archgen.timing.load.thread_work import (
     work_utilisation,
 )
 from archgen.timing.system.core_placement import ProcessingResource
+from archgen.timing.system.core_sets import ThreadUnit
+from archgen.timing.system.fair_hosts import PREEMPTIVE_ORDERS
 from archgen.timing.system.thread_pools import find_pool, find_serial_process, is_reentrant, works_in_order
 from archgen.timing.system.timing_system import TimingSystem
 
+ServedWork = Callable[[int | None], "Interference | None"]
+"""Returns how long others may be served before a thread that waits; None where that is not known, or not below a limit."""
+
 
 def find_waiting_responses(
-    state: PropagationState, resource: ProcessingResource, waiting_ids: Collection[str], budget: SearchBudget
+    state: PropagationState,
+    resource: ProcessingResource,
+    waiting_ids: Collection[str],
+    budget: SearchBudget,
+    serve_others: ServedWork | None = None,
 ) -> dict[str, WorstResponse]:
-    """Return the responses of a thread that waits for resources; everything else there is foreign to it."""
+    """Return the responses of a thread that waits for resources; everything else there is foreign to it.
+
+    On cores that are shared fairly, `serve_others` says what others are served before it.
+    """
     system, unit = state.system, resource.units[0]
     response = _bound_unit(state, resource, waiting_ids, budget)
+    if serve_others is not None:
+        response = _limit_to_served(state, resource, response, serve_others, budget)
     responses: dict[str, WorstResponse] = {}
     for name in unit:
         activity = system.activities[name]
@@ -67,6 +81,29 @@ def find_waiting_responses(
         elif activity.wcet is None:
             responses[name] = WorstResponse(None, "unknown", unite_causes((UnknownCause((name,)), response.cause)))
     return responses
+
+
+def _limit_to_served(
+    state: PropagationState,
+    resource: ProcessingResource,
+    response: WorstResponse,
+    serve_others: ServedWork,
+    budget: SearchBudget,
+) -> WorstResponse:
+    """Return a response, or what it is with what others are served before the thread and a lead more for each wait."""
+    own_ids = _list_own(state.system, resource)
+    waits = OVERLOAD_CAUSE if _fills_resource(state, own_ids) else _waits_by_use(state, own_ids, budget)
+    if isinstance(waits, UnknownCause):
+        return response
+    limit = None if response.value is None else response.value - max(work.cost for work in waits.works)
+    interference = serve_others(limit)
+    if interference is None:
+        return response
+    is_in_order = len(own_ids) == 1 and works_in_order(state.system, state.system.activities[own_ids[0]])
+    bound = _bound_with(waits, interference, budget, in_order=is_in_order)
+    if isinstance(bound, UnknownCause) or (response.value is not None and response.value <= bound):
+        return response
+    return WorstResponse(bound, "fair")
 
 
 def find_waiting_stores(
@@ -120,11 +157,9 @@ def _bound_unit(
     causes = [thread.cause for thread in others if thread.cause]
     if causes:
         return WorstResponse(None, tier, unite_causes(causes))
-    interference = _divide_demand(
-        [thread for thread in others if not _computes_in_turn(system, resource, thread)],
-        1 if resource.joined else resource.cores,
-    )
-    mates = [thread for thread in others if _computes_in_turn(system, resource, thread)]
+    mates = _list_mates(system, resource, others)
+    beside = [thread for thread in others if thread not in mates] if mates else others
+    interference = _divide_demand(beside, 1 if resource.joined else resource.cores)
     if mates:  # they hold one another up for all that they compute, on however many cores
         interference = interference.add(_divide_demand(mates, 1))
     is_in_order = not any_order and len(own_ids) == 1 and works_in_order(system, system.activities[own_ids[0]])
@@ -146,19 +181,19 @@ class _Waits(NamedTuple):
     rivals: tuple[Rivals, ...] = ()
 
 
-class _Interference(NamedTuple):
+class Interference(NamedTuple):
     """How long others can keep all cores busy in a window, and their share of them in the long run."""
 
     demand: DemandFunction
     share: Fraction
 
-    def add(self, other: _Interference) -> _Interference:
+    def add(self, other: Interference) -> Interference:
         """Return both together."""
         first, second = self.demand, other.demand
         total = DemandFunction(
             lambda window: first.within(window) + second.within(window), first.term_count + second.term_count
         )
-        return _Interference(total, self.share + other.share)
+        return Interference(total, self.share + other.share)
 
 
 def _waits_by_use(state: PropagationState, own_ids: Sequence[str], budget: SearchBudget) -> _Waits | UnknownCause:
@@ -203,7 +238,7 @@ def _add_waits(state: PropagationState, use_times: Mapping[str, int | UnknownCau
 
 
 def _bound_with(
-    waits: _Waits | UnknownCause, interference: _Interference, budget: SearchBudget, *, in_order: bool
+    waits: _Waits | UnknownCause, interference: Interference, budget: SearchBudget, *, in_order: bool
 ) -> int | UnknownCause:
     """Return the longest response of a thread with some waits, or why none is found."""
     if isinstance(waits, UnknownCause):
@@ -237,10 +272,10 @@ def _find_longest_response(
     return longest_wait_for_turn(total, budget) if takes_no_time else longest_busy_period(total, budget)
 
 
-def _divide_demand(others: Sequence[ThreadWork], core_count: int) -> _Interference:
+def _divide_demand(others: Sequence[ThreadWork], core_count: int) -> Interference:
     """Return how long others can be busy on all cores at once in a window."""
     demand = GrowingLoad([work for thread in others for work in thread.works]).demand_function()
-    return _Interference(
+    return Interference(
         DemandFunction(lambda window: -(-demand.within(window) // core_count), demand.term_count),
         sum_fractions([Fraction(0), *(thread.share for thread in others)]) / core_count,
     )
@@ -286,20 +321,16 @@ def _list_others(
     system = state.system
     is_late = resource.cores > 1 or resource.joined
     strangers = {name for unit in resource.stranger_units for name in unit}
-    models = {
-        name: delayed_model(state, name, waiting_ids, always=is_late or name in strangers)
-        for unit in resource.foreign_units
-        for name in unit
-        if name not in own_ids
-    }
-    models |= {name: state.event_models[name] for name in own_ids}
     other_units = [
         rest for unit in resource.foreign_units if (rest := tuple(name for name in unit if name not in own_ids))
     ]
-    threads = lower_crowded_threads(
-        system, [build_thread(system, unit, models) for unit in (resource.units[0], *other_units)], models
-    )
-    mates = [thread for thread in threads[1:] if _computes_in_turn(system, resource, thread)]
+    models = {name: state.event_models[name] for name in own_ids}
+    others = [
+        _build_late_thread(state, unit, models, waiting_ids, is_late=is_late or unit[0] in strangers)
+        for unit in other_units
+    ]
+    threads = lower_crowded_threads(system, [build_thread(system, resource.units[0], models), *others], models)
+    mates = _list_mates(system, resource, threads[1:])
     # Who computes in turn with something less urgent waits for whatever keeps that from its core.
     lowest = min((each.lowest_priority for each in (threads[0], *mates)), key=urgency_of)
     level = None if _ignores_priorities(system, resource) else lowest
@@ -308,17 +339,39 @@ def _list_others(
             yield thread
 
 
-def _computes_in_turn(system: TimingSystem, resource: ProcessingResource, thread: ThreadWork) -> bool:
-    """Whether a thread is of the process that waits, and computes only while no other thread of it does."""
+def _build_late_thread(
+    state: PropagationState,
+    unit: ThreadUnit,
+    models: dict[str, EventStreams | UnknownCause],
+    waiting_ids: Collection[str],
+    *,
+    is_late: bool,
+) -> ThreadWork:
+    """Return a thread as others on its core see it, and put the event models of its members into `models`."""
+    responses = [state.work_ends.get(name, state.responses.get(name)) for name in unit]
+    found_from = (is_late, *(state.event_models[name] for name in unit), *responses)
+    known = state.late_threads.get(unit)
+    if known is None or known[0] != found_from:
+        late = {name: delayed_model(state, name, waiting_ids, always=is_late) for name in unit}
+        known = state.late_threads[unit] = found_from, build_thread(state.system, unit, late)
+    for name in unit:
+        models[name] = state.event_models[name]
+    return known[1]
+
+
+def _list_mates(system: TimingSystem, resource: ProcessingResource, threads: Iterable[ThreadWork]) -> list[ThreadWork]:
+    """Return the threads of the process that waits, where each computes only while no other one does."""
     process = find_serial_process(system, resource.units[0][0])
-    return process is not None and find_serial_process(system, thread.unit[0]) == process
+    if process is None:
+        return []
+    return [thread for thread in threads if find_serial_process(system, thread.unit[0]) == process]
 
 
 def _ignores_priorities(system: TimingSystem, resource: ProcessingResource) -> bool:
     """Whether something other than preemptive priorities may decide who runs."""
     host = resource.host or ""
     orders = {system.host_orders.get(host), *(order for (name, _), order in system.core_orders.items() if name == host)}
-    return not orders <= {None, "fixed_priority"}
+    return not orders <= PREEMPTIVE_ORDERS
 
 
 def _name_tier(system: TimingSystem, resource: ProcessingResource) -> ResponseTier:

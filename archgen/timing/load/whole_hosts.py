@@ -9,8 +9,8 @@ would come back to it as jitter for ever.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import NamedTuple
 
+from archgen.frozen import NamedTuple
 from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.load.core_responses import CoreResponses
 from archgen.timing.load.inner_core import InnerCore, prepare_inner_core

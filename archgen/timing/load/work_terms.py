@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
 from fractions import Fraction
-from typing import NamedTuple
 
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass, replace
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.tick_unit import NS_PER_SECOND
 from archgen.timing.load.event_streams import EventStream, EventStreams, max_arrivals
@@ -132,6 +130,10 @@ def group_terms(terms: Iterable[WorkTerm]) -> tuple[WorkTerm, ...]:
     return tuple(WorkTerm(tuple(parts), count, reason) for (count, reason), parts in parts_by_count.items())
 
 
+ANY_AMOUNT = 1 << 200
+"""More work than comes in any window, in ticks: what nobody knows the amount of."""
+
+
 class ThreadShare(NamedTuple):
     """What a thread beside a path may do in a window, and how much of it counts: no more than the time it lasts. In ticks."""
 
@@ -171,6 +173,8 @@ class FigureWorking:
     """How much of the terms is a wait for threads of a container: time, and not work of a core."""
     is_backlog: bool = False
     """Whether all cores may be busy with `beside_terms` and what was pending, less `unfinished` and the own terms."""
+    leads: tuple[int, ...] = ()
+    """On cores that are shared fairly: what no other thread is served before it beyond its own work."""
     core: int | None = None
     """The core that alone gives the figure of what may run on several."""
     is_queue: bool = False
@@ -190,11 +194,11 @@ class FigureWorking:
             return self.value == sum(working.value for working in self.addends) and all(
                 working.is_consistent for working in self.addends
             )
-        if self.is_hold and self.core_count > 1:
+        if self.is_hold and (self.core_count > 1 or self.leads):
             return self.work >= self.window == self.value
         # On several cores a longer window may ask for less: then the first one that is long enough is not all used.
         work = self.work
-        is_whole = work == self.window or (self.core_count > 1 and work < self.window)
+        is_whole = work == self.window or ((self.core_count > 1 or bool(self.leads)) and work < self.window)
         return is_whole and self.value == max(self.window - self.arrival - self.lead, 0)
 
 

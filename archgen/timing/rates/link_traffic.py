@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache
 from heapq import heapify, heapreplace
-from typing import NamedTuple
 
+from archgen.frozen import NamedTuple
 from archgen.timing.analysis import EventPace, LinkLoad, TopicLoad
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.tick_unit import NS_PER_SECOND

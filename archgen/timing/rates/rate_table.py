@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from fractions import Fraction
 
 from archgen.diagnostics.source_span import Span
+from archgen.frozen import dataclass, field
 from archgen.timing.analysis import EventPace, MatchFigures, ResponseTime
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.load.propagation_state import PropagationState

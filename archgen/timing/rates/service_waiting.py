@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from fractions import Fraction
 
+from archgen.frozen import replace
 from archgen.timing.analysis import EventPace, ResponseTime, ServiceLoad
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import add_values, is_known_bound, multiply_value, unknown_value

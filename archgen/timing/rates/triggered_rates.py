@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from fractions import Fraction
 from math import ceil
 
+from archgen.frozen import replace
 from archgen.timing.analysis import MatchFigures, Reason
 from archgen.timing.figures.figure_wording import format_duration
 from archgen.timing.figures.tick_unit import NS_PER_SECOND

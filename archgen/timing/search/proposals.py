@@ -6,10 +6,9 @@ Bounded by a number of tries, in a fixed order: the same files give the same pro
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
 from fractions import Fraction
 
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.timing.analysis import ChainResult
 from archgen.timing.search.change_trials import Changes, ChangeTrials, TriesSpentError
 from archgen.timing.search.run_configurations import ORDERS, ConfigurationSpace, RunConfiguration, TriggerChoice

@@ -8,12 +8,11 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
 
 from archgen.diagnostics.common_wording import join_words
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.search.change_trials import Changes, TriedChange

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
 from functools import cache
-from typing import NamedTuple
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.deployment import Link
 from archgen.model.node import QOS_PROFILES, Endpoint, Topic

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Sequence
-from typing import NamedTuple
 
+from archgen.frozen import NamedTuple
 from archgen.model.component import Component
 from archgen.model.known_parts import KnownParts
 from archgen.model.node import Endpoint, Node

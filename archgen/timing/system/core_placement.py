@@ -65,7 +65,8 @@ class ProcessingResource:
     @property
     def stranger_units(self) -> tuple[ThreadUnit, ...]:
         """Return the units that may run here and elsewhere."""
-        return tuple(unit for unit in self.foreign_units if unit not in self.neighbour_units)
+        neighbours = frozenset(self.neighbour_units)
+        return tuple(unit for unit in self.foreign_units if unit not in neighbours)
 
     @property
     def members(self) -> tuple[str, ...]:

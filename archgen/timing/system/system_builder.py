@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from archgen.diagnostics.common_wording import join_first
 from archgen.model.architecture import Architecture
 from archgen.model.node import Node
 from archgen.model.port_media import is_physical
 from archgen.model.runtime_facts import count_node_threads, find_container_threads, find_library, find_usual_order
 from archgen.timing.analysis import Reason
-from archgen.timing.figures.figure_wording import join_first_names
 from archgen.timing.figures.tick_unit import choose_tick_unit
 from archgen.timing.system import message_sizes
 from archgen.timing.system.activity_builder import (
@@ -21,6 +21,7 @@ from archgen.timing.system.activity_builder import (
 )
 from archgen.timing.system.arc_builder import build_arcs
 from archgen.timing.system.built_parts import BuiltParts
+from archgen.timing.system.fair_hosts import build_fair_share
 from archgen.timing.system.timing_system import Activity, Executor, SharedResource, TimingSystem, group_arcs
 
 _BITS_PER_BYTE = 8
@@ -53,7 +54,10 @@ def build_system(
         cores={host.id: host.cores for host in architecture.hosts.values()},
         executors={executor.id: executor for executor in _build_executors(architecture, activities_by_id)},
         resources={
-            resource.id: SharedResource(resource.id, resource.host, resource.scheduling)
+            # What drivers do, where nobody wrote anything else.
+            resource.id: SharedResource(
+                resource.id, resource.host, resource.scheduling or "fifo", not resource.scheduling
+            )
             for resource in architecture.resources.values()
         },
         host_orders={host.id: host.scheduling for host in architecture.hosts.values() if host.scheduling},
@@ -61,6 +65,11 @@ def build_system(
             (host.id, core): order
             for host in architecture.hosts.values()
             for core, order in host.core_scheduling.items()
+        },
+        fair_shares={
+            host.id: build_fair_share(host, tick_unit)
+            for host in architecture.hosts.values()
+            if host.scheduling in {None, "fair"}
         },
         bandwidths={
             link.id: link.bandwidth.value / _BITS_PER_BYTE if link.bandwidth else None
@@ -112,7 +121,7 @@ def _note_languages(architecture: Architecture) -> Iterator[Reason]:
     nodes = [each for each in architecture.nodes.values() if not each.container and count_node_threads(each) > 1]
     unsaid = tuple(each.id for each in nodes if each.language is None and (each.reentrant or len(each.implements) > 1))
     if unsaid:
-        names, at = join_first_names(unsaid), architecture.nodes[unsaid[0]].at
+        names, at = join_first(unsaid), architecture.nodes[unsaid[0]].at
         yield Reason(
             "no `language` is written for {0}: all threads compute at once, as in C++ and not in Python", at, (names,)
         )

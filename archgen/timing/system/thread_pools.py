@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
-from typing import NamedTuple
 
+from archgen.frozen import NamedTuple
 from archgen.timing.system.timing_system import Activity, Arc, TimingSystem, name_queue
 
 

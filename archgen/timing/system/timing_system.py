@@ -7,12 +7,11 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
-from dataclasses import field
 from fractions import Fraction
 from typing import Literal
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.model.declared_timing import ActivityBehaviour, SchedulingOrder
 from archgen.model.node import FlowKind
 from archgen.model.runtime_facts import RCLCPP, ClientLibrary
@@ -71,6 +70,25 @@ class SharedResource:
     id: str
     host: str | None
     order: SchedulingOrder | None = None
+    is_order_assumed: bool = False
+    """Whether nobody wrote the order."""
+
+
+@dataclass(frozen=True, slots=True)
+class FairShare:
+    """How the threads of a host without a priority share its cores.
+
+    While one of them waits, no other one is served more than it and `lead` (ticks): some times a `turn`, which is a slice
+    and a tick. `other_load` is the share of each core that other programs take.
+    """
+
+    lead: int
+    turn: int
+    other_load: Fraction = Fraction(0)
+    assumption: str = ""
+    """What nobody wrote of it, as answers say it; empty where all is written."""
+    figures: str = ""
+    """What the lead is made of, as reasons say it: `5 times a slice of 3 ms and a tick of 1 ms`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,6 +225,8 @@ class TimingSystem:
     """The order on the cores of a host, where one is written."""
     core_orders: Mapping[tuple[str, int], SchedulingOrder] = field(default_factory=dict)
     """The order on single cores (host, core), where it differs from the host's."""
+    fair_shares: Mapping[str, FairShare] = field(default_factory=dict)
+    """The hosts whose cores are shared fairly, but for single cores of another order."""
     bandwidths: Mapping[str, Fraction | None] = field(default_factory=dict)
     """Bandwidth of each link in B/s, None where not written."""
     served_outputs: frozenset[tuple[str, str]] = frozenset()

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
 
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.timing.search.chain_budgets import SharedBudget
 from archgen.views.agreement.interface_record import InterfaceRecord
 from archgen.views.agreement.signature_record import SignatureRecord

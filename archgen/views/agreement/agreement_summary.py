@@ -13,7 +13,7 @@ from archgen.views.agreement.promise_rows import RATE, join_figures
 from archgen.views.agreement.term_changes import NAME_KIND, AgreementChanges, write_signed_kind
 from archgen.views.element_references import message_link
 from archgen.views.graphs.element_boxes import join_owner_titles
-from archgen.views.shapes import Column, Inlines, Paragraph, Section, Table, Text, drop_empty_columns
+from archgen.views.shapes import Column, Inlines, Paragraph, Section, Table, Text, drop_empty_columns, make_columns
 
 _MAX_OWN_ROWS = 2
 """With the same point open at more interfaces than these, it has one row with all of them: it would drown the others."""
@@ -22,13 +22,8 @@ _MAX_OWN_ROWS = 2
 def write_summary_section(content: AgreementContent) -> Section:
     """List all interfaces."""
     rows = [_summary_row(content, record) for record in content.records]
-    columns = (
-        Column("Interface", 1.6),
-        Column("From", 0.8),
-        Column("What flows", 1.7),
-        Column("Rate", 1.05),
-        Column("Version", 0.8),
-        Column("Still open", 1),
+    columns = make_columns(
+        ("Interface", 1.6), ("From", 0.8), ("What flows", 1.7), ("Rate", 1.05), ("Version", 0.8), ("Still open", 1)
     )
     table = drop_empty_columns(Table("table:interfaces", "All interfaces", columns, tuple(rows), numbered=False))
     active_directions = {record.terms.interface.pair for record in content.records}

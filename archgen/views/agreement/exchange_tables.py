@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from archgen.frozen import dataclass
-from archgen.model.partner_interfaces import PartnerInterface, PartnerPair, components_at_ends, find_all_interfaces
+from archgen.model.partner_interfaces import PartnerPair, components_at_ends, find_all_interfaces
 from archgen.timing.system import activity_builder
 from archgen.views import inline_text
 from archgen.views.agreement.interface_terms import InterfaceTerms, gather_terms
@@ -14,7 +14,7 @@ from archgen.views.agreement.promise_rows import QOS_OFFERED, RATE, PromiseRow, 
 from archgen.views.element_references import message_link
 from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Column, Inlines, Status, Table, Text, drop_empty_columns
+from archgen.views.shapes import Column, Inlines, Status, Table, Text, drop_empty_columns, make_columns
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +37,11 @@ def gather_exchanges(lookup: Lookup) -> tuple[PartnerExchange, ...]:
     positions: Mapping[str, int] = {partner: at for at, partner in enumerate(lookup.architecture.partners)}
     interfaces_by_pair: dict[PartnerPair, list[InterfaceTerms]] = {}
     for interface in find_all_interfaces(lookup.architecture):
-        if _is_shown(lookup, interface):
+        ends = components_at_ends(lookup.architecture, interface)
+        endpoints = (*interface.giver_endpoints, *interface.taker_endpoints)
+        if any(lookup.scope.shows_component(component.id) for end in ends for component in end) or any(
+            lookup.scope.shows_node(endpoint.node) for endpoint in endpoints if not any(ends)
+        ):
             first, second = sorted(interface.pair, key=lambda partner: positions.get(partner, len(positions)))
             terms = gather_terms(lookup, activity_names, interface)
             interfaces_by_pair.setdefault((first, second), []).append(terms)
@@ -49,15 +53,6 @@ def gather_exchanges(lookup: Lookup) -> tuple[PartnerExchange, ...]:
         PartnerExchange(pair, tuple(all_terms), sum(len(terms.open_points) for terms in all_terms))
         for pair in pairs
         for all_terms in (interfaces_by_pair[pair],)
-    )
-
-
-def _is_shown(lookup: Lookup, interface: PartnerInterface) -> bool:
-    """Whether a document that shows a part shows an interface: one of its ends is in that part."""
-    ends = components_at_ends(lookup.architecture, interface)
-    endpoints = (*interface.giver_endpoints, *interface.taker_endpoints)
-    return any(lookup.scope.shows_component(component.id) for end in ends for component in end) or any(
-        lookup.scope.shows_node(endpoint.node) for endpoint in endpoints if not any(ends)
     )
 
 
@@ -80,15 +75,15 @@ def interface_link(terms: InterfaceTerms) -> Text:
 def make_given_table(lookup: Lookup, anchor: str, caption: str, interfaces: Sequence[InterfaceTerms]) -> Table:
     """List what one partner gives another: what is promised of it, what is derived, and what is still open."""
     rows = tuple(_given_row(lookup, terms) for terms in interfaces)
-    columns = (
-        Column("What flows", 1.7),
-        Column("Message, topic", 1.6),
-        Column("Promised", 0.8, "right"),
-        Column("Derived", 0.8, "right"),
-        Column("QoS promised", 0.9),
-        Column("Size", 0.6, "right"),
-        Column("Traffic", 0.7, "right"),
-        Column("Still open", 0.9),
+    columns = make_columns(
+        ("What flows", 1.7),
+        ("Message, topic", 1.6),
+        ("Promised", 0.8, "right"),
+        ("Derived", 0.8, "right"),
+        ("QoS promised", 0.9),
+        ("Size", 0.6, "right"),
+        ("Traffic", 0.7, "right"),
+        ("Still open", 0.9),
     )
     return drop_empty_columns(Table(anchor, caption, columns, rows))
 

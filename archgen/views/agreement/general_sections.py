@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 
 from archgen.bringup.plan_shapes import StartStep
-from archgen.bringup.start_plan import describes_start, make_start_plan
+from archgen.bringup.start_plan import make_start_plan
 from archgen.model.agreed_terms import GENERAL_TERMS, find_agreement
 from archgen.model.architecture import Architecture
 from archgen.model.setting_sharing import SharedFrame, find_shared_frames
@@ -13,14 +13,24 @@ from archgen.model.step_connections import ConnectedStep
 from archgen.timing.analysis import ChainResult
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.search.chain_budgets import PartnerShare, SharedBudget
+from archgen.timing.search.chain_budgets import SharedBudget
 from archgen.views import inline_text, start_phrases
 from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.interface_record import InterfaceRecord
-from archgen.views.agreement.term_changes import AgreementChanges, write_signed_kind
+from archgen.views.agreement.term_changes import AgreementChanges, mark_changed_names
 from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.sequences.sequence_blocks import make_step_table
-from archgen.views.shapes import Column, Facts, Inlines, Paragraph, Section, Table, Text, drop_empty_columns
+from archgen.views.shapes import (
+    Column,
+    Facts,
+    Inlines,
+    Paragraph,
+    Section,
+    Table,
+    Text,
+    drop_empty_columns,
+    make_columns,
+)
 from archgen.views.tables.functional_tables import link_declared_frame, link_writer
 from archgen.views.tables.start_table import link_step
 from archgen.views.timing import value_format
@@ -45,12 +55,8 @@ def write_budget_section(content: AgreementContent) -> Iterator[Section]:
     """Write the table of what each element of the two may take; nothing where no chain has a budget."""
     rows = [row for chain_id, budget in content.budgets.items() for row in _chain_rows(content, chain_id, budget)]
     if rows:
-        columns = (
-            Column("Chain", 1.3),
-            Column("Partner", 0.8),
-            Column("Element", 1.4),
-            Column("Written", 0.6, "right"),
-            Column("May take", 0.7, "right"),
+        columns = make_columns(
+            ("Chain", 1.3), ("Partner", 0.8), ("Element", 1.4), ("Written", 0.6, "right"), ("May take", 0.7, "right")
         )
         table = Table("table:budgets", "Who may take how much", columns, tuple(rows), numbered=False)
         yield Section("page:budgets", "Execution times", (Paragraph(inline_text.to_inlines(_BUDGET_LEAD)), table))
@@ -64,7 +70,8 @@ def _chain_rows(content: AgreementContent, chain_id: str, budget: SharedBudget) 
             inline_text.to_inlines(join_owner_titles(content.lookup, share.owners)),
             inline_text.to_inlines(Text(share.activity, code=True)),
             inline_text.to_inlines(value_format.display_duration(TimingValue(share.written))),
-            inline_text.to_inlines(_write_share(share)),
+            # Exact, so that it still keeps the deadline.
+            inline_text.to_inlines(figure_wording.write_exact_duration(share.may_take)),
         )
 
 
@@ -75,11 +82,6 @@ def _chain_cell(content: AgreementContent, chain_id: str, budget: SharedBudget) 
     return inline_text.join_lines([inline_text.to_inlines(chain.title), (Text(", ".join(parts), muted=True),)])
 
 
-def _write_share(share: PartnerShare) -> str:
-    """Write a share as it can be set: exact, so that it still keeps the deadline."""
-    return figure_wording.write_exact_duration(share.may_take)
-
-
 _FRAME_LEAD = "These frames are written by one of the two, and used by the other one: its data is given or expected in them, or its own frames are placed in them."
 
 
@@ -88,14 +90,14 @@ def write_frame_section(content: AgreementContent) -> Iterator[Section]:
     shared_frames = find_shared_frames(content.lookup.architecture, *content.pair)
     if shared_frames:
         marks = _mark_frames(content)
-        columns = (
-            Column("Frame"),
-            Column("Partner", 0.9),
-            Column("Written by", 1.1),
-            Column("Placed in", 0.9),
-            Column("Rate", 0.6, "right"),
-            Column("Used for", 1.7),
-            Column("Change", 0.7),
+        columns = make_columns(
+            "Frame",
+            ("Partner", 0.9),
+            ("Written by", 1.1),
+            ("Placed in", 0.9),
+            ("Rate", 0.6, "right"),
+            ("Used for", 1.7),
+            ("Change", 0.7),
         )
         rows = tuple(_frame_row(content, shared, marks.get(shared.frame.id)) for shared in shared_frames)
         table = drop_empty_columns(Table("table:shared_frames", "Frames between the two", columns, rows))
@@ -110,7 +112,7 @@ def list_changed_frames(content: AgreementContent) -> tuple[str, ...]:
 def _frame_row(content: AgreementContent, shared: SharedFrame, mark: Text | None) -> tuple[Inlines, ...]:
     architecture, frame = content.lookup.architecture, shared.frame
     rate = inline_text.to_inlines("static") if frame.static else inline_text.quantity_to_inlines(frame.rate)
-    ports = (_link_port(architecture, name) for name in shared.ports)
+    ports = (inline_text.port_id_link(architecture, name) for name in shared.ports)
     frames = (link_declared_frame(architecture, name) for name in shared.frames)
     return (
         (Text(frame.id, code=True),),
@@ -123,10 +125,6 @@ def _frame_row(content: AgreementContent, shared: SharedFrame, mark: Text | None
     )
 
 
-def _link_port(architecture: Architecture, port_id: str) -> Inlines:
-    return inline_text.port_link(architecture, architecture.outputs.get(port_id) or architecture.inputs[port_id])
-
-
 def _mark_frames(content: AgreementContent) -> dict[str, Text]:
     """Return what happened to each frame since the earlier revision; nothing where no changes are asked for."""
     if content.changes is None or content.earlier_lookup is None:
@@ -135,11 +133,7 @@ def _mark_frames(content: AgreementContent) -> dict[str, Text]:
         {shared.frame.id: _plain_terms(shared) for shared in find_shared_frames(architecture, *content.pair)}
         for architecture in (content.lookup.architecture, content.earlier_lookup.architecture)
     )
-    names = [name for name in {**earlier, **shown} if shown.get(name) != earlier.get(name)]
-    return {
-        name: write_signed_kind("removed" if name not in shown else "added" if name not in earlier else "changed")
-        for name in names
-    }
+    return mark_changed_names(shown, earlier)
 
 
 def _plain_terms(shared: SharedFrame) -> tuple[object, ...]:
@@ -185,7 +179,7 @@ _START_LEAD = (
 
 def list_start_steps(architecture: Architecture) -> dict[str, StartStep]:
     """Return the steps by id; none where the project does not describe its start-up."""
-    return {step.id: step for step in make_start_plan(architecture).steps} if describes_start(architecture) else {}
+    return {step.id: step for step in make_start_plan(architecture).steps} if architecture.describes_start() else {}
 
 
 def write_start_section(content: AgreementContent) -> Iterator[Section]:
@@ -193,13 +187,8 @@ def write_start_section(content: AgreementContent) -> Iterator[Section]:
     steps = list_start_steps(content.lookup.architecture)
     rows = tuple(row for step in steps.values() for row in _list_rows(content, step, steps))
     if rows:
-        columns = (
-            Column("What waits", 1.1),
-            Column("Partner", 0.9),
-            Column("For what", 1.1),
-            Column("Partner", 0.9),
-            Column("Until", 1.3),
-            Column("Why", 1.8),
+        columns = make_columns(
+            ("What waits", 1.1), ("Partner", 0.9), ("For what", 1.1), ("Partner", 0.9), ("Until", 1.3), ("Why", 1.8)
         )
         table = drop_empty_columns(Table("table:shared_start", "Who waits for whom", columns, rows))
         yield Section("page:start", "Start-up", (Paragraph(inline_text.to_inlines(_START_LEAD)), table))

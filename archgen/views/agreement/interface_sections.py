@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import field
 from typing import TYPE_CHECKING
 
 from archgen.bringup.plan_shapes import StartStep
 from archgen.diagnostics.common_wording import join_words
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.model.agreed_terms import INTERFACE_TERMS
 from archgen.model.node import Endpoint
 from archgen.model.partner_interfaces import PartnerInterface, list_givers
@@ -22,7 +21,18 @@ from archgen.views.element_references import message_link
 from archgen.views.elements.element_names import join_surrounding_titles
 from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Block, Column, Facts, Inlines, Paragraph, Section, Table, Text, show_facts
+from archgen.views.shapes import (
+    Block,
+    Column,
+    Facts,
+    Inlines,
+    Paragraph,
+    Section,
+    Table,
+    Text,
+    make_columns,
+    show_facts,
+)
 from archgen.views.shapes import drop_empty_columns as tidy
 from archgen.views.timing import timing_tables
 
@@ -212,11 +222,8 @@ class SectionWriter:
         if not rows:
             yield Paragraph((mark[0], since_run), "note" if change_kind == "added" else "warning")
         else:
-            columns = (
-                Column("Term", 0.9),
-                Column("Change", 0.6),
-                Column(f"At {self.changes.earlier_revision}", 1.3),
-                Column("Now", 1.3),
+            columns = make_columns(
+                ("Term", 0.9), ("Change", 0.6), (f"At {self.changes.earlier_revision}", 1.3), ("Now", 1.3)
             )
             interface = record.terms.interface
             yield Table(
@@ -244,13 +251,7 @@ class SectionWriter:
             else inline_text.to_inlines(Text("not decided yet", muted=True))
         )
         rows = tuple(self._end_row(interface_end, undecided) for interface_end in interface_terms.ends)
-        columns = (
-            Column("Side", 0.7),
-            Column("Partner", 0.9),
-            Column("Component · port", 1.5),
-            Column("Node", 1.2),
-            Column("QoS", 1.3),
-        )
+        columns = make_columns(("Side", 0.7), ("Partner", 0.9), ("Component · port", 1.5), ("Node", 1.2), ("QoS", 1.3))
         name = f"table:ends/{interface_terms.interface.key}/{interface_terms.interface.pair[0]}"
         return tidy(Table(name, f"{interface_terms.title}: who gives and who takes", columns, rows, numbered=False))
 
@@ -310,10 +311,10 @@ class SectionWriter:
             for chain in interface_terms.chains
         )
         if rows:
-            columns = (
-                Column("Chain that passes through it", 1.8),
-                Column("Deadline", 0.8, "right"),
-                Column("Expected at the latest", 1, "right"),
+            columns = make_columns(
+                ("Chain that passes through it", 1.8),
+                ("Deadline", 0.8, "right"),
+                ("Expected at the latest", 1, "right"),
             )
             name = f"table:through/{interface_terms.interface.key}/{interface_terms.interface.pair[0]}"
             caption = f"{interface_terms.title}: chains that pass through it"

@@ -6,9 +6,8 @@ No term names a line of a file: text that moves changes nothing between the part
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
-from archgen.frozen import replace
+from archgen.frozen import dataclass, replace
 from archgen.model.agreed_terms import INTERFACE_TERMS, find_agreement
 from archgen.model.component import Component
 from archgen.model.node import Endpoint, Qos

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from typing import NamedTuple
 
 from archgen.analyses.kept_promises import list_sent_limits
-from archgen.frozen import dataclass, replace
+from archgen.frozen import NamedTuple, dataclass, replace
 from archgen.model.declared_timing import OutputTiming, Timing
 from archgen.model.node import Endpoint
 from archgen.model.partner_interfaces import PartnerInterface, list_givers
@@ -54,7 +53,8 @@ def promise_timing(
             node = endpoint.node if len(givers) > 1 else ""
             yield from _GivenPace(lookup, timed, activity_names, endpoint, node).list_rows()
     for name, part in _SIZE_PARTS[interface.flow]:
-        size = _message_size(lookup, interface, part)
+        message = f"{interface.message}{part}" if interface.message else None
+        size = lookup.message_size(message, None if part else interface.type)
         if size.bytes is not None or interface.flow == "topic":
             yield _size_row(TermName("size", name), size)
     if timed is not None and interface.flow == "topic":
@@ -197,11 +197,6 @@ def _spell_duration(value: TimingValue) -> str:
 def _spell_signs(figures: str) -> str:
     """Return figures with words for their signs: not everybody who signs reads `<=`."""
     return figures.replace("<= ", "at most ").replace(">= ", "at least ")
-
-
-def _message_size(lookup: Lookup, interface: PartnerInterface, part: str) -> MessageSize:
-    message = f"{interface.message}{part}" if interface.message else None
-    return lookup.message_size(message, None if part else interface.type)
 
 
 def _size_row(name: TermName, size: MessageSize) -> PromiseRow:

@@ -165,7 +165,10 @@ def _list_value_rows(ports: Sequence[CountedPort]) -> Iterator[PromiseRow]:
     """Yield the promised unit, frame and range of the values."""
     is_several = len(ports) > 1
     for name, read_text in (
-        (TermName("range", "Range of values"), lambda each: _range_text(each.promise)),
+        (
+            TermName("range", "Range of values"),
+            lambda each: format_range(each.promise.range, each.promise.unit) if each.promise.range else None,
+        ),
         (TermName("unit", "Unit"), lambda each: each.promise.unit if each.promise.range is None else None),
         (TermName("frame", "Frame"), lambda each: each.promise.frame),
     ):
@@ -176,10 +179,6 @@ def _list_value_rows(ports: Sequence[CountedPort]) -> Iterator[PromiseRow]:
                 _write_values(texts, str, is_several=is_several),
                 strength=_measure_range(ports) if name.key == "range" else {},
             )
-
-
-def _range_text(promise: Promise) -> str | None:
-    return format_range(promise.range, promise.unit) if promise.range else None
 
 
 def _measure_range(ports: Sequence[CountedPort]) -> Mapping[str, Fraction]:

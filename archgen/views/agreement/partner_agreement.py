@@ -7,6 +7,7 @@ from typing import Literal
 
 from archgen.compare.match_elements import match_elements
 from archgen.compare.matched_ids import MatchedIds
+from archgen.diagnostics.common_wording import fit_lines
 from archgen.frozen import dataclass, replace
 from archgen.model.agreed_terms import GENERAL_TERMS, RULES, find_agreement
 from archgen.model.partner_interfaces import PartnerInterface, PartnerPair, components_at_ends, find_interfaces_between
@@ -26,8 +27,7 @@ from archgen.views.elements import element_names
 from archgen.views.graphs import element_boxes
 from archgen.views.graphs.drawn_level import FlowStyle
 from archgen.views.graphs.element_boxes import join_owner_titles
-from archgen.views.graphs.graph_folding import fold_graph
-from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.graphs.graph_folding import add_legend_keys, fold_graph
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph
@@ -123,17 +123,12 @@ def _draw_arrows(placed_flows: Sequence[tuple[_DrawnFlow, str, str]]) -> Iterato
         bundles.setdefault((tail, head, style), []).append(flow)
     for (tail, head, style), flows in bundles.items():
         type_names = list(dict.fromkeys(flow.interface.type or flow.interface.key for flow in flows))
-        label_lines = (
-            type_names
-            if len(type_names) <= _MAX_LABELS
-            else [*type_names[: _MAX_LABELS - 1], f"and {len(type_names) - _MAX_LABELS + 1} more types"]
-        )
         sentences = tuple(flow.sentence for flow in flows)
         yield Arrow(
             f"{tail}>{head}:{style}",
             tail,
             head,
-            "\n".join(label_lines),
+            "\n".join(fit_lines(type_names, _MAX_LABELS, "and {} more types")),
             style=style,
             count=len(flows),
             flows=sentences,

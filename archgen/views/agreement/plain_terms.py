@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import field
 
 from archgen.compare.matched_ids import MatchedIds
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.model.agreed_terms import INTERFACE_TERMS
 from archgen.timing.analysis import ChainResult
 from archgen.timing.figures.figure_wording import format_duration

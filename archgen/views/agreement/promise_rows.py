@@ -6,10 +6,9 @@ Promised is what an owner wrote. Expected is what follows from other figures, an
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import field, replace
 from fractions import Fraction
 
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field, replace
 from archgen.model.node import Qos
 from archgen.model.partner_interfaces import PartnerInterface, list_givers
 from archgen.model.quantity import Quantity
@@ -18,7 +17,7 @@ from archgen.timing.figures.figure_wording import format_duration, format_rate
 from archgen.timing.system import activity_builder
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Column, Inlines, Table, Text
+from archgen.views.shapes import Column, Inlines, Table, Text, make_columns
 
 PromiseStrength = Mapping[str, Fraction | int]
 """How much is promised, by aspects (`rate`, `reliability`): less of one, or one that is gone, is a weaker promise."""
@@ -107,10 +106,8 @@ def identify_qos(qos: Qos) -> str:
 
 def write_promise_table(anchor: str, caption: str, giver_title: str, rows: tuple[PromiseRow, ...]) -> Table:
     """Write what is promised beside what is expected and was measured; where there is nothing, the table says so."""
-    columns: tuple[Column, ...] = (
-        Column("Term", 0.8),
-        Column(f"Promised by {giver_title}", 1.3),
-        Column("Expected, not promised", 1.7),
+    columns: tuple[Column, ...] = make_columns(
+        ("Term", 0.8), (f"Promised by {giver_title}", 1.3), ("Expected, not promised", 1.7)
     )
     cells: tuple[tuple[Inlines, ...], ...] = tuple(
         (

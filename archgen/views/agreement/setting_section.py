@@ -16,10 +16,19 @@ from archgen.model.setting_sharing import (
 )
 from archgen.views import inline_text
 from archgen.views.agreement.agreement_content import AgreementContent
-from archgen.views.agreement.term_changes import write_signed_kind
+from archgen.views.agreement.term_changes import mark_changed_names
 from archgen.views.elements.parameter_blocks import describe_limits, describe_types
 from archgen.views.graphs.element_boxes import join_owner_titles
-from archgen.views.shapes import Block, Column, Inlines, Paragraph, Section, Table, Text, drop_empty_columns
+from archgen.views.shapes import (
+    Block,
+    Inlines,
+    Paragraph,
+    Section,
+    Table,
+    Text,
+    drop_empty_columns,
+    make_columns,
+)
 
 _LEAD = "One of the two declares these at a component, and the other one sets them, or may call them."
 _Terms = Mapping[str, tuple[object, ...]]
@@ -54,15 +63,15 @@ def _make_parameter_table(content: AgreementContent, marks: Mapping[str, Text]) 
         )
         for shared in find_shared_parameters(content.lookup.architecture, content.pair)
     )
-    columns = (
-        Column("Parameter", 1.1),
-        Column("Component", 1.1),
-        Column("Declared by", 0.9),
-        Column("Type", 0.6),
-        Column("Unit", 0.5),
-        Column("May be", 0.9),
-        Column("Set by", 1.4),
-        Column("Change", 0.7),
+    columns = make_columns(
+        ("Parameter", 1.1),
+        ("Component", 1.1),
+        ("Declared by", 0.9),
+        ("Type", 0.6),
+        ("Unit", 0.5),
+        ("May be", 0.9),
+        ("Set by", 1.4),
+        ("Change", 0.7),
     )
     if rows:
         yield drop_empty_columns(Table("table:shared_parameters", "Parameters between the two", columns, rows))
@@ -91,14 +100,14 @@ def _make_operation_table(content: AgreementContent, marks: Mapping[str, Text]) 
         )
         for shared in _list_operations(content.lookup.architecture, content.pair)
     )
-    columns = (
-        Column("Operation", 1.1),
-        Column("Component", 1.1),
-        Column("Offered by", 0.9),
-        Column("Request", 1.2),
-        Column("Response", 1.2),
-        Column("Call", 0.8),
-        Column("Change", 0.7),
+    columns = make_columns(
+        ("Operation", 1.1),
+        ("Component", 1.1),
+        ("Offered by", 0.9),
+        ("Request", 1.2),
+        ("Response", 1.2),
+        ("Call", 0.8),
+        ("Change", 0.7),
     )
     if rows:
         yield drop_empty_columns(Table("table:shared_operations", "Operations between the two", columns, rows))
@@ -126,11 +135,7 @@ def _mark_settings(content: AgreementContent) -> dict[str, Text]:
         _list_terms(architecture, content.pair)
         for architecture in (content.lookup.architecture, content.earlier_lookup.architecture)
     )
-    names = [name for name in {**earlier, **shown} if shown.get(name) != earlier.get(name)]
-    return {
-        name: write_signed_kind("removed" if name not in shown else "added" if name not in earlier else "changed")
-        for name in names
-    }
+    return mark_changed_names(shown, earlier)
 
 
 def _list_terms(architecture: Architecture, pair: tuple[str, str]) -> _Terms:

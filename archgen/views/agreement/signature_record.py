@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
 
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.model.agreed_terms import RULES
 from archgen.views import inline_text
 from archgen.views.agreement.interface_record import InterfaceKey, InterfaceRecord
-from archgen.views.shapes import Column, Inlines, Table, Text
+from archgen.views.shapes import Inlines, Table, Text, make_columns
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,13 +51,7 @@ class SignatureRecord:
 
 def write_signature_table(tags: tuple[SignedTag, ...]) -> Table:
     """List the signatures that the repository records, newest first."""
-    columns = (
-        Column("Recorded as", 1.4),
-        Column("On", 0.6),
-        Column("By", 0.8),
-        Column("Commit", 0.6),
-        Column("Words", 1.4),
-    )
+    columns = make_columns(("Recorded as", 1.4), ("On", 0.6), ("By", 0.8), ("Commit", 0.6), ("Words", 1.4))
     rows = tuple(
         (
             inline_text.to_inlines(Text(tag.name, code=True)),

@@ -7,11 +7,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import field
 
 from archgen.compare.comparison import ChangeKind
 from archgen.compare.matched_ids import MatchedIds
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.model.agreed_terms import RULES
 from archgen.views.agreement.interface_record import InterfaceKey, InterfaceRecord
 from archgen.views.agreement.plain_terms import PlainTerm
@@ -21,6 +20,15 @@ from archgen.views.shapes import Text
 
 NAME_KIND = "name"
 """The kind of the term that a renamed interface has its old and new id in."""
+
+
+def mark_changed_names(shown: Mapping[str, object], earlier: Mapping[str, object]) -> dict[str, Text]:
+    """Return what happened to each name since the earlier revision, of those that are not what they were."""
+    names = [name for name in {**earlier, **shown} if shown.get(name) != earlier.get(name)]
+    return {
+        name: write_signed_kind("removed" if name not in shown else "added" if name not in earlier else "changed")
+        for name in names
+    }
 
 
 def write_signed_kind(kind: ChangeKind) -> Text:
@@ -174,7 +182,10 @@ def _describe_change(
 ) -> TermChange:
     old_text, new_text = (term.text if term else None for term in (old_term, new_term))
     if old_text and new_text:
-        old_text, new_text = _drop_common_source(old_text, new_text)
+        (old_figure, _, old_source), (new_figure, _, new_source) = (
+            text.partition(SOURCE_PHRASE) for text in (old_text, new_text)
+        )
+        old_text, new_text = (old_figure, new_figure) if old_source == new_source else (old_text, new_text)
     return TermChange(
         kind,
         shown_term.kind,
@@ -184,11 +195,3 @@ def _describe_change(
         shown_term.is_expected,
         old_term is not None and is_weaker(old_term.strength, new_term.strength if new_term else {}),
     )
-
-
-def _drop_common_source(old_text: str, new_text: str) -> tuple[str, str]:
-    """Return two texts without what both figures follow from, where that is the same."""
-    (old_figure, _, old_source), (new_figure, _, new_source) = (
-        text.partition(SOURCE_PHRASE) for text in (old_text, new_text)
-    )
-    return (old_figure, new_figure) if old_source == new_source else (old_text, new_text)

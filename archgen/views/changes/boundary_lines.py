@@ -7,7 +7,6 @@ bound any more: these follow from one cause, which stands among the changes.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from fractions import Fraction
 
 from archgen.compare import Comparison
@@ -16,7 +15,7 @@ from archgen.compare.figure_noise import FigureNoise
 from archgen.compare.interface_figures import DELAY_NAMES
 from archgen.compare.key_phrases import tick_names
 from archgen.diagnostics.common_wording import join_words
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.timing.figures.figure_wording import format_compared, format_duration
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.views.changes.figure_lines import FigureLine, describe_figure, join_partners

@@ -13,7 +13,7 @@ from archgen.compare.change_sentences import READERS_LEAD
 from archgen.compare.edits import Edit
 from archgen.compare.key_phrases import shorten_text, tick_names
 from archgen.compare.left_out_files import find_affected_names, find_left_out
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.common_wording import fit_lines, join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.frozen import dataclass, replace
 from archgen.model.review_settings import BREAK_CATEGORIES, BreakCategory
@@ -210,8 +210,7 @@ def _name_findings(edit: Edit, repeated_findings: Mapping[Diagnostic, Change]) -
         if change in edit.changes:
             places.setdefault(finding.rule, []).append(f"`{finding.span}`")
     for rule, spans in places.items():
-        surplus = [f"{len(spans) - _MAX_PLACES} more places"] if len(spans) > _MAX_PLACES + 1 else []
-        yield f"found as `{rule}` at {join_words([*spans[: _MAX_PLACES if surplus else None], *surplus])}"
+        yield f"found as `{rule}` at {join_words(fit_lines(spans, _MAX_PLACES + 1, '{} more places'))}"
 
 
 _TITLE = re.compile(r" \([^()`]*\)")

@@ -5,9 +5,8 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
 
-from archgen.compare import Change, Comparison, PartnerBreak
+from archgen.compare import Change, Comparison
 from archgen.compare.agreements import (
     AgreementJudge,
     AgreementTarget,
@@ -19,6 +18,7 @@ from archgen.compare.key_phrases import tick_names
 from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.suggestions import did_you_mean
+from archgen.frozen import NamedTuple
 from archgen.model.review_settings import (
     BREAK_CATEGORIES,
     AcceptedChange,
@@ -79,7 +79,9 @@ def write_missing_entries(comparison: Comparison) -> tuple[str, ...]:
     files_by_entries: dict[str, list[str]] = {}
     for partner, targets in sorted(_find_refused_targets(comparison).items()):
         file = agreement_file(find_partner_id(partner, comparison.matched_ids))
-        files_by_entries.setdefault(_write_entries(targets), []).append(file)
+        files_by_entries.setdefault(
+            "\n".join(("review:", "  accepted:", *(f"    {line}" for line in _write_lines(targets, "THE REASON")))), []
+        ).append(file)
     return tuple(
         f"# {join_words(files)}{', each' if len(files) > 1 else ''}\n{entries}"
         for entries, files in files_by_entries.items()
@@ -94,7 +96,9 @@ def _find_refused_targets(comparison: Comparison) -> Mapping[str, Sequence[Agree
     for change in comparison.changes if comparison.is_judged else ():
         if not _is_acceptable(change):
             continue
-        refused_breaks = [each for each in change.breaks if each.agreement is None and _is_refused(each, comparison)]
+        refused_breaks = [
+            each for each in change.breaks if each.agreement is None and comparison.severity_of(each) is Severity.ERROR
+        ]
         for partner in dict.fromkeys(each.partner for each in refused_breaks):
             own_breaks = [each for each in refused_breaks if each.partner == partner]
             targets.setdefault(partner, {}).update(dict.fromkeys(list_agreement_targets(change, own_breaks)))
@@ -137,10 +141,6 @@ def write_policy(comparison: Comparison) -> str:
         return "`review.breaking: error`"
     refusing = [category for category in BREAK_CATEGORIES if policy.severity_of(category) is Severity.ERROR]
     return f"`review.breaking: {{{', '.join(f'{category}: error' for category in refusing)}}}`"
-
-
-def _is_refused(partner_break: PartnerBreak, comparison: Comparison) -> bool:
-    return comparison.severity_of(partner_break) is Severity.ERROR
 
 
 def describe_agreements(change: Change, comparison: Comparison) -> Iterator[str]:
@@ -186,11 +186,6 @@ def _describe_place(entry: AcceptedChange) -> str:
 def _write_flow_entries(targets: Iterable[AgreementTarget], reason: str) -> str:
     """Return the section that accepts something, in one line."""
     return "`review: {accepted: {" + ", ".join(_write_lines(targets, reason)) + "}}`"
-
-
-def _write_entries(targets: Iterable[AgreementTarget]) -> str:
-    """Return the section that accepts something, a line for each element."""
-    return "\n".join(("review:", "  accepted:", *(f"    {line}" for line in _write_lines(targets, "THE REASON"))))
 
 
 def _write_lines(targets: Iterable[AgreementTarget], reason: str) -> Iterator[str]:

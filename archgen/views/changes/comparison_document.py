@@ -8,14 +8,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import field
 
 from archgen.compare import Change, Comparison
 from archgen.compare.edits import Edit, list_edits
 from archgen.compare.element_sentences import is_read_by_others
 from archgen.compare.figure_noise import FigureNoise
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
-from archgen.frozen import dataclass
+from archgen.frozen import NamedTuple, dataclass, field
 from archgen.views.changes import breaking_verdict
 from archgen.views.changes.boundary_lines import write_boundary_lines
 from archgen.views.changes.breaking_items import (
@@ -36,9 +35,16 @@ from archgen.views.changes.figure_lines import (
     write_noise_line,
 )
 from archgen.views.changes.named_elements import name_each, name_elements, name_partners
-from archgen.views.changes.reading_errors import ReadingErrors
 from archgen.views.inline_text import count_noun
 from archgen.views.picture_shapes import Graph
+
+
+class ReadingErrors(NamedTuple):
+    """The errors of reading and linking either version: what they are about is missing in the comparison."""
+
+    before: tuple[Diagnostic, ...] = ()
+    after: tuple[Diagnostic, ...] = ()
+
 
 BREAKING_HEADING = "Breaking changes"
 BOUNDARY_HEADING = "Between partners"
@@ -175,12 +181,15 @@ def describe_comparison(
     finding_groups = tuple(_group_findings(comparison, reading_errors, repeated_findings.keys()))
     noise = FigureNoise(comparison)
     verdict = tuple(breaking_verdict.describe_verdict(comparison)) if comparison.only_breaking else ()
+    kind_counts = count_by_kind(edits)
+    count_phrases = [count_noun(len(edits), "change") + (f" ({kind_counts})" if kind_counts else "")]
+    count_phrases += [count_noun(len(group.findings), f"{group.kind} finding") for group in finding_groups]
     return ComparisonDocument(
         title=comparison.after.architecture.project.title,
         before=NamedVersion(old_name, reading_errors.before),
         after=NamedVersion(new_name, reading_errors.after),
         headline=_write_headline(comparison, edits, verdict, finding_groups, caveat),
-        counts=_count_differences(edits, finding_groups),
+        counts=", ".join(count_phrases),
         kind_counts=count_by_kind(edits),
         finding_counts=tuple(_count_findings(finding_groups)),
         caveat=caveat,
@@ -281,13 +290,6 @@ def _write_headline(
     counts = [count_noun(len(group.findings), f"{group.kind} finding") for group in finding_groups]
     counts += [count_noun(len(comparison.chains), "chain") + " with another bound"] if comparison.chains else []
     return f"No change of the architecture{caveat}" + (f", but {' and '.join(counts)}" if counts else "")
-
-
-def _count_differences(edits: Sequence[Edit], finding_groups: Sequence[FindingGroup]) -> str:
-    kind_counts = count_by_kind(edits)
-    count_phrases = [count_noun(len(edits), "change") + (f" ({kind_counts})" if kind_counts else "")]
-    count_phrases += [count_noun(len(group.findings), f"{group.kind} finding") for group in finding_groups]
-    return ", ".join(count_phrases)
 
 
 def _count_findings(finding_groups: Sequence[FindingGroup]) -> Iterator[str]:

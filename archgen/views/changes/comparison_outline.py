@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 
-from archgen.compare.edits import Edit, EditKind
+from archgen.compare.edits import EditKind
+from archgen.frozen import replace
 from archgen.views import inline_text
 from archgen.views.changes import comparison_document
 from archgen.views.changes.breaking_items import BreakingChange
@@ -31,9 +31,10 @@ _MAX_ERRORS = 8
 
 def write_comparison_outline(document: ComparisonDocument) -> Outline:
     """Return the outline of a comparison document."""
+    figures = tuple(Figure(f"figure:{graph.id}", graph.id, graph.title, graph.alt) for graph in document.graphs)
     sections = (
         _breaking_section(document),
-        _picture_section(document),
+        Section("changes:pictures", "Pictures", figures) if figures else None,
         _change_section(document),
         _figure_section("changes:boundaries", comparison_document.BOUNDARY_HEADING, document.boundary_lines, document),
         _figure_section("changes:loads", comparison_document.LOAD_HEADING, document.load_lines, document),
@@ -103,25 +104,23 @@ def _breaking_item(item: BreakingChange, document: ComparisonDocument) -> Inline
     return (*_sign_runs(item.change.kind), *_titled_runs(item.short_text, document), *lines)
 
 
-def _picture_section(document: ComparisonDocument) -> Section | None:
-    figures = tuple(Figure(f"figure:{graph.id}", graph.id, graph.title, graph.alt) for graph in document.graphs)
-    return Section("changes:pictures", "Pictures", figures) if figures else None
-
-
 def _change_section(document: ComparisonDocument) -> Section | None:
     sections = tuple(
         Section(
             f"changes:{change_group.group_id or change_group.title}",
             (change_group.title or change_group.group_id) + (f" ({change_group.owner})" if change_group.owner else ""),
-            (Bullets(tuple(_change_runs(change, document) for change in change_group.changes)),),
+            (
+                Bullets(
+                    tuple(
+                        (*_sign_runs(change.kind), *_titled_runs(change.text, document))
+                        for change in change_group.changes
+                    )
+                ),
+            ),
         )
         for change_group in document.change_groups
     )
     return Section("changes:all", document.changes_heading, sections=sections) if sections else None
-
-
-def _change_runs(change: Edit, document: ComparisonDocument) -> Inlines:
-    return (*_sign_runs(change.kind), *_titled_runs(change.text, document))
 
 
 def _titled_runs(text: str, document: ComparisonDocument) -> Inlines:

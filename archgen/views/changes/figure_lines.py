@@ -19,7 +19,7 @@ from archgen.compare.comparison import (
 )
 from archgen.compare.figure_noise import FigureNoise
 from archgen.compare.key_phrases import name_key, tick_names
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.common_wording import join_words, keep_first
 from archgen.diagnostics.rule_options import format_percentage
 from archgen.frozen import dataclass, replace
 from archgen.model.node import Qos
@@ -72,8 +72,7 @@ def _format_causes(chain_change: ChainChange) -> str:
         words = name_key(change.element_kind, change.key) if change.key else change.kind
         keys_by_element.setdefault(change.element_id, []).append(words)
     phrases = [f"`{name}` ({join_words(list(dict.fromkeys(words)))})" for name, words in keys_by_element.items()]
-    surplus = len(phrases) - _MAX_CAUSES
-    return join_words([*phrases[:_MAX_CAUSES], *([f"{surplus} more"] if surplus > 0 else [])])
+    return join_words(keep_first(phrases, _MAX_CAUSES))
 
 
 def _format_bounds(chain_change: ChainChange) -> Iterator[str]:

@@ -5,12 +5,12 @@ both versions of what changed side by side.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, get_args
 
 from archgen.compare import Change, Comparison
 from archgen.compare.text_meaning import find_differences
+from archgen.frozen import dataclass, replace
 from archgen.views import inline_text
 from archgen.views.changes.change_wording import CHANGE_SIGNS, choose_mark, text_runs
 from archgen.views.changes.comparison_document import ComparisonDocument
@@ -98,11 +98,6 @@ def _find_page(change: Change) -> str:
     return f"{change.element_kind}:{change.element_id}" if change.element_kind in _PAGE_KINDS and not is_gone else ""
 
 
-def _name_changes(page: Page) -> str:
-    """Return the name that the changes of a page have: its anchor, without the two partners of an interface."""
-    return page.anchor.rsplit(":", 2)[0] if page.kind == "interfaces" else page.anchor
-
-
 def _judge_changes(anchor: str, changes: Iterable[Change]) -> ElementChange:
     """Say how an element changed as a whole: what happens to its ports changes it."""
     own_kinds = {
@@ -120,7 +115,7 @@ def mark_page(page: Page, site_changes: SiteChanges) -> Page:
     section = page.section
     if page.kind in _LISTING_KINDS:
         section = _mark_lists(section, site_changes.kinds_by_page)
-    anchor = _name_changes(page)
+    anchor = page.anchor.rsplit(":", 2)[0] if page.kind == "interfaces" else page.anchor
     kind = site_changes.kinds_by_page.get(anchor)
     if kind is not None:
         table = _compare_versions(anchor, site_changes)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from urllib.parse import quote
 
 from archgen.diagnostics.source_span import Span
+from archgen.frozen import dataclass
 from archgen.model.annotated_elements import Annotated
 from archgen.model.component import Component, ComponentType
 from archgen.model.element_annotations import read_figure

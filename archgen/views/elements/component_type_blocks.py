@@ -12,7 +12,7 @@ from archgen.views.elements.functional_level import describe_purpose, list_own_v
 from archgen.views.elements.parameter_blocks import make_parameter_blocks
 from archgen.views.elements.promise_words import write_badges, write_deprecation
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Block, Column, Facts, Inlines, Markdown, Table, Text, drop_empty_columns
+from archgen.views.shapes import Block, Column, Facts, Inlines, Markdown, Table, Text, drop_empty_columns, make_columns
 from archgen.views.type_names import link_type, list_instances, type_page_link
 
 _MAX_VALUE = 80
@@ -34,13 +34,13 @@ def make_component_type_table(lookup: Lookup, anchor: str = "table:component_typ
         for each in architecture.component_types.values()
         for count in (len(_shown_instances(lookup, each)),)
     )
-    columns = (
-        Column("Type", 1.2),
-        Column("Library", 0.8),
-        Column("Purpose", 2.4),
-        Column("Made from", 1),
-        Column("Generic names", 0.8),
-        Column("Instances", 0.7, "right"),
+    columns = make_columns(
+        ("Type", 1.2),
+        ("Library", 0.8),
+        ("Purpose", 2.4),
+        ("Made from", 1),
+        ("Generic names", 0.8),
+        ("Instances", 0.7, "right"),
     )
     return drop_empty_columns(Table(anchor, "Types of components", columns, rows)) if rows else None
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
 from typing import Any
 
+from archgen.frozen import replace
 from archgen.model.made_elements import find_made_element
 from archgen.views.elements.annotation_facts import ElementCard, format_fact, known_facts, list_annotation_lines
 from archgen.views.elements.element_names import elements_by_kind

@@ -24,6 +24,11 @@ _UNNAMED_SECTIONS = frozenset({"groups", "component_types", "nodes", "types", "p
 def elements_by_kind(architecture: Architecture) -> dict[str, Mapping[str, Any]]:
     """Return all elements by kind; the keys appear as headings of cards."""
     a = architecture
+    channels: dict[str, Topic] = {}
+    for key, channel in a.channels.items():
+        name = name_on_medium(channel)
+        if name not in a.outputs:
+            channels[key if name in channels or name in a.topics else name] = channel
     return {
         # An id that several kinds share is found in this order.
         "group": a.groups,
@@ -34,7 +39,7 @@ def elements_by_kind(architecture: Architecture) -> dict[str, Mapping[str, Any]]
         "input": {**{port.id: port for each in a.shells.values() for port in each.inputs.values()}, **a.inputs},
         "node": a.nodes,
         "topic": a.topics,
-        "channel": _name_channels(a),
+        "channel": channels,
         "type": a.types,
         **{
             kind.replace("_", " "): getattr(a, section)
@@ -42,16 +47,6 @@ def elements_by_kind(architecture: Architecture) -> dict[str, Mapping[str, Any]]
             if section not in _UNNAMED_SECTIONS
         },
     }
-
-
-def _name_channels(architecture: Architecture) -> Mapping[str, Topic]:
-    """Return what runs over other media by the names that are written; what has none is called after its output."""
-    channels: dict[str, Topic] = {}
-    for key, channel in architecture.channels.items():
-        name = name_on_medium(channel)
-        if name not in architecture.outputs:
-            channels[key if name in channels or name in architecture.topics else name] = channel
-    return channels
 
 
 def kinds_by_id(lookup: Lookup) -> dict[str, list[str]]:

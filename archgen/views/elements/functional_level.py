@@ -62,18 +62,14 @@ def make_group_blocks(lookup: Lookup, group: Group, without: Collection[str] = (
 def list_group_facts(lookup: Lookup, group: Group) -> Iterator[Fact]:
     """Yield the facts above a group's description."""
     yield Fact("owner", "Owner", inline_text.owner_links(lookup.architecture, group.owners))
-    yield Fact("components", "Components", inline_text.to_inlines(_count_components(lookup, group)))
+    composed = [shell for shell in lookup.architecture.shells.values() if shell.group == group.id]
+    counted = f"{len(group.components)}{f', and {len(composed)} composed of others' if composed else ''}"
+    yield Fact("components", "Components", inline_text.to_inlines(counted))
     if group.tags:
         yield Fact("", "Tags", inline_text.to_inlines(", ".join(group.tags)))
     if group.urls:
         yield Fact("links", "Links", inline_text.link_urls(group.urls.items(), lookup.repository))
     yield from (Fact("", *row) for row in list_annotation_facts(lookup, group))
-
-
-def _count_components(lookup: Lookup, group: Group) -> str:
-    """Count the components of a group, and the composed ones where there are such."""
-    composed = [shell for shell in lookup.architecture.shells.values() if shell.group == group.id]
-    return f"{len(group.components)}{f', and {len(composed)} composed of others' if composed else ''}"
 
 
 def make_component_table(

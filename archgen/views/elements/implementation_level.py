@@ -63,6 +63,14 @@ def list_node_facts(lookup: Lookup, node: Node) -> list[Fact]:
     architecture = lookup.architecture
     kind = ", ".join(inline_text.NODE_KIND_WORDS[kind] for kind in node.kinds)
     components = (architecture.components[name] for name in node.implements)
+    words = describe_start(node)
+    groups = timing_words.format_callback_groups(node)
+    parts = (
+        f"{node.threads} thread{'s' if node.threads > 1 else ''}" if node.threads else "",
+        f"in the order {node.scheduling}" if node.scheduling else "",
+        "reentrant" if node.reentrant else "",
+        f"mutually exclusive in groups ({groups})" if groups else "",
+    )
     facts = [
         Fact(
             "implements", "Implements", inline_text.join_inlines((inline_text.component_link(c),) for c in components)
@@ -74,7 +82,7 @@ def list_node_facts(lookup: Lookup, node: Node) -> list[Fact]:
         Fact("", "Arguments", _to_code(shlex.join(node.arguments))),
         Fact("", "Language", inline_text.to_inlines(_LANGUAGE_TITLES[node.language]) if node.language else ()),
         Fact("", "Remaps", _remap_facts(lookup, node)),
-        Fact("", "Start", _start_facts(node)),
+        Fact("", "Start", (Text(words), Text(" ("), Text("the plan", ref="page:start_up"), Text(")")) if words else ()),
         *(
             Fact("", name.capitalize(), inline_text.to_inlines(text))
             for name, text in list_running_facts(lookup.endpoints_of.get(node.id, ()))
@@ -82,7 +90,7 @@ def list_node_facts(lookup: Lookup, node: Node) -> list[Fact]:
         ),
         Fact("owner", "Owner", inline_text.owner_links(architecture, node.owners) if node.owners else ()),
         Fact("host", "Runs on", _location_cell(lookup, node)),
-        Fact("activity", "Callbacks", inline_text.to_inlines(_describe_callbacks(node))),
+        Fact("activity", "Callbacks", inline_text.to_inlines(", ".join(part for part in parts if part))),
         Fact(
             "", "Parameter files", inline_text.join_inlines((Text(name, code=True),) for name in node.parameter_files)
         ),
@@ -116,12 +124,6 @@ def _remap_facts(lookup: Lookup, node: Node) -> Inlines:
     )
 
 
-def _start_facts(node: Node) -> Inlines:
-    """Return what a node says of its start, with a link to the plan."""
-    words = describe_start(node)
-    return (Text(words), Text(" ("), Text("the plan", ref="page:start_up"), Text(")")) if words else ()
-
-
 def _program_parts(node: Node) -> Inlines:
     """Return the executable and the plugin of a node, each after a comma."""
     parts = (("executable", node.executable), ("plugin", node.plugin))
@@ -136,18 +138,6 @@ def _location_cell(lookup: Lookup, node: Node) -> Inlines:
     container = lookup.architecture.containers.get(node.container)
     title = container.title if container else node.container
     return (*host, Text(", in the process "), Text(title, ref=f"container:{node.container}"))
-
-
-def _describe_callbacks(node: Node) -> str:
-    """Describe how the callbacks of a node run, as far as it says so itself."""
-    groups = timing_words.format_callback_groups(node)
-    parts = (
-        f"{node.threads} thread{'s' if node.threads > 1 else ''}" if node.threads else "",
-        f"in the order {node.scheduling}" if node.scheduling else "",
-        "reentrant" if node.reentrant else "",
-        f"mutually exclusive in groups ({groups})" if groups else "",
-    )
-    return ", ".join(part for part in parts if part)
 
 
 def _endpoint_table(node: Node, endpoints: tuple[Endpoint, ...]) -> Table:

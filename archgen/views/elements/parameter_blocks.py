@@ -15,7 +15,7 @@ from archgen.model.parameter_values import (
 )
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Block, Column, Inlines, Table, Text, drop_empty_columns
+from archgen.views.shapes import Block, Column, Inlines, Table, Text, drop_empty_columns, make_columns
 
 
 def make_parameter_blocks(component: Component | ComponentType) -> list[Block]:
@@ -50,14 +50,7 @@ def _make_parameter_table(component: Component | ComponentType) -> Table | None:
     rows += tuple(
         (_to_code(_format_open_set(name)), (), (), (), _to_text("any"), _to_text("open set")) for name in component.open
     )
-    columns = (
-        Column("Parameter", 1.3),
-        Column("Type", 0.7),
-        Column("Value"),
-        Column("Unit", 0.5),
-        Column("May be"),
-        Column("Remarks", 1.6),
-    )
+    columns = make_columns(("Parameter", 1.3), ("Type", 0.7), "Value", ("Unit", 0.5), "May be", ("Remarks", 1.6))
     caption = f"{component.title}: parameters"
     return drop_empty_columns(Table(f"table:set/{_place_of(component)}", caption, columns, rows)) if rows else None
 

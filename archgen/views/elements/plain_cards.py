@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from archgen.compare.kinds import PLAIN_KINDS
 from archgen.language.language_tables import KEYS
 from archgen.model.architecture import UseCase
-from archgen.model.component import Component, Group
-from archgen.model.deployment import Container
-from archgen.model.node import Node
 from archgen.model.parameter import format_parameter
 from archgen.model.requirement import Requirement, Verification
 from archgen.views import requirement_servers, timing_words
@@ -105,13 +102,19 @@ def make_generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard
         lists += [
             (kind, owned_ids)
             for kind, elements in ownable_elements
-            if (owned_ids := _owned_elements(elements.values(), element_id))
+            if (owned_ids := tuple(item.id for item in elements.values() if element_id in item.owners))
         ]
     elif kind in {"host", "container"}:
         if kind == "host":
             facts.append(("scheduling", timing_words.format_core_orders(element)))
         else:
-            facts += _list_process_facts(element)
+            is_named = element.name is not None or element.namespace != "/"
+            facts += [
+                ("ROS name", element.full_name if is_named else ""),
+                ("package", element.package or ""),
+                ("executable", element.executable or ""),
+                ("parameters", format_parameter(element.parameters) if element.parameters else ""),
+            ]
         # `kind` names the node's field here: `Node.host` or `Node.container`.
         lists.append(
             ("nodes", tuple(node.id for node in architecture.nodes.values() if getattr(node, kind) == element_id))
@@ -130,22 +133,6 @@ def make_generic_card(lookup: Lookup, kind: str, element_id: str) -> ElementCard
     return ElementCard(
         kind, element_id, getattr(element, "title", element_id), element.at, known_facts(facts), tuple(lists)
     )
-
-
-def _list_process_facts(container: Container) -> list[tuple[str, str]]:
-    """Return what is written of a container's own node and its program."""
-    is_named = container.name is not None or container.namespace != "/"
-    return [
-        ("ROS name", container.full_name if is_named else ""),
-        ("package", container.package or ""),
-        ("executable", container.executable or ""),
-        ("parameters", format_parameter(container.parameters) if container.parameters else ""),
-    ]
-
-
-def _owned_elements(elements: Iterable[Group | Component | Node], partner_id: str) -> tuple[str, ...]:
-    """Return the ids of the elements that a partner owns, alone or with others."""
-    return tuple(item.id for item in elements if partner_id in item.owners)
 
 
 def _list_requirement_facts(lookup: Lookup, requirement: Requirement) -> Iterator[tuple[str, str]]:

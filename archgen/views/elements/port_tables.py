@@ -5,8 +5,9 @@ composed ones.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Literal, NamedTuple
+from typing import Literal
 
+from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Input, Output
 from archgen.model.component_nesting import find_component

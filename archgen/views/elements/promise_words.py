@@ -86,7 +86,8 @@ def write_deprecation(
         component_type = architecture.component_types.get(replacement)
         link = (type_page_link(component_type),) if component_type else link
     else:
-        output = _find_output(architecture, replacement)
+        component = architecture.find_component(replacement.rpartition(".")[0])
+        output = component.outputs.get(replacement.rpartition(".")[2]) if component else None
         if output is not None and isinstance(holder, Output):
             is_near = output.component == holder.component
             link = (Text(output.name, code=True),) if is_near else inline_text.port_link(architecture, output)
@@ -108,11 +109,6 @@ def list_topic_facts(architecture: Architecture, topic: Topic) -> Iterator[tuple
     for name, describe in described:
         lines = [line for output in outputs if (line := describe(output))]
         yield name, inline_text.join_lines(dict.fromkeys(lines))
-
-
-def _find_output(architecture: Architecture, output_id: str) -> Output | None:
-    component = architecture.find_component(output_id.rpartition(".")[0])
-    return component.outputs.get(output_id.rpartition(".")[2]) if component else None
 
 
 def mark_source(lookup: Lookup, connection: Connection) -> Inlines:

@@ -9,7 +9,7 @@ from archgen.model.known_interfaces import InterfaceConstant
 from archgen.model.message_types import ConceptualType, DataConstant, DataField, full_message_name
 from archgen.views import inline_text
 from archgen.views.element_references import message_link
-from archgen.views.shapes import Column, Inlines, Table, Text, drop_empty_columns
+from archgen.views.shapes import Column, Inlines, Table, Text, drop_empty_columns, make_columns
 
 _PART_TITLES = {"request": "Request", "response": "Answer", "feedback": "Feedback"}
 
@@ -37,13 +37,7 @@ def _make_field_table(architecture: Architecture, fields: Iterable[DataField], a
         )
         for field in fields
     )
-    columns = (
-        Column("Field", 1.2),
-        Column("Type", 1.5),
-        Column("Default", 0.6),
-        Column("Unit", 0.5),
-        Column("Meaning", 2),
-    )
+    columns = make_columns(("Field", 1.2), ("Type", 1.5), ("Default", 0.6), ("Unit", 0.5), ("Meaning", 2))
     return drop_empty_columns(Table(anchor, caption, columns, rows))
 
 

@@ -101,7 +101,13 @@ def place_in_columns(items: Sequence[str], weights: FlowWeights, *, is_inner: bo
     linked_items = [item for item in items if item in linked_ids]
     flows = {ends: weight for ends, weight in weights.items() if ends[0] != ends[1]}
     column_count = _choose_column_count(len(items), is_inner=is_inner)
-    columns = _cut_evenly(_sort_forward(linked_items, flows), column_count)
+    successors: dict[str, list[str]] = defaultdict(list)
+    for tail, head in flows:
+        successors[tail].append(head)
+    ordered: list[str] = []
+    for component in find_strong_components(linked_items, lambda item: successors[item]):
+        ordered += component if len(component) == 1 else _sort_loop(component, flows)
+    columns = _cut_evenly(_sort_by_layer(ordered, flows), column_count)
     columns = _shorten_flows(columns, flows) if linked_items else columns
     columns = _order_columns(columns, flows)
     heights = _align_heights(columns, flows)
@@ -119,17 +125,6 @@ def _choose_column_count(item_count: int, *, is_inner: bool) -> int:
     """
     count = math.sqrt(0.42 * item_count) + 0.6 if is_inner else math.sqrt(0.55 * item_count) + 1.4
     return max(1, min(item_count, round(count)))
-
-
-def _sort_forward(items: Sequence[str], flows: FlowWeights) -> list[str]:
-    """Sort items so that little flows backwards: by strong components, and inside of those greedily."""
-    successors: dict[str, list[str]] = defaultdict(list)
-    for tail, head in flows:
-        successors[tail].append(head)
-    ordered: list[str] = []
-    for component in find_strong_components(items, lambda item: successors[item]):
-        ordered += component if len(component) == 1 else _sort_loop(component, flows)
-    return _sort_by_layer(ordered, flows)
 
 
 def _sort_loop(members: Sequence[str], flows: FlowWeights) -> list[str]:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
+from archgen.frozen import dataclass
 from archgen.model.component import Component, Group
 from archgen.model.component_nesting import list_surrounding
 from archgen.model.deployment import Host

@@ -9,9 +9,8 @@ from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Input, Output
 from archgen.model.port_media import ROS, label_of_medium, name_on_medium
 from archgen.views.explorer.map_shapes import Row
-from archgen.views.graphs.drawn_level import flow_style, list_flows
+from archgen.views.graphs.drawn_level import flow_style, list_flows, warn_of_outputs
 from archgen.views.lookup import Lookup
-from archgen.views.port_warnings import warn_of_outputs
 from archgen.views.search.search_entry import join_entry_parts
 
 _OPTIONAL, _MADE = 1, 2
@@ -88,13 +87,12 @@ def _list_flow_rows(architecture: Architecture, inputs: Numbers, outputs: Number
             if output in outputs and architecture.outputs[output].component == producer
         )
         if numbers and connection.input in inputs:
-            style = flow_style(architecture, _first_output(architecture, connection.outputs, producer))
+            style = flow_style(
+                architecture,
+                next(name for name in connection.outputs if architecture.outputs[name].component == producer),
+            )
             row = (_STYLES.index(style), inputs[connection.input], numbers)
             yield (*row, flow.medium) if flow.medium else row
-
-
-def _first_output(architecture: Architecture, output_ids: tuple[str, ...], producer: str) -> str:
-    return next(name for name in output_ids if architecture.outputs[name].component == producer)
 
 
 def _list_extra_steps(

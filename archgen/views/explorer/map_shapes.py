@@ -7,10 +7,9 @@ here, and in `assets/explorer/data.js`, which reads them.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import field
 
 from archgen.diagnostics.source_span import Span
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, field
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 from archgen.model.component_nesting import list_surrounding

@@ -27,6 +27,7 @@ UNMET_NEED = Rule(
     fixed=True,
 )
 """What `archgen generate` says where `needs` of a backend do not hold. `archgen check` never says it."""
+GENERATION_RULES = (NOT_GENERATED, UNMET_NEED)
 
 
 def find_unmet_needs(context: GenerationContext, needs: tuple[str, ...]) -> Iterator[Diagnostic]:
@@ -110,21 +111,13 @@ def _diagnose_need(
     )
 
 
-def _find_unfit_tags(context: GenerationContext) -> Iterator[Diagnostic]:
-    return find_unfit_tags(context, UNMET_NEED)
-
-
-def _find_unfit_values(context: GenerationContext) -> Iterator[Diagnostic]:
-    return find_unfit_values(context, UNMET_NEED)
-
-
 _FINDERS: Mapping[str, Callable[[GenerationContext], Iterator[Diagnostic]]] = {
     "flat": _find_composed,
     "no_generics": _find_generics,
     "one_source": _find_several_sources,
     "unique_names": _find_repeated_names,
-    "distinct_tags": _find_unfit_tags,
-    "one_line_values": _find_unfit_values,
+    "distinct_tags": lambda context: find_unfit_tags(context, UNMET_NEED),
+    "one_line_values": lambda context: find_unfit_values(context, UNMET_NEED),
 }
 
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
 from archgen.diagnostics.source_span import Span
+from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture
 from archgen.model.code_names import make_camel_name
 from archgen.model.component import Component, Input, Output
@@ -108,21 +108,14 @@ def _record_component(context: GenerationContext, component: Component) -> dict[
         "role": component.role,
         "status": component.status,
         "owners": list(component.owners),
-        **_record_program(node),
-        "inputs": [_record_input(context, port) for port in component.inputs.values()],
-        "outputs": [_record_output(context, port) for port in component.outputs.values()],
-        "parameters": [_record_parameter(each, backend) for each in list_set_parameters(architecture, component, node)],
-        "hints": to_plain(read_own_hints(component.annotations.hints, backend)),
-    }
-
-
-def _record_program(node: Node | None) -> dict[str, object]:
-    """Return what is started for a component, and where; None for what nobody says."""
-    return {
         "node": node.id if node else None,
         "host": node.host if node else None,
         "package": node.package if node else None,
         "executable": node.executable if node else None,
+        "inputs": [_record_input(context, port) for port in component.inputs.values()],
+        "outputs": [_record_output(context, port) for port in component.outputs.values()],
+        "parameters": [_record_parameter(each, backend) for each in list_set_parameters(architecture, component, node)],
+        "hints": to_plain(read_own_hints(component.annotations.hints, backend)),
     }
 
 

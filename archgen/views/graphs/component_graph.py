@@ -9,19 +9,26 @@ lists its types, with an asterisk on its arrow. Partners outside of the architec
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import Literal
 
+from archgen.diagnostics.common_wording import fit_lines
+from archgen.frozen import replace
 from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.component_nesting import find_component
 from archgen.model.port_media import is_physical
 from archgen.views.graphs import element_boxes
-from archgen.views.graphs.drawn_level import add_notes, flow_style, join_type_names, name_media, port_style
-from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.graphs.drawn_level import (
+    add_notes,
+    flow_style,
+    join_type_names,
+    name_media,
+    port_style,
+    warn_of_outputs,
+)
+from archgen.views.graphs.graph_folding import add_legend_keys
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import Arrow, Box, Graph
-from archgen.views.port_warnings import warn_of_outputs
 from archgen.views.timing_words import format_short_timing
 
 DrawnNeighbour = tuple[Box, Arrow]
@@ -126,9 +133,8 @@ def _draw_connection(lookup: Lookup, component: Component, port: Input, connecti
     side = _port_side(lookup, port)
     if connection.kind == "group":
         group_box = element_boxes.group_box(lookup, connection.target)
-        shown_types = types if len(types) <= _MAX_GROUP_TYPES else types[: _MAX_GROUP_TYPES - 1]
-        more = [f"and {len(types) - len(shown_types)} more"] if len(types) > len(shown_types) else []
-        box = replace(group_box, emphasis="neighbour", side=side, lines=("whole group", *shown_types, *more))
+        lines = ("whole group", *fit_lines(types, _MAX_GROUP_TYPES))
+        box = replace(group_box, emphasis="neighbour", side=side, lines=lines)
         label = "* all of these" if types else "*"
     else:
         producer = find_component(architecture, _component_of_target(lookup, connection))

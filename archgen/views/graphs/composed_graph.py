@@ -5,9 +5,10 @@ What is outside is said at the ports. Only who is joined past them has a box out
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator
 from typing import Literal
 
+from archgen.diagnostics.common_wording import fit_lines
 from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, Connection, Input, Output
@@ -15,8 +16,7 @@ from archgen.model.component_nesting import find_component, find_passed_shell, l
 from archgen.views.graphs import element_boxes
 from archgen.views.graphs.component_graph import port_key
 from archgen.views.graphs.drawn_level import ComponentFlow, DrawnLevel, FlowStyle, flow_style, merge_flows, port_style
-from archgen.views.graphs.graph_folding import MAX_ARROWS, MAX_BOXES, fold_graph
-from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.graphs.graph_folding import MAX_ARROWS, MAX_BOXES, add_legend_keys, fold_graph
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph
@@ -91,8 +91,8 @@ def _make_frame(lookup: Lookup, shell_id: str, frame_id: str, parent: str | None
 
 
 _CALLS = {"service", "action"}
-_MAX_NAMED = 3
-"""How many components a port at the rim names."""
+_MAX_NAMES = 4
+"""How many lines a port at the rim has for the components outside; where there are more, the last one counts them."""
 
 
 def draw_composed(lookup: Lookup, shell_id: str, depth: int = 0) -> Graph:
@@ -137,7 +137,10 @@ class _ComposedDrawing:
         outer_flows = [flow for flow in flows if flow.tail not in own_ids or flow.head not in own_ids]
         hue = element_boxes.group_hue(lookup, shell.group)
         arrows = (
-            *(replace(arrow, colour=hue) for arrow in merge_flows(inner_flows, _find_ends, labels=True)),
+            *(
+                replace(arrow, colour=hue)
+                for arrow in merge_flows(inner_flows, lambda flow: (flow.tail, flow.head), labels=True)
+            ),
             *self._draw_rim_arrows(),
             *merge_flows(outer_flows, self._place_ends, labels=True),
         )
@@ -220,7 +223,7 @@ class _ComposedDrawing:
             yield Box(
                 port_key(port),
                 port.name,
-                (*self._list_types(port), *_shorten_names(word, names)),
+                (*self._list_types(port), *(f"{word} {name}" for name in fit_lines(names, _MAX_NAMES, "{} more"))),
                 style="port",
                 side="left" if is_left else "right",
                 ref=f"component:{self.shell.id}",
@@ -322,13 +325,3 @@ class _ComposedDrawing:
         )
         ports = f"{count_noun(len(shell.inputs), 'input')} and {count_noun(len(shell.outputs), 'output')}"
         return f"{shell.title} with {counts}; it has {ports}."
-
-
-def _find_ends(flow: ComponentFlow) -> tuple[str, str]:
-    return flow.tail, flow.head
-
-
-def _shorten_names(word: str, names: Sequence[str]) -> tuple[str, ...]:
-    """Return who is at the other end of a port, each on a line; of many the first, and how many more there are."""
-    shown_names = names if len(names) <= _MAX_NAMED + 1 else [*names[:_MAX_NAMED], f"{len(names) - _MAX_NAMED} more"]
-    return tuple(f"{word} {name}" for name in shown_names)

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from typing import Literal
 
+from archgen.diagnostics.common_wording import fit_lines
 from archgen.frozen import dataclass
 from archgen.model import component_nesting
 from archgen.model.architecture import Architecture
@@ -15,7 +16,6 @@ from archgen.model.component import Component, Connection, Input, Output
 from archgen.model.port_media import is_physical, label_of_medium, nature_of
 from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import Arrow
-from archgen.views.port_warnings import warn_of_outputs
 
 FlowStyle = Literal["data", "physical", "service", "action", "internal", "link"]
 _MAX_TYPE_LINES = 3
@@ -142,11 +142,7 @@ def _bundle_label(bundle: list[ComponentFlow]) -> str:
 
 def join_type_names(names: Sequence[str]) -> str:
     """Return names of types, each on a line; of more than three the rest is counted."""
-    return (
-        "\n".join(names)
-        if len(names) <= _MAX_TYPE_LINES
-        else "\n".join([*names[:2], f"and {len(names) - 2} more types"])
-    )
+    return "\n".join(fit_lines(names, _MAX_TYPE_LINES, "and {} more types"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -281,3 +277,23 @@ def list_open_shells(architecture: Architecture, component_ids: Collection[str])
         for shell in architecture.shells
         if len({leaf in component_ids for leaf in architecture.leaves_of(shell)}) > 1
     )
+
+
+def warn_of_outputs(lookup: Lookup, outputs: Iterable[Output]) -> str:
+    """Return a few words beside what outputs send: `deprecated, promise not kept`; empty where all is well."""
+    kept_outputs = tuple(outputs)
+    words = []
+    if any(output.deprecated for output in kept_outputs):
+        words.append("deprecated")
+    if any(_breaks_promise(lookup, output) for output in kept_outputs):
+        words.append("promise not kept")
+    return ", ".join(words)
+
+
+def _breaks_promise(lookup: Lookup, output: Output) -> bool:
+    if output.promise is None:
+        return False
+    # The finding stands at what is promised: its element is the component, which may promise other things, too.
+    places = {output.promise.at, *output.promise.places.values()}
+    findings = lookup.findings_of.get(output.component, ())
+    return any(finding.rule == "broken-promise" and finding.span in places for finding in findings)

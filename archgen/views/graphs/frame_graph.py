@@ -7,9 +7,7 @@ from collections.abc import Iterable
 from archgen.model.coordinate_frames import Frame, index_child_frames
 from archgen.views.elements.frame_users import name_writer
 from archgen.views.graphs import element_boxes
-from archgen.views.graphs.element_boxes import BadgeSeverity
-from archgen.views.graphs.graph_folding import MAX_BOXES
-from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.graphs.graph_folding import MAX_BOXES, add_legend_keys
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import Arrow, Box, Graph
@@ -59,6 +57,9 @@ def _frame_box(lookup: Lookup, frame: Frame) -> Box:
     component = lookup.architecture.components.get(frame.by or "") if frame.by_kind == "component" else None
     title_lines = (frame.title,) if frame.title != frame.id else ()
     writer_lines = (f"by {name_writer(lookup.architecture, frame)}",) if frame.parent is not None else ()
+    # By place: a node may have the frame's name, and findings of its own.
+    places = {frame.at, frame.parent_at}
+    severities = [finding.effective_severity for finding in lookup.findings if finding.span in places]
     return Box(
         f"frame {frame.id}",
         frame.id,
@@ -66,7 +67,7 @@ def _frame_box(lookup: Lookup, frame: Frame) -> Box:
         colour=element_boxes.group_hue(lookup, component.group) if component else None,
         ref=f"frame:{frame.id}",
         tooltip="\n".join([frame.id, *title_lines, *writer_lines]),
-        badge=_find_badge(lookup, frame),
+        badge=element_boxes.name_severity(severities),
     )
 
 
@@ -76,10 +77,3 @@ def _unknown_box(name: str) -> Box:
 
 def _label_arrow(frame: Frame) -> str:
     return "static" if frame.static else frame.rate.text if frame.rate else ""
-
-
-def _find_badge(lookup: Lookup, frame: Frame) -> BadgeSeverity | None:
-    # By place: a node may have the frame's name, and findings of its own.
-    places = {frame.at, frame.parent_at}
-    severities = [finding.effective_severity for finding in lookup.findings if finding.span in places]
-    return element_boxes.name_severity(severities)

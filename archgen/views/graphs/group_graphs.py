@@ -5,19 +5,22 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Literal
 
+from archgen.diagnostics.common_wording import fit_lines
 from archgen.frozen import replace
 from archgen.model.component import Component
 from archgen.model.component_nesting import find_component, list_members
 from archgen.views.graphs import element_boxes
 from archgen.views.graphs.composed_graph import draw_to_depth, find_drawn, list_opened, place_in_frames
 from archgen.views.graphs.drawn_level import ComponentFlow, DrawnLevel, merge_flows
-from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.graphs.graph_folding import add_legend_keys
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph
 
 MAX_FLOWS = 45
 """With more flows the neighbours are folded by group."""
+_MAX_TITLES = 6
+"""How many lines with titles of components a folded group has; its tooltip has them all."""
 
 
 def draw_group(lookup: Lookup, group_id: str, depth: int = 0) -> Graph:
@@ -89,16 +92,11 @@ def _draw_neighbours(
                 id=box_id,
                 emphasis="neighbour",
                 side=side,
-                lines=_shorten_titles(titles),
+                lines=tuple(fit_lines(titles, _MAX_TITLES)),
             )
         else:
             component = find_component(lookup.architecture, box_id[1:])
             yield replace(element_boxes.neighbour_box(lookup, component, side), id=box_id)
-
-
-def _shorten_titles(titles: Sequence[str]) -> tuple[str, ...]:
-    """Shorten the list of components that a folded group stands for; the tooltip of the group has them all."""
-    return tuple(titles) if len(titles) <= 6 else (*titles[:5], f"and {len(titles) - 5} more")  # noqa: PLR2004
 
 
 def _label_arrow(lookup: Lookup, arrow: Arrow, own_ids: set[str], group_id: str, *, is_folded: bool) -> Arrow:

@@ -9,8 +9,7 @@ from archgen.model.deployment import Host, Link
 from archgen.model.node import Node
 from archgen.model.port_media import name_medium
 from archgen.model.runtime_facts import find_container_threads
-from archgen.views.graphs.graph_folding import fold_graph
-from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.graphs.graph_folding import add_legend_keys, fold_graph
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import Arrow, Box, Graph

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
 
+from archgen.diagnostics.common_wording import fit_lines
 from archgen.frozen import dataclass, replace
 from archgen.model.node import Endpoint, Node, Topic
 from archgen.model.port_media import ROS, key_of_carrier, label_of_medium
 from archgen.views.graphs import element_boxes
 from archgen.views.graphs.element_boxes import NodeFlow
-from archgen.views.graphs.graph_folding import fold_graph
-from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.graphs.graph_folding import add_legend_keys, fold_graph
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph
@@ -133,15 +133,10 @@ def _draw_topics(
             yield replace(element_boxes.topic_box(topic, own_endpoints), id=f"topic {name}")
     for star in dict.fromkeys(star_of_topic.values()):
         names = [name for name, stands in star_of_topic.items() if stands == star]
-        shown_lines = (
-            names
-            if len(names) <= _MAX_LISTED_TOPICS
-            else [*names[: _MAX_LISTED_TOPICS - 1], f"and {len(names) - _MAX_LISTED_TOPICS + 1} more"]
-        )
         yield Box(
             f"topic {star}",
             f"* all topics of {star[2:]}",
-            tuple(shown_lines),
+            tuple(fit_lines(names, _MAX_LISTED_TOPICS)),
             style="topic",
             ref=f"node:{star[2:]}",
             tooltip="\n".join(names),

@@ -6,8 +6,9 @@ A small part is one flow with a label at each arrow. A large one has frames, and
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import replace
 
+from archgen.diagnostics.common_wording import fit_lines
+from archgen.frozen import replace
 from archgen.model.architecture import View
 from archgen.model.component import Component
 from archgen.model.component_nesting import find_component
@@ -16,15 +17,14 @@ from archgen.model.selector_evaluation import Selection
 from archgen.views.graphs import element_boxes, implementation_graph
 from archgen.views.graphs.composed_graph import draw_to_depth, find_drawn, list_opened, place_in_frames
 from archgen.views.graphs.drawn_level import ComponentFlow, DrawnLevel, list_open_shells, merge_flows
-from archgen.views.graphs.graph_folding import fold_graph
-from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.graphs.graph_folding import add_legend_keys, fold_graph
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph
 
 _SMALL_PICTURE = (26, 45)
 """The most boxes and arrows of a small picture."""
-_TITLES_PER_BOX = 3
+_LINES_PER_BOX = 4
 
 
 def draw_functional_part(
@@ -56,7 +56,12 @@ def _draw_part(lookup: Lookup, graph_id: str, title: str, component_ids: Collect
         lookup, components, touching_flows, list(neighbour_ids)
     )
     if opened:
-        graph = _frame_opened(lookup, graph, opened, has_labels=is_small)
+        placed_boxes, placed_frames = place_in_frames(lookup, graph.boxes, opened, None)
+        # The group is said at the outermost frame, instead of at each box inside.
+        boxes = tuple(replace(box, lines=box.lines[1:]) if box.cluster else box for box in placed_boxes)
+        frames = tuple(frame if frame.parent else _name_group(lookup, frame) for frame in placed_frames)
+        arrows = graph.arrows if is_small else tuple(replace(arrow, label="") for arrow in graph.arrows)
+        graph = replace(graph, layout="framed", boxes=boxes, clusters=frames, arrows=arrows)
     summary = (
         f"{count_noun(len(components), 'component')}: {', '.join(component.title for component in components[:12])}"
     )
@@ -90,16 +95,6 @@ def _draw_small_part(
     ]
     arrows = merge_flows(touching_flows, lambda flow: (flow.tail, flow.head), labels=True)
     return Graph("", "", "flow", (*chosen_boxes, *neighbour_boxes), arrows, asked=len(touching_flows), kind="overview")
-
-
-def _frame_opened(lookup: Lookup, graph: Graph, opened: frozenset[str], *, has_labels: bool) -> Graph:
-    """Set what stands in open components into frames. Labels have room in small pictures only."""
-    placed_boxes, placed_frames = place_in_frames(lookup, graph.boxes, opened, None)
-    # The group is said at the outermost frame, instead of at each box inside.
-    boxes = tuple(replace(box, lines=box.lines[1:]) if box.cluster else box for box in placed_boxes)
-    frames = tuple(frame if frame.parent else _name_group(lookup, frame) for frame in placed_frames)
-    arrows = graph.arrows if has_labels else tuple(replace(arrow, label="") for arrow in graph.arrows)
-    return replace(graph, layout="framed", boxes=boxes, clusters=frames, arrows=arrows)
 
 
 def _name_group(lookup: Lookup, frame: Cluster) -> Cluster:
@@ -162,15 +157,8 @@ def _colour_outer_arrow(lookup: Lookup, arrow: Arrow) -> Arrow:
 def _neighbour_group_box(lookup: Lookup, group: str, member_ids: Sequence[str]) -> Box:
     """Return the neighbours in one group as one grey box."""
     titles = [find_component(lookup.architecture, each).title for each in member_ids]
-    shown_titles = (
-        titles
-        if len(titles) <= _TITLES_PER_BOX + 1
-        else [*titles[:_TITLES_PER_BOX], f"and {len(titles) - _TITLES_PER_BOX} more"]
-    )
-    group_box = element_boxes.group_box(lookup, group)
-    return replace(
-        group_box, id=f"around {group}", emphasis="neighbour", lines=tuple(shown_titles), tooltip="\n".join(titles)
-    )
+    group_box, lines = element_boxes.group_box(lookup, group), tuple(fit_lines(titles, _LINES_PER_BOX))
+    return replace(group_box, id=f"around {group}", emphasis="neighbour", lines=lines, tooltip="\n".join(titles))
 
 
 def draw_implementation_part(lookup: Lookup, graph_id: str, title: str, node_ids: Collection[str]) -> Graph:

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from archgen.bringup.plan_shapes import StartPlan, StartStep
-from archgen.bringup.start_plan import describes_start, make_start_plan
+from archgen.bringup.start_plan import make_start_plan
 from archgen.model.start_up import PHASES
 from archgen.views import start_phrases
-from archgen.views.graphs.graph_folding import MAX_BOXES
-from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.graphs.graph_folding import MAX_BOXES, add_legend_keys
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import Arrow, Box, Graph
@@ -18,7 +17,7 @@ from archgen.views.picture_shapes import Arrow, Box, Graph
 def draw_start(lookup: Lookup) -> Graph:
     """Draw the steps of the plan; none where the project does not describe its start-up."""
     architecture = lookup.architecture
-    plan = make_start_plan(architecture) if describes_start(architecture) else StartPlan()
+    plan = make_start_plan(architecture) if architecture.describes_start() else StartPlan()
     drawn_steps = plan.steps[:MAX_BOXES]
     phases = [phase for phase in PHASES if any(step.phase == phase for step in drawn_steps)]
     boxes: list[Box] = []

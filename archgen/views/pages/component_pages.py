@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator
-from dataclasses import dataclass, replace
 
+from archgen.frozen import dataclass, replace
 from archgen.model.component import Component, ComponentType, Group
 from archgen.model.component_nesting import find_component, list_surrounding
 from archgen.views import inline_text

@@ -30,6 +30,7 @@ from archgen.views.shapes import (
     Table,
     Text,
     drop_empty_columns,
+    make_columns,
 )
 from archgen.views.tables import deployment_tables, requirement_tables, type_tables
 from archgen.views.timing import element_timing
@@ -192,13 +193,13 @@ def make_node_table(
         )
         for node in nodes
     )
-    columns = (
-        Column("Node", 1.2),
-        Column("Implements too" if component and not component.children else "Implements", 1.5),
-        Column("Package", 1.3),
-        Column("Status", 0.7),
-        Column("Host", 0.8),
-        Column("Timing"),
+    columns = make_columns(
+        ("Node", 1.2),
+        ("Implements too" if component and not component.children else "Implements", 1.5),
+        ("Package", 1.3),
+        ("Status", 0.7),
+        ("Host", 0.8),
+        "Timing",
     )
     name, caption = (component.id, f"Nodes of {component.title}") if component else ("all", "Nodes")
     return [drop_empty_columns(Table(f"table:nodes/{name}", caption, columns, rows))]

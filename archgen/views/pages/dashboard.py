@@ -25,6 +25,7 @@ from archgen.views.shapes import (
     Paragraph,
     Table,
     Text,
+    make_columns,
 )
 from archgen.views.tables import finding_tables, requirement_tables, statistics_tables
 from archgen.views.tables.statistics_tables import PROGRESS_STEPS
@@ -52,7 +53,14 @@ def make_dashboard(lookup: Lookup, edition: DocumentEdition) -> Dashboard:
 
 def _list_figures(lookup: Lookup, edition: DocumentEdition) -> Iterator[KeyFigure]:
     """Yield the figures, each with the reason why it is not better."""
-    yield _point_figure(lookup)
+    chains = _chains_without_finding(lookup)
+    parts = [*phrase_severity_counts(lookup.findings), *([count_noun(len(chains), "chain")] if chains else [])]
+    severities = {finding.severity for finding in lookup.findings}
+    worst = "missed" if "error" in severities else "warning" if "warning" in severities else "open" if parts else "met"
+    count = len(lookup.findings) + len(chains)
+    yield KeyFigure(
+        "Open points", str(count), "", _make_note(worst, join_words(parts) or "nothing is open"), "page:findings"
+    )
     if lookup.timing and lookup.timing.chains:
         yield _chain_figure(lookup)
     if requirements := requirement_tables.shown_requirements(lookup):
@@ -85,17 +93,6 @@ def _make_note(status: str, text: str) -> Inlines:
 def _list_some(names: Sequence[str], singular: str, plural: str) -> str:
     """Name one, or count several: `R-80 has no component`, `3 have none`."""
     return f"{names[0]} {singular}" if len(names) == 1 else f"{len(names)} {plural}"
-
-
-def _point_figure(lookup: Lookup) -> KeyFigure:
-    chains = _chains_without_finding(lookup)
-    parts = [*phrase_severity_counts(lookup.findings), *([count_noun(len(chains), "chain")] if chains else [])]
-    severities = {finding.severity for finding in lookup.findings}
-    worst = "missed" if "error" in severities else "warning" if "warning" in severities else "open" if parts else "met"
-    count = len(lookup.findings) + len(chains)
-    return KeyFigure(
-        "Open points", str(count), "", _make_note(worst, join_words(parts) or "nothing is open"), "page:findings"
-    )
 
 
 def _chain_figure(lookup: Lookup) -> KeyFigure:
@@ -140,13 +137,13 @@ def _chain_card(lookup: Lookup) -> DashboardCard | None:
         for result in lookup.timing.chains[:_MAX_CHAINS]
         if result.id in lookup.architecture.chains
     )
-    columns = (
-        Column("Chain", 2.4),
-        Column("Of the deadline"),
-        Column("At the latest", 1, "right"),
-        Column("Deadline", 1, "right"),
-        Column("Margin", 1, "right"),
-        Column("Verdict"),
+    columns = make_columns(
+        ("Chain", 2.4),
+        "Of the deadline",
+        ("At the latest", 1, "right"),
+        ("Deadline", 1, "right"),
+        ("Margin", 1, "right"),
+        "Verdict",
     )
     table = Table("table:worst_chains", "Chains of effect, worst first", columns, rows)
     link = Text(f"All {len(lookup.timing.chains)}", ref="page:chains")

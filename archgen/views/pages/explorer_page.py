@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import chain
 
+from archgen.diagnostics.common_wording import join_first
 from archgen.views import inline_text
 from archgen.views.graphs.drawn_level import list_flows
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Column, Figure, Paragraph, Table, Text
 
 EXPLORER_LEAD = "With scripts this page is a map of all groups, components, nodes and hosts. Without them it is a picture and a list."
-_MAX_NAMED_TYPES = 6
 
 
 def make_explorer_blocks(lookup: Lookup, figures: Iterable[Figure]) -> tuple[Block, ...]:
@@ -34,16 +35,9 @@ def _make_flow_table(lookup: Lookup) -> Table | None:
             (Text(groups[tail].title, ref=f"group:{tail}"),),
             (Text(groups[head].title, ref=f"group:{head}"),) if head != tail else (Text("itself", muted=True),),
             (Text(str(len(types)), sort_number=str(len(types))),),
-            inline_text.to_inlines(_name_types(types)),
+            inline_text.to_inlines(join_first(list(dict.fromkeys(chain.from_iterable(types))))),
         )
         for (tail, head), types in flow_types.items()
     )
     columns = (Column("From"), Column("To"), Column("Flows", align="right"), Column("What"))
     return Table("table:explorer", "What flows between the groups", columns, rows) if rows else None
-
-
-def _name_types(flow_types: Iterable[tuple[str, ...]]) -> str:
-    """Name the types of some flows, each once; of many the first, and how many more there are."""
-    names = list(dict.fromkeys(name for types in flow_types for name in types))
-    shown_names = ", ".join(names[:_MAX_NAMED_TYPES])
-    return f"{shown_names} and {len(names) - _MAX_NAMED_TYPES} more" if len(names) > _MAX_NAMED_TYPES else shown_names

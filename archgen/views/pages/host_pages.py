@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
+from archgen.frozen import replace
 from archgen.model.deployment import Container, Host
 from archgen.model.parameter import format_parameter
 from archgen.model.port_media import name_medium
@@ -32,7 +32,7 @@ def make_host_pages(lookup: Lookup, keep_drawn: FigureFilter) -> Iterator[Page]:
 
 def _host_page(lookup: Lookup, host: Host, keep_drawn: FigureFilter) -> Page:
     architecture = lookup.architecture
-    order = host.scheduling or timing_words.format_core_orders(host)
+    order = ", ".join(filter(None, (host.scheduling, timing_words.format_core_orders(host))))
     facts = [
         ("Cores", inline_text.count_to_inlines(host.cores)),
         ("Scheduling", inline_text.to_inlines(order) if order else ()),
@@ -107,14 +107,9 @@ def _list_program_facts(container: Container) -> Iterator[tuple[str, Inlines]]:
         yield "Parameters", inline_text.join_lines(lines)
 
 
-def _describe_threads(lookup: Lookup, container: Container) -> str:
-    """Return the threads of a container, and whether that is written or what it is started with."""
+def _container_page(lookup: Lookup, container: Container) -> Page:
     threads = find_container_threads(lookup.architecture, container)
     text = "as many as are asked for" if threads is None else str(threads)
-    return text if container.threads is not None else f"{text} (nothing is written)"
-
-
-def _container_page(lookup: Lookup, container: Container) -> Page:
     facts = [
         (
             "Host",
@@ -122,7 +117,7 @@ def _container_page(lookup: Lookup, container: Container) -> Page:
         ),
         (
             "Threads",
-            inline_text.to_inlines(_describe_threads(lookup, container)),
+            inline_text.to_inlines(text if container.threads is not None else f"{text} (nothing is written)"),
         ),
         *([("Scheduling", inline_text.to_inlines(container.scheduling))] if container.scheduling else []),
         *_list_program_facts(container),

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
-from archgen.frozen import replace
+from archgen.frozen import dataclass, replace
 from archgen.model.feedback_order import MAX_EXACT, FeedbackOrder, order_by_feedback
 from archgen.model.partner_interfaces import PartnerPair
 from archgen.views.graphs.element_boxes import join_owner_titles

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 from typing import TypeVar
 
+from archgen.frozen import replace
 from archgen.model.component import Output
 from archgen.model.known_interfaces import Interface, InterfaceField
 from archgen.model.message_types import ConceptualType, flow_of
@@ -27,6 +27,7 @@ from archgen.views.shapes import (
     Text,
     drop_column,
     drop_empty_columns,
+    make_columns,
 )
 from archgen.views.tables import deployment_tables
 
@@ -75,13 +76,13 @@ class MessagePages:
             )
             for message in sorted(self._users)
         )
-        columns = (
-            Column("Name", 1.9),
-            Column("Kind", 0.6),
-            Column("Fields", 0.5, "right"),
-            Column("Size", 0.9, "right"),
-            Column("Types", 1.2),
-            Column("Carried by", 1.9),
+        columns = make_columns(
+            ("Name", 1.9),
+            ("Kind", 0.6),
+            ("Fields", 0.5, "right"),
+            ("Size", 0.9, "right"),
+            ("Types", 1.2),
+            ("Carried by", 1.9),
         )
         table = Table("table:messages", "Messages, services and actions", columns, rows)
         return drop_empty_columns(table) if rows else None

@@ -55,7 +55,11 @@ def _list_marks(lookup: Lookup) -> Iterator[tuple[str, Mark]]:
             else result.bound.missing
         )
         for name in names:
-            yield from ((f"group:{group}", mark) for group in _groups_of_activity(lookup, name))
+            activity = lookup.timing.analysis.system.activities.get(name) if lookup.timing else None
+            yield from (
+                (f"group:{group}", mark)
+                for group in (_groups_of(lookup, activity.component or activity.node) if activity else [])
+            )
 
 
 def _judge_findings(findings: Sequence[Diagnostic]) -> Mark:
@@ -80,9 +84,3 @@ def _groups_of(lookup: Lookup, element_id: str) -> list[str]:
     component_ids = node.implements if node else (element_id,)
     components = (architecture.components.get(name) or architecture.shells.get(name) for name in component_ids)
     return list(dict.fromkeys(component.group for component in components if component))
-
-
-def _groups_of_activity(lookup: Lookup, activity_id: str) -> list[str]:
-    """Return the groups of the component that an activity works for, or of its node."""
-    activity = lookup.timing.analysis.system.activities.get(activity_id) if lookup.timing else None
-    return _groups_of(lookup, activity.component or activity.node) if activity else []

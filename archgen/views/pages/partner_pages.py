@@ -22,7 +22,6 @@ from archgen.views.pages.context_pages import HOME_CRUMB, FigureFilter, make_nod
 from archgen.views.pages.matrix_pages import make_partner_matrix
 from archgen.views.shapes import (
     Block,
-    Column,
     Dashboard,
     DashboardCard,
     Facts,
@@ -35,6 +34,7 @@ from archgen.views.shapes import (
     Table,
     Text,
     drop_empty_columns,
+    make_columns,
 )
 
 MAX_INTERFACE_PAGES = 2_000
@@ -85,13 +85,13 @@ def _overview_page(lookup: Lookup, exchanges: Sequence[PartnerExchange]) -> Page
         )
         for exchange in ranked
     )
-    columns = (
-        Column("Between", 2),
-        Column("The first gives", 0.8, "right"),
-        Column("The second gives", 0.8, "right"),
-        Column("Rates promised", 0.8, "right"),
-        Column("QoS promised", 0.8, "right"),
-        Column("Open points", 0.7, "right"),
+    columns = make_columns(
+        ("Between", 2),
+        ("The first gives", 0.8, "right"),
+        ("The second gives", 0.8, "right"),
+        ("Rates promised", 0.8, "right"),
+        ("QoS promised", 0.8, "right"),
+        ("Open points", 0.7, "right"),
     )
     table = Table("table:pairs", "Pairs of partners, most open points first", columns, rows)
     count = inline_text.count_noun(sum(len(exchange.interfaces) for exchange in exchanges), "interface")
@@ -153,7 +153,19 @@ def _pair_page(
     blocks = (note,) if has_interface_pages else (note, hint_block)
     section = Section(pair_reference(exchange.pair), title, blocks, sections)
     path = f"partners/{make_page_slug(exchange.pair[0])}/{make_page_slug(exchange.pair[1])}.html"
-    dashboard = Dashboard(tuple(_list_figures(lookup, exchange)), (_point_card(lookup, exchange),))
+    table = exchange_tables.make_point_table(lookup, f"points:{exchange.pair[0]}", exchange)
+    remark = f"{exchange.open_count} in {inline_text.count_noun(len(exchange.interfaces), 'interface')}"
+    settled = Paragraph(
+        inline_text.to_inlines("Nothing is open: every term is settled, and nothing contradicts another.")
+    )
+    dashboard = Dashboard(
+        tuple(_list_figures(lookup, exchange)),
+        (
+            DashboardCard(
+                "Open points between the two", (table or settled,), 12, remark if table else "", None, "points"
+            ),
+        ),
+    )
     return Page(
         path,
         section.anchor,
@@ -178,17 +190,6 @@ def _list_figures(lookup: Lookup, exchange: PartnerExchange) -> Iterator[KeyFigu
             left = total - promised
             note = (Text(f"{left} still to be written" if left else "all of them", status="open" if left else "met"),)
             yield KeyFigure(name, str(promised), str(total), note, f"points:{exchange.pair[0]}" if left else "")
-
-
-def _point_card(lookup: Lookup, exchange: PartnerExchange) -> DashboardCard:
-    table = exchange_tables.make_point_table(lookup, f"points:{exchange.pair[0]}", exchange)
-    remark = f"{exchange.open_count} in {inline_text.count_noun(len(exchange.interfaces), 'interface')}"
-    settled = Paragraph(
-        inline_text.to_inlines("Nothing is open: every term is settled, and nothing contradicts another.")
-    )
-    return DashboardCard(
-        "Open points between the two", (table or settled,), 12, remark if table else "", None, "points"
-    )
 
 
 def _list_direction_sections(lookup: Lookup, exchange: PartnerExchange) -> Iterator[Section]:
@@ -283,11 +284,8 @@ def _exchange_table(lookup: Lookup, partner: Partner, exchanges: Sequence[Partne
         )
         for exchange in sorted(exchanges, key=lambda exchange: -exchange.open_count)
     )
-    columns = (
-        Column("With", 1.4),
-        Column("Gives", 0.7, "right"),
-        Column("Takes", 0.7, "right"),
-        Column("Open points", 0.8, "right"),
+    columns = make_columns(
+        ("With", 1.4), ("Gives", 0.7, "right"), ("Takes", 0.7, "right"), ("Open points", 0.8, "right")
     )
     return Table(f"table:exchanges/{partner.id}", f"What {partner.title} gives and takes", columns, rows)
 

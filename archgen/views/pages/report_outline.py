@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import field
 from typing import TYPE_CHECKING, Literal
 
-from archgen.frozen import dataclass, replace
+from archgen.frozen import dataclass, field, replace
 from archgen.model.document_chapters import GENERATED_CHAPTERS, Chapter
 from archgen.model.partner_interfaces import PartnerPair
 from archgen.model.project_history import History

@@ -9,7 +9,18 @@ from archgen.model.architecture import Architecture
 from archgen.model.variant import Variant
 from archgen.views import inline_text
 from archgen.views.element_references import link_names
-from archgen.views.shapes import Block, Bullets, Column, Facts, Inlines, Markdown, Paragraph, Section, Table, Text
+from archgen.views.shapes import (
+    Block,
+    Bullets,
+    Facts,
+    Inlines,
+    Markdown,
+    Paragraph,
+    Section,
+    Table,
+    Text,
+    make_columns,
+)
 
 LEAD = "The same project otherwise. Each variant is laid over the project; what it does not name is as everywhere else."
 
@@ -34,13 +45,7 @@ def make_variant_table(architecture: Architecture, differences: Mapping[str, Var
         )
         for each in architecture.variants.values()
     )
-    columns = (
-        Column("Variant", 1.4),
-        Column("Built on"),
-        Column("Without", 1.2),
-        Column("Different", 0.8),
-        Column("Findings", 1.2),
-    )
+    columns = make_columns(("Variant", 1.4), "Built on", ("Without", 1.2), ("Different", 0.8), ("Findings", 1.2))
     return Table("table:variants", "All variants", columns, rows) if rows else None
 
 

@@ -11,8 +11,8 @@ from fractions import Fraction
 from typing import Any
 
 from archgen.frozen import dataclass
-from archgen.model.component import Component, Group, Input, Output
-from archgen.model.declared_timing import Timing
+from archgen.model.component import Component, Output
+from archgen.model.declared_timing import list_fair_figures
 from archgen.model.deployment import Host
 from archgen.model.element_annotations import read_figure
 from archgen.model.known_interfaces import InterfaceField
@@ -20,7 +20,7 @@ from archgen.model.message_types import PART_KEYS, ConceptualType, DataField
 from archgen.model.node import Endpoint, Evidence, Node
 from archgen.model.parameter_values import EffectiveParameter, find_effective_parameters
 from archgen.model.port_media import ROS, is_physical, name_on_medium, word_of_medium
-from archgen.model.promise import Promise, describe_deprecation, format_range
+from archgen.model.promise import describe_deprecation, format_range
 from archgen.model.quantity import Quantity
 from archgen.model.step_connections import ConnectedStep
 from archgen.views.lookup import Lookup
@@ -72,11 +72,6 @@ class RecordedField:
     ros_type: str | None
 
 
-def _list_type_fields(conceptual_type: ConceptualType, lookup: Lookup) -> list[RecordedField]:
-    """Return the fields that make the message of a type."""
-    return _list_recorded(conceptual_type.fields or (), "", _find_ros_fields(conceptual_type, lookup))
-
-
 def _list_part_fields(conceptual_type: ConceptualType, lookup: Lookup) -> dict[str, list[RecordedField]]:
     """Return the fields of the parts of a service or an action, by part."""
     ros_fields = _find_ros_fields(conceptual_type, lookup)
@@ -117,14 +112,6 @@ def _list_ids(elements: Iterable[Any]) -> list[str]:
     return [each.id for each in elements]
 
 
-def _list_sources(port: Input, _lookup: Lookup) -> list[str]:
-    return list(dict.fromkeys(output for connection in port.connections for output in connection.outputs))
-
-
-def _list_readers(port: Output, lookup: Lookup) -> list[str]:
-    return list(dict.fromkeys(connection.input for connection in lookup.readers_of.get(port.id, ())))
-
-
 def _list_behind(shell: Component, lookup: Lookup) -> dict[str, tuple[str, ...]]:
     """Return the leaves' ports behind each port of a composed component."""
     return {
@@ -138,11 +125,6 @@ def _list_port_types(ports: Mapping[str, str | None]) -> dict[str, str]:
     return {name: type_name or "" for name, type_name in ports.items()}
 
 
-def _list_endpoints(node: Node, lookup: Lookup) -> list[object]:
-    """Return what a node uses over ROS: who generates launch files from it knows nothing else."""
-    return [each for each in lookup.endpoints_of.get(node.id, ()) if each.medium == ROS]
-
-
 def _list_reasons(endpoint: Endpoint, _lookup: Lookup) -> dict[str, Evidence]:
     """Return where fields come from that are not as the program, or the model of its port, has them."""
     told = {key: each for key, each in endpoint.evidence.items() if each.kind not in {"default", "unknown"}}
@@ -154,11 +136,6 @@ def _list_reasons(endpoint: Endpoint, _lookup: Lookup) -> dict[str, Evidence]:
     }
 
 
-def _name_activities(node: Node, _lookup: Lookup) -> dict[str, Timing]:
-    # The key is "" for a node that implements no component; the record calls it "node".
-    return {component or "node": timing for component, timing in node.timing.items()}
-
-
 def _list_effective(node: Node, lookup: Lookup) -> dict[str, EffectiveParameter]:
     """Return the values that count at a node, each with where it comes from; nothing where all are the node's own."""
     parameters = find_effective_parameters(lookup.architecture, node)
@@ -166,8 +143,12 @@ def _list_effective(node: Node, lookup: Lookup) -> dict[str, EffectiveParameter]
 
 
 def _read_host_order(host: Host, _lookup: Lookup) -> object:
-    """Return the order by core where single cores have one of their own."""
-    return host.core_scheduling or host.scheduling
+    """Return the order; as a mapping where single cores have one of their own, or figures of a fair one are written."""
+    orders: dict[object, object] = {}
+    orders.update(host.core_scheduling.items())
+    if host.fair:
+        orders["fair"] = dict(list_fair_figures(host.fair))
+    return orders or host.scheduling
 
 
 def _list_steps(use_case: Any, lookup: Lookup) -> list[ConnectedStep]:  # noqa: ANN401  # as all sources
@@ -175,33 +156,13 @@ def _list_steps(use_case: Any, lookup: Lookup) -> list[ConnectedStep]:  # noqa: 
     return [each for each in lookup.steps.by_use_case.get(use_case.id, ()) if each.step.is_resolved]
 
 
-def _list_step_outputs(connected: ConnectedStep, _lookup: Lookup) -> list[str]:
-    return list(dict.fromkeys(each.output for each in connected.connections if each.output))
-
-
-def _list_step_inputs(connected: ConnectedStep, _lookup: Lookup) -> list[str]:
-    return list(dict.fromkeys(each.input for each in connected.connections if each.input and not each.output))
-
-
-def _list_components(group: Group, lookup: Lookup) -> list[str]:
-    return _list_ids(lookup.shown_components(group.id))
-
-
 def _read_message(port: Output, lookup: Lookup) -> str | None:
     return lookup.architecture.message_of(port)
-
-
-def _read_range(promise: Promise, _lookup: Lookup) -> tuple[tuple[float, float], str | None] | None:
-    return None if promise.range is None else (promise.range, promise.unit)
 
 
 def _keep_finite(limit: float) -> float | None:
     # JSON has no infinity.
     return limit if math.isfinite(limit) else None
-
-
-def _list_percentiles(timing: Timing, _lookup: Lookup) -> object:
-    return timing.measured_times.percentiles if timing.measured_times else None
 
 
 def _list_users(ends: str) -> Source:
@@ -240,8 +201,12 @@ _PARTS: Mapping[str, Mapping[str, Source]] = {
         "from": lambda connected, _: connected.step.source,
         "to": lambda connected, _: connected.step.target,
         "say": lambda connected, _: connected.step.say,
-        "outputs": _list_step_outputs,
-        "inputs": _list_step_inputs,
+        "outputs": lambda connected, _: list(
+            dict.fromkeys(each.output for each in connected.connections if each.output)
+        ),
+        "inputs": lambda connected, _: list(
+            dict.fromkeys(each.input for each in connected.connections if each.input and not each.output)
+        ),
     },
     "requirement": {
         "parent": lambda requirement, _: requirement.parents,
@@ -249,12 +214,23 @@ _PARTS: Mapping[str, Mapping[str, Source]] = {
         "served_by_chains": lambda each, lookup: _list_ids(lookup.chains_for_requirement.get(each.id, ())),
     },
     "property_declaration": {"range": lambda each, _: [str(limit) for limit in each.range or ()]},
-    "group": {"components": _list_components},
+    "group": {"components": lambda group, lookup: _list_ids(lookup.shown_components(group.id))},
     "component": _COMPONENT,
     "composed": {**_COMPONENT, "components": lambda shell, _: shell.children, "behind": _list_behind},
-    "input": {**_PORT, "sources": _list_sources},
-    "output": {**_PORT, "message": _read_message, "readers": _list_readers},
-    "promise": {"range": _read_range},
+    "input": {
+        **_PORT,
+        "sources": lambda port, _: list(
+            dict.fromkeys(output for connection in port.connections for output in connection.outputs)
+        ),
+    },
+    "output": {
+        **_PORT,
+        "message": _read_message,
+        "readers": lambda port, lookup: list(
+            dict.fromkeys(connection.input for connection in lookup.readers_of.get(port.id, ()))
+        ),
+    },
+    "promise": {"range": lambda promise, _: None if promise.range is None else (promise.range, promise.unit)},
     "value_range": {
         "text": lambda limits_and_unit, _: format_range(*limits_and_unit),
         "least": lambda limits_and_unit, _: _keep_finite(limits_and_unit[0][0]),
@@ -281,8 +257,10 @@ _PARTS: Mapping[str, Mapping[str, Source]] = {
     "node": {
         "kind": lambda node, _: node.kinds,
         "derived": lambda node, _: not node.written,
-        "endpoints": _list_endpoints,
-        "timing": _name_activities,
+        # Who generates launch files from a node knows nothing but ROS.
+        "endpoints": lambda node, lookup: [each for each in lookup.endpoints_of.get(node.id, ()) if each.medium == ROS],
+        # The key is "" for a node that implements no component.
+        "timing": lambda node, _: {component or "node": timing for component, timing in node.timing.items()},
         "effective_parameters": _list_effective,
     },
     "endpoint": {
@@ -304,12 +282,17 @@ _PARTS: Mapping[str, Mapping[str, Source]] = {
         "by": lambda start, _: start.by.id if start.by else None,
     },
     "timing": {
-        "percentiles": _list_percentiles,
+        "percentiles": lambda timing, _: timing.measured_times.percentiles if timing.measured_times else None,
         "wcet_measured": lambda timing, _: timing.measured_times and timing.measured_times.is_measured,
         "calls": lambda timing, _: {name: _to_number(count) for name, count in timing.calls.items()},
     },
     "timing_input": {"stored": lambda each, _: "at_once" if each.stored_at_once else None},
-    "type": {"fields": _list_type_fields, "part_fields": _list_part_fields},
+    "type": {
+        "fields": lambda conceptual_type, lookup: _list_recorded(
+            conceptual_type.fields or (), "", _find_ros_fields(conceptual_type, lookup)
+        ),
+        "part_fields": _list_part_fields,
+    },
     "part_fields": {part: _read_part(part) for part in PART_KEYS},
     "host": {"scheduling": _read_host_order},
     "container": {"namespace": lambda container, _: None if container.namespace == "/" else container.namespace},

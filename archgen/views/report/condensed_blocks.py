@@ -30,18 +30,13 @@ from archgen.views.shapes import (
     drop_column,
     drop_empty_columns,
     keep_columns,
+    make_columns,
 )
 
 _MIN_CONSTANT_ROWS = 3
 """From this many rows on, a column that says the same in all of them is said once, in the caption."""
-_PORT_COLUMNS = (
-    Column("Use", 0.3),
-    Column("Port", 1.1),
-    Column("Type", 1.2),
-    Column("From / to", 2.0),
-    Column("Inside", 1.4),
-    Column("Medium", 0.7),
-    Column("Remarks", 1.2),
+_PORT_COLUMNS = make_columns(
+    ("Use", 0.3), ("Port", 1.1), ("Type", 1.2), ("From / to", 2.0), ("Inside", 1.4), ("Medium", 0.7), ("Remarks", 1.2)
 )
 
 
@@ -245,14 +240,7 @@ def _make_endpoint_table(lookup: Lookup, component: Component, nodes: Sequence[N
         for node in nodes
         for endpoint in sorted(lookup.endpoints_of.get(node.id, ()), key=lambda each: _USE_ORDER.index(each.use))
     )
-    columns = (
-        Column("Node", 1.0),
-        Column("Use", 0.5),
-        Column("Name", 1.9),
-        Column("Message", 1.9),
-        Column("Port", 0.9),
-        Column("QoS", 0.6),
-    )
+    columns = make_columns(("Node", 1.0), ("Use", 0.5), ("Name", 1.9), ("Message", 1.9), ("Port", 0.9), ("QoS", 0.6))
     caption = f"Topics, services and actions of {component.title}"
     table = Table(f"table:endpoints/{component.id}", caption, columns, rows)
     if len(nodes) == 1:

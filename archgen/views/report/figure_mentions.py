@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from dataclasses import replace
 
+from archgen.frozen import replace
 from archgen.views.shapes import Block, Figure, Inlines, Paragraph, Section, Table, Text
 
 _COMPONENT_WORDS = ("shows its neighbours", "lists its ports")

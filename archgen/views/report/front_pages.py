@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from archgen.analyses.size_counts import measure_progress
 from archgen.model.report_settings import ReportSettings
@@ -25,6 +25,8 @@ from archgen.views.shapes import (
     Section,
     Table,
     Text,
+    keep_columns,
+    make_columns,
 )
 from archgen.views.timing.timing_tables import is_blank
 
@@ -99,12 +101,7 @@ def make_partner_table(lookup: Lookup) -> Table | None:
         )
         for partner in architecture.partners.values()
     )
-    columns = (
-        Column("Partner"),
-        Column("Who it is", 3),
-        Column("Components", 0.6, "right"),
-        Column("Nodes", 0.5, "right"),
-    )
+    columns = make_columns("Partner", ("Who it is", 3), ("Components", 0.6, "right"), ("Nodes", 0.5, "right"))
     anchors = tuple(f"partner:{partner_id}" for partner_id in architecture.partners)
     return Table("table:partners", "Partners", columns, rows, anchors, numbered=False)
 
@@ -205,31 +202,23 @@ def make_summary(lookup: Lookup, edition: DocumentEdition, overview: Section | N
 def _phrase_figure(figure: KeyFigure) -> tuple[str, Inlines]:
     """Write a figure of the start page as a fact: `7 of 8: 1 not proven`."""
     value = f"{figure.value} of {figure.total}" if figure.total else figure.value
-    return figure.title, (Text(value, strong=True), Text(" · "), *_leave_refs(figure.note))
+    return figure.title, (
+        Text(value, strong=True),
+        Text(" · "),
+        *(dataclasses.replace(part, ref=None) for part in figure.note),
+    )
 
 
 def _print_card(card: DashboardCard) -> Iterator[Block]:
     for block in card.blocks:
         match block:
             case Table():
-                yield _drop_wordless_columns(block)
+                # Columns that hold nothing but bars are dropped.
+                places = range(len(block.columns))
+                yield keep_columns(block, (at for at in places if not all(is_blank(row[at]) for row in block.rows)))
             case Paragraph():
                 yield dataclasses.replace(block, inlines=tuple(part for part in block.inlines if part.text))
             case _:
                 yield block
     if card.remark and not any(isinstance(block, Table) for block in card.blocks):
         yield Paragraph(inline_text.to_inlines(Text(f"{card.remark[:1].upper()}{card.remark[1:]}.", muted=True)))
-
-
-def _drop_wordless_columns(table: Table) -> Table:
-    """Drop columns that hold nothing but bars."""
-    indices = [index for index in range(len(table.columns)) if not all(is_blank(row[index]) for row in table.rows)]
-    return dataclasses.replace(
-        table,
-        columns=tuple(table.columns[index] for index in indices),
-        rows=tuple(tuple(row[index] for index in indices) for row in table.rows),
-    )
-
-
-def _leave_refs(inlines: Iterable[Text]) -> Inlines:
-    return tuple(dataclasses.replace(part, ref=None) for part in inlines)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import replace
 from decimal import Decimal
 
+from archgen.frozen import replace
 from archgen.views import inline_text
 from archgen.views.shapes import Block, Bullets, Column, Facts, Inlines, Paragraph, Section, Table, Text
 from archgen.views.short_figures import QUANTITY, round_number, shorten_quantity, write_comparisons
@@ -65,7 +65,9 @@ def _print_table(table: Table) -> Table:
         cells = [row[index] for row in table.rows]
         unit = _choose_unit(column, cells)
         columns.append(replace(column, title=f"{column.title}, {'µs' if unit == 'us' else unit}") if unit else column)
-        cells_by_column.append([_convert_cell(cell, unit) if unit else print_inlines(cell) for cell in cells])
+        cells_by_column.append(
+            [tuple(_convert_text(part, unit) for part in cell) if unit else print_inlines(cell) for cell in cells]
+        )
     rows = tuple(tuple(column[row] for column in cells_by_column) for row in range(len(table.rows)))
     return replace(table, columns=tuple(columns), rows=rows)
 
@@ -84,10 +86,6 @@ def _choose_unit(column: Column, cells: Sequence[Inlines]) -> str:
     lengths = sorted(time for time in times if time) or [_TIME_FACTORS["ms"]]
     middle = lengths[(len(lengths) - 1) // 2]
     return next((unit for unit in ("s", "ms", "us") if middle >= _TIME_FACTORS[unit]), "ns")
-
-
-def _convert_cell(cell: Inlines, unit: str) -> Inlines:
-    return tuple(_convert_text(part, unit) for part in cell)
 
 
 def _convert_text(part: Text, unit: str) -> Text:

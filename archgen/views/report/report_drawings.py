@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import replace
 
-from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.frozen import replace
+from archgen.views.graphs.graph_folding import add_legend_keys
 from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import Arrow, Box, Drawing, Graph, SequenceChart
 from archgen.views.sequences.sequence_charts import CHART_PREFIX, make_printed_charts

@@ -69,19 +69,14 @@ def make_page_entries(pages: Iterable[Page], listed_anchors: frozenset[str]) -> 
     """Yield chapters, each with its headings, and the pages that no other entry leads to."""
     for page in pages:
         if page.kind == "chapters":
-            yield from _make_chapter_entries(page)
+            # `split` gives what stands before the first heading, then heading and text in turns.
+            opening, *rest = _HEADING.split(_page_text(page, raw=True))
+            yield SearchEntry("chapter", page.title, "chapter", (page.anchor,), text=to_plain_text(opening))
+            for heading, text in zip(rest[::2], rest[1::2], strict=True):
+                line = join_entry_parts("chapter", page.title)
+                yield SearchEntry("chapter", to_plain_text(heading), line, (page.anchor,), text=to_plain_text(text))
         elif page.anchor not in listed_anchors:
             yield SearchEntry("page", page.title, page.lead, (page.anchor,), text=_page_text(page))
-
-
-def _make_chapter_entries(page: Page) -> Iterator[SearchEntry]:
-    """Yield the text below each heading of a chapter."""
-    # `split` gives what stands before the first heading, then heading and text in turns.
-    opening, *rest = _HEADING.split(_page_text(page, raw=True))
-    yield SearchEntry("chapter", page.title, "chapter", (page.anchor,), text=to_plain_text(opening))
-    for heading, text in zip(rest[::2], rest[1::2], strict=True):
-        line = join_entry_parts("chapter", page.title)
-        yield SearchEntry("chapter", to_plain_text(heading), line, (page.anchor,), text=to_plain_text(text))
 
 
 def _page_text(page: Page, *, raw: bool = False) -> str:

@@ -14,7 +14,6 @@ from archgen.views.sequences import sequence_charts
 from archgen.views.sequences.sequence_charts import CHART_PREFIX
 from archgen.views.shapes import (
     Block,
-    Column,
     Facts,
     Figure,
     Inlines,
@@ -24,6 +23,7 @@ from archgen.views.shapes import (
     Table,
     Text,
     drop_empty_columns,
+    make_columns,
 )
 from archgen.views.timing import timing_tables
 
@@ -67,13 +67,13 @@ def _list_facts(lookup: Lookup, use_case: UseCase) -> Iterator[tuple[str, Inline
 
 def make_step_table(lookup: Lookup, use_case: UseCase, steps: Iterable[ConnectedStep]) -> Table:
     """List the steps with who takes part, what they run along, and how long they take."""
-    columns = (
-        Column("Step", 0.4, "right"),
-        Column("From", 1.3),
-        Column("To", 1.3),
-        Column("What happens", 2),
-        Column("Along", 1.5),
-        Column("Within", 0.8, "right"),
+    columns = make_columns(
+        ("Step", 0.4, "right"),
+        ("From", 1.3),
+        ("To", 1.3),
+        ("What happens", 2),
+        ("Along", 1.5),
+        ("Within", 0.8, "right"),
     )
     rows = tuple(
         (

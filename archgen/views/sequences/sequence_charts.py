@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Sequence
 from itertools import pairwise
 
+from archgen.diagnostics.common_wording import join_first
 from archgen.frozen import replace
 from archgen.model.architecture import UseCase
 from archgen.model.path_resolver import title_from_id
@@ -139,7 +140,7 @@ def _make_message(
     text = " ".join((step.say or "").split())
     text = text if len(text) <= _MAX_TEXT else f"{text[: _MAX_TEXT - 1]}…"
     carriers = list(_list_carriers(lookup, connected))
-    shown = ", ".join(carriers[:2]) + (f" and {len(carriers) - 2} more" if len(carriers) > 2 else "")  # noqa: PLR2004
+    shown = join_first(carriers, 2)
     time = describe_step_time(lookup, use_case.id, connected.number)
     lines = ("" if is_printed and text else shown, short_figures.shorten_bounds(time))
     detail = "no connection" if connected.is_broken else "\n".join(filter(None, lines))

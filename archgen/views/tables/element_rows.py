@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import cast
 
 from archgen.language.language_tables import DATA_PARTS, ENTRIES, KEYS, SECTION_KINDS
 from archgen.model.annotated_elements import Annotated
@@ -19,6 +20,7 @@ from archgen.views.tables import functional_tables, requirement_tables, type_tab
 from archgen.views.tables.start_table import START_COLUMNS, list_start_rows
 
 TextRow = tuple[str, ...]
+_Rows = Iterator[tuple[object, ...]]
 _ANNOTATED_TABLES = frozenset(section for section, kind in SECTION_KINDS.items() if "properties" in KEYS[kind])
 """Tables of elements that may have properties; that of components has composed ones, too."""
 
@@ -27,7 +29,7 @@ def list_element_rows(lookup: Lookup, kind: str) -> tuple[tuple[str, ...], list[
     """Return the column names and rows for one kind of element: a name of a table of its own, or a section."""
     if kind in _TABLES_BY_KIND:
         columns, make_rows = _TABLES_BY_KIND[kind]
-        rows = list(make_rows(lookup))
+        rows = [tuple(map(_write_cell, row)) for row in make_rows(lookup)]
     else:
         columns, rows = _list_plain_rows(lookup, kind)
     for name, values in (*_list_further_columns(lookup, kind), *_list_property_columns(lookup, kind, rows)):
@@ -105,73 +107,54 @@ def _list_property_columns(lookup: Lookup, kind: str, rows: list[TextRow]) -> It
     yield from ((f"property:{name}", [each.get(name, "") for each in properties]) for name in names)
 
 
-def _component_rows(lookup: Lookup) -> Iterator[TextRow]:
+def _write_cell(value: object) -> str:
+    """Return what is written of a value: several with commas between them, nothing for None."""
+    # Quantities and places are tuples with names: each is one value.
+    is_several = isinstance(value, (Mapping, tuple, list)) and not hasattr(value, "_fields")
+    values: Iterable[object] = cast("Iterable[object]", value) if is_several else (value,)
+    return ", ".join(str(each) for each in values if each is not None)
+
+
+def _component_rows(lookup: Lookup) -> _Rows:
     for c in lookup.nested_components():
-        nodes = ", ".join(node.id for node in lookup.nodes_inside(c.id))
-        yield (
-            c.id,
-            c.title,
-            ", ".join(c.owners),
-            c.role or "",
-            str(len(c.inputs)),
-            str(len(c.outputs)),
-            nodes,
-            str(c.at),
-        )
+        nodes = [node.id for node in lookup.nodes_inside(c.id)]
+        yield c.id, c.title, c.owners, c.role, len(c.inputs), len(c.outputs), nodes, c.at
 
 
-def _node_rows(lookup: Lookup) -> Iterator[TextRow]:
+def _node_rows(lookup: Lookup) -> _Rows:
     for n in lookup.shown_nodes():
-        location = str(n.at) if n.written else ""
-        owners = ", ".join(n.owners)
-        yield (
-            n.id,
-            ", ".join(n.implements),
-            owners,
-            n.package or "",
-            n.status or "",
-            n.host or "",
-            n.full_name,
-            location,
-        )
+        place = n.at if n.written else None
+        yield n.id, n.implements, n.owners, n.package, n.status, n.host, n.full_name, place
 
 
-def _group_rows(lookup: Lookup) -> Iterator[TextRow]:
-    for name in lookup.shown_groups():
-        group = lookup.architecture.groups[name]
-        yield (group.id, group.title, ", ".join(group.owners), str(len(group.components)), str(group.at))
+def _group_rows(lookup: Lookup) -> _Rows:
+    for group in map(lookup.architecture.groups.__getitem__, lookup.shown_groups()):
+        yield group.id, group.title, group.owners, len(group.components), group.at
 
 
-def _connection_rows(lookup: Lookup) -> Iterator[TextRow]:
+def _connection_rows(lookup: Lookup) -> _Rows:
     architecture = lookup.architecture
     for c in functional_tables.shown_connections(lookup):
         outputs = [architecture.outputs[output] for output in c.outputs]
-        types = ", ".join(dict.fromkeys(output.type or "?" for output in outputs))
-        messages = ", ".join(
-            dict.fromkeys(o.medium if not uses_ros(o) else architecture.message_of(o) or "?" for o in outputs)
-        )
-        reader = ", ".join(architecture.components[architecture.inputs[c.input].component].owners)
-        writers = ", ".join(
-            dict.fromkeys(o for output in outputs for o in architecture.components[output.component].owners)
-        )
-        yield (c.input, c.target, c.kind, types, messages, str(len(outputs)), writers, reader, str(c.at))
+        types = dict.fromkeys(output.type or "?" for output in outputs)
+        messages = dict.fromkeys(o.medium if not uses_ros(o) else architecture.message_of(o) or "?" for o in outputs)
+        readers = architecture.components[architecture.inputs[c.input].component].owners
+        writers = dict.fromkeys(o for output in outputs for o in architecture.components[output.component].owners)
+        yield c.input, c.target, c.kind, types, messages, len(outputs), writers, readers, c.at
 
 
-def _edge_rows(lookup: Lookup) -> Iterator[TextRow]:
+def _edge_rows(lookup: Lookup) -> _Rows:
     architecture = lookup.architecture
     for edge in architecture.edges:
         output = architecture.outputs[edge.output]
-        if lookup.scope.shows_component(output.component) or lookup.scope.shows_component(
-            architecture.inputs[edge.input].component
-        ):
-            yield (edge.output, edge.input, output.type or "?", architecture.message_of(output) or "", str(edge.at))
+        if any(map(lookup.scope.shows_component, (output.component, architecture.inputs[edge.input].component))):
+            yield edge.output, edge.input, output.type or "?", architecture.message_of(output), edge.at
 
 
-def _topic_rows(lookup: Lookup) -> Iterator[TextRow]:
+def _topic_rows(lookup: Lookup) -> _Rows:
     for topic in _list_shown_carriers(lookup):
-        writers = ", ".join(dict.fromkeys(endpoint.node for endpoint in topic.writers))
-        readers = ", ".join(dict.fromkeys(endpoint.node for endpoint in topic.readers))
-        yield (name_on_medium(topic), topic.flow, ", ".join(topic.messages), writers, readers)
+        writers, readers = (dict.fromkeys(end.node for end in ends) for ends in (topic.writers, topic.readers))
+        yield name_on_medium(topic), topic.flow, topic.messages, writers, readers
 
 
 def _list_shown_carriers(lookup: Lookup) -> list[Topic]:
@@ -183,118 +166,73 @@ def _list_shown_carriers(lookup: Lookup) -> list[Topic]:
     ]
 
 
-def _type_rows(lookup: Lookup) -> Iterator[TextRow]:
-    for conceptual_type in type_tables.shown_types(lookup):
-        yield (
-            conceptual_type.name,
-            conceptual_type.message or "",
-            lookup.format_size(conceptual_type),
-            type_tables.describe_mapping(conceptual_type),
-        )
+def _type_rows(lookup: Lookup) -> _Rows:
+    for each in type_tables.shown_types(lookup):
+        yield each.name, each.message, lookup.format_size(each), type_tables.describe_mapping(each)
 
 
-def _requirement_rows(lookup: Lookup) -> Iterator[TextRow]:
+def _requirement_rows(lookup: Lookup) -> _Rows:
     for r in requirement_tables.shown_requirements(lookup):
         server_ids = [component.id for component in lookup.components_for_requirement.get(r.id, ())]
         server_ids += [chain.id for chain in lookup.chains_for_requirement.get(r.id, ())]
-        yield (
-            r.id,
-            r.title,
-            ", ".join(r.parents),
-            r.kind or "",
-            r.priority or "",
-            ", ".join(r.use_cases),
-            ", ".join(server_ids),
-            ", ".join(each.text for each in r.verified_by),
-            lookup.requirement_trace.judge(r.id),
-            str(r.at),
-        )
+        verifiers = [each.text for each in r.verified_by]
+        relations = r.use_cases, server_ids, verifiers
+        yield r.id, r.title, r.parents, r.kind, r.priority, *relations, lookup.requirement_trace.judge(r.id), r.at
 
 
-def _use_case_rows(lookup: Lookup) -> Iterator[TextRow]:
+def _use_case_rows(lookup: Lookup) -> _Rows:
     for use_case in lookup.architecture.use_cases.values():
-        actors = ", ".join(use_case.actors)
-        yield (use_case.id, use_case.title, actors, str(len(use_case.steps)), str(use_case.at))
+        yield use_case.id, use_case.title, use_case.actors, len(use_case.steps), use_case.at
 
 
-def _step_rows(lookup: Lookup) -> Iterator[TextRow]:
+def _step_rows(lookup: Lookup) -> _Rows:
     for use_case_id, steps in lookup.steps.by_use_case.items():
         for each in steps:
-            ports = dict.fromkeys(connection.output or connection.input or "" for connection in each.connections)
-            yield (
-                use_case_id,
-                str(each.number),
-                each.step.source.id,
-                each.step.target.id,
-                each.step.say or "",
-                ", ".join(ports),
-                str(each.step.at),
-            )
+            step, ports = each.step, dict.fromkeys(end.output or end.input or "" for end in each.connections)
+            yield use_case_id, each.number, step.source.id, step.target.id, step.say, ports, step.at
 
 
-def _chain_rows(lookup: Lookup) -> Iterator[TextRow]:
+def _chain_rows(lookup: Lookup) -> _Rows:
     for chain in lookup.architecture.chains.values():
-        yield (
-            chain.id,
-            chain.title,
-            " > ".join(point.id for point in chain.through),
-            chain.deadline_text,
-            str(chain.at),
-        )
+        yield chain.id, chain.title, " > ".join(point.id for point in chain.through), chain.deadline_text, chain.at
 
 
-def _host_rows(lookup: Lookup) -> Iterator[TextRow]:
+def _host_rows(lookup: Lookup) -> _Rows:
     for host in lookup.architecture.hosts.values():
-        nodes = ", ".join(node.id for node in lookup.shown_nodes() if node.host == host.id)
-        yield (host.id, host.title, str(host.cores or ""), nodes, str(host.at))
+        nodes = [node.id for node in lookup.shown_nodes() if node.host == host.id]
+        yield host.id, host.title, host.cores or None, nodes, host.at
 
 
-def _parameter_rows(lookup: Lookup) -> Iterator[TextRow]:
+def _parameter_rows(lookup: Lookup) -> _Rows:
     for node in lookup.shown_nodes():
         for name, each in find_effective_parameters(lookup.architecture, node).items():
             declaration = each.declaration
+            value = "" if each.origin == "none" else parameter_blocks.describe_value_text(node, each)
             yield (
-                name,
-                node.id,
-                ", ".join(node.implements),
-                (declaration.type or "") if declaration else "",
-                "" if each.origin == "none" else parameter_blocks.describe_value_text(node, each),
-                (declaration.unit or "") if declaration else "",
-                parameter_blocks.describe_limits(declaration) if declaration else "",
-                parameter_blocks.name_origin(each),
-                str(each.at) if each.at.file else "",
+                *(name, node.id, node.implements, declaration and declaration.type, value),
+                *(declaration and declaration.unit, declaration and parameter_blocks.describe_limits(declaration)),
+                *(parameter_blocks.name_origin(each), each.at if each.at.file else None),
             )
 
 
-def _operation_rows(lookup: Lookup) -> Iterator[TextRow]:
+def _operation_rows(lookup: Lookup) -> _Rows:
     for group in lookup.shown_groups():
         for component in lookup.shown_components(group):
             for each in component.operations.values():
-                request, response = (
-                    parameter_blocks.describe_types(types or "") for types in (each.request, each.response)
-                )
-                yield (each.id, component.id, request, response, each.call or "", each.visibility or "", str(each.at))
+                types = (parameter_blocks.describe_types(types or "") for types in (each.request, each.response))
+                yield each.id, component.id, *types, each.call, each.visibility, each.at
 
 
-def _frame_rows(lookup: Lookup) -> Iterator[TextRow]:
+def _frame_rows(lookup: Lookup) -> _Rows:
     ports_by_frame = index_frame_ports(lookup.architecture)
     for frame in list_shown_frames(lookup):
-        rate = "static" if frame.static else str(frame.rate or "")
-        ports = ", ".join(ports_by_frame.get(frame.id, ()))
-        yield (frame.id, frame.title, frame.parent or "", frame.by or "", rate, ports, str(frame.at))
+        rate = "static" if frame.static else frame.rate
+        yield frame.id, frame.title, frame.parent, frame.by, rate, ports_by_frame.get(frame.id), frame.at
 
 
-def _variant_rows(lookup: Lookup) -> Iterator[TextRow]:
+def _variant_rows(lookup: Lookup) -> _Rows:
     for each in lookup.architecture.variants.values():
-        yield (
-            each.id,
-            each.title,
-            ", ".join(each.of),
-            each.without or "",
-            ", ".join(each.drop),
-            str(len(each.changes)),
-            str(each.at),
-        )
+        yield each.id, each.title, each.of, each.without, each.drop, len(each.changes), each.at
 
 
 def _list_plain_rows(lookup: Lookup, section: str) -> tuple[tuple[str, ...], list[TextRow]]:
@@ -313,7 +251,7 @@ def _list_plain_rows(lookup: Lookup, section: str) -> tuple[tuple[str, ...], lis
 
 
 # The column names are the header of what `archgen list` writes, so they are visible to users.
-_TABLES_BY_KIND: dict[str, tuple[tuple[str, ...], Callable[[Lookup], Iterator[TextRow]]]] = {
+_TABLES_BY_KIND: dict[str, tuple[tuple[str, ...], Callable[[Lookup], _Rows]]] = {
     "components": (("id", "title", "owner", "role", "inputs", "outputs", "nodes", "place"), _component_rows),
     "nodes": (("id", "implements", "owner", "package", "status", "host", "ros_name", "place"), _node_rows),
     "groups": (("id", "title", "owner", "components", "place"), _group_rows),

@@ -8,7 +8,7 @@ from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, Severity, phrase_severity_counts
 from archgen.views import element_references, inline_text
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Column, Inlines, Status, Table, Text
+from archgen.views.shapes import Inlines, Status, Table, Text, make_columns
 
 _SEVERITY_STATES: Mapping[Severity, Status] = {
     Severity.ERROR: "error",
@@ -32,13 +32,7 @@ def make_finding_table(
         )
         for finding in sorted(findings, key=lambda each: -each.effective_severity.rank)
     )
-    columns = (
-        Column("Severity", 0.6),
-        Column("Finding", 3),
-        Column("Owner", 0.8),
-        Column("Place", 1.3),
-        Column("Rule", 1),
-    )
+    columns = make_columns(("Severity", 0.6), ("Finding", 3), ("Owner", 0.8), ("Place", 1.3), ("Rule", 1))
     return Table(anchor, "Open points", columns, rows) if rows else None
 
 

@@ -13,7 +13,7 @@ from archgen.views import element_references, inline_text
 from archgen.views.elements.frame_users import NOBODY, index_frame_ports, list_shown_frames
 from archgen.views.elements.functional_level import describe_purpose
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Column, Inlines, Table, Text
+from archgen.views.shapes import Column, Inlines, Table, Text, make_columns
 
 
 def make_group_table(lookup: Lookup) -> Table | None:
@@ -47,12 +47,8 @@ def make_connection_table(
         )
         for connection in selected_connections
     )
-    columns = (
-        Column("Input", 1.6),
-        Column("Comes from", 1.6),
-        Column("Type", 1.2),
-        Column("Message", 1.6),
-        Column("Edges", 0.5, "right"),
+    columns = make_columns(
+        ("Input", 1.6), ("Comes from", 1.6), ("Type", 1.2), ("Message", 1.6), ("Edges", 0.5, "right")
     )
     return Table(anchor, "All connections", columns, rows, wide=True) if rows else None
 
@@ -133,16 +129,14 @@ def make_frame_table(lookup: Lookup) -> Table | None:
             link_declared_frame(architecture, frame.parent) if frame.parent is not None else _mute_words("a root"),
             link_writer(architecture, frame) if frame.parent is not None else (),
             _rate_cell(frame),
-            inline_text.join_inlines(_link_port(architecture, port) for port in ports_by_frame.get(frame.id, ())),
+            inline_text.join_inlines(
+                inline_text.port_id_link(architecture, port) for port in ports_by_frame.get(frame.id, ())
+            ),
         )
         for frame in frames
     )
-    columns = (
-        Column("Frame", 1.2),
-        Column("Placed in"),
-        Column("Written by", 1.2),
-        Column("Rate", 0.6, "right"),
-        Column("Data in it", 1.8),
+    columns = make_columns(
+        ("Frame", 1.2), "Placed in", ("Written by", 1.2), ("Rate", 0.6, "right"), ("Data in it", 1.8)
     )
     # Frames have no page of their own: references to one lead to its row.
     anchors = tuple(f"frame:{frame.id}" for frame in frames)
@@ -173,10 +167,6 @@ def _rate_cell(frame: Frame) -> Inlines:
     if frame.parent is None:
         return ()
     return _mute_words("static") if frame.static else inline_text.quantity_to_inlines(frame.rate)
-
-
-def _link_port(architecture: Architecture, port_id: str) -> Inlines:
-    return inline_text.port_link(architecture, architecture.outputs.get(port_id) or architecture.inputs[port_id])
 
 
 def _mute_words(words: str) -> Inlines:

@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable, Iterator
 from archgen.model.requirement import Requirement, TreeRow, add_above, walk_tree
 from archgen.views import inline_text, requirement_servers
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Column, Inlines, Table, Text, drop_empty_columns
+from archgen.views.shapes import Column, Inlines, Table, Text, drop_empty_columns, make_columns
 
 _INDENT = "\u2003"
 _MAX_INDENT = 6
@@ -18,13 +18,8 @@ def make_requirement_table(lookup: Lookup, selected_requirements: Iterable[Requi
     """List requirements with what serves and verifies them: as a tree where some are part of others."""
     selected = {requirement.id: requirement for requirement in selected_requirements}
     rows = tuple(_make_row(lookup, selected[row.id], row) for row in _order_rows(lookup, selected))
-    columns = (
-        Column("Id", 0.5),
-        Column("Requirement", 1.8),
-        Column("Use cases", 1.0),
-        Column("Served by", 1.8),
-        Column("Verified by", 1.4),
-        Column("State", 0.7),
+    columns = make_columns(
+        ("Id", 0.5), ("Requirement", 1.8), ("Use cases", 1.0), ("Served by", 1.8), ("Verified by", 1.4), ("State", 0.7)
     )
     if not rows:
         return None
@@ -49,9 +44,15 @@ def _make_row(lookup: Lookup, requirement: Requirement, row: TreeRow) -> tuple[I
         note = inline_text.to_inlines(requirement.title, Text(" (also above)", muted=True))
         return ((link,), (*_indent(row.depth), *note), (), (), (), ())
     shows_state = bool(lookup.requirement_trace.parts) or lookup.requirement_trace.is_verification_told
+    words = " · ".join(word for word in (requirement.kind, requirement.priority) if word)
+    indent = _INDENT * min(row.depth, _MAX_INDENT)
     return (
         (link,),
-        (*_indent(row.depth), *_title_cell(requirement, row.depth)),
+        (
+            *_indent(row.depth),
+            Text(requirement.title),
+            *((Text(f"{indent}{words}", muted=True, line_break=True),) if words else ()),
+        ),
         inline_text.join_inlines(use_case_link(lookup, name) for name in requirement.use_cases),
         _server_cell(lookup, requirement),
         _verifier_cell(lookup, requirement),
@@ -65,13 +66,6 @@ def _indent(depth: int) -> Inlines:
         return ()
     depth_words = f"{depth} " if depth > _MAX_INDENT else ""
     return (Text(f"{_INDENT * min(depth, _MAX_INDENT)}{depth_words}", muted=True),)
-
-
-def _title_cell(requirement: Requirement, depth: int) -> Inlines:
-    """Return the title, and below it kind and priority, indented as the title is."""
-    words = " · ".join(word for word in (requirement.kind, requirement.priority) if word)
-    indent = _INDENT * min(depth, _MAX_INDENT)
-    return (Text(requirement.title), *((Text(f"{indent}{words}", muted=True, line_break=True),) if words else ()))
 
 
 def _server_cell(lookup: Lookup, requirement: Requirement) -> Inlines:

@@ -6,11 +6,11 @@ import shlex
 from collections.abc import Collection, Iterator, Mapping
 
 from archgen.bringup.plan_shapes import StartPlan, StartStep
-from archgen.bringup.start_plan import describes_start, make_start_plan
+from archgen.bringup.start_plan import make_start_plan
 from archgen.model.start_up import PHASES
 from archgen.views import inline_text, start_phrases
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Block, Bullets, Column, Inlines, Paragraph, Table, Text
+from archgen.views.shapes import Block, Bullets, Inlines, Paragraph, Table, Text, make_columns
 
 _LEAD = (
     "The steps of the start-up in an order in which they can be started one by one. A phase begins when all of the one before is "
@@ -18,18 +18,12 @@ _LEAD = (
 )
 _MAX_WAITS = 8
 """So many steps are named for which one step waits, those that are needed most first; the rest is counted."""
-_COLUMNS = (
-    Column("Step", 0.4, "right"),
-    Column("What starts", 1.4),
-    Column("How", 2.2),
-    Column("Waits for", 2),
-    Column("Up when", 1.4),
-)
+_COLUMNS = make_columns(("Step", 0.4, "right"), ("What starts", 1.4), ("How", 2.2), ("Waits for", 2), ("Up when", 1.4))
 
 
 def make_start_blocks(lookup: Lookup) -> list[Block]:
     """Make the tables of the phases and what is said below them; nothing where the project does not describe its start-up."""
-    if not describes_start(lookup.architecture):
+    if not lookup.architecture.describes_start():
         return []
     plan = make_start_plan(lookup.architecture)
     steps = {step.id: step for step in plan.steps}
@@ -144,7 +138,7 @@ def _mute_words(words: str) -> Inlines:
 START_COLUMNS = ("number", "id", "kind", "phase", "host", "command", "waits_for", "up_when", "state", "place")
 
 
-def list_start_rows(lookup: Lookup) -> Iterator[tuple[str, ...]]:
+def list_start_rows(lookup: Lookup) -> Iterator[tuple[object, ...]]:
     """Yield the shown steps of the start-up, with their numbers in the whole plan."""
     architecture = lookup.architecture
     for number, step in list_shown_steps(lookup, make_start_plan(architecture)):

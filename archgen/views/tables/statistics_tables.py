@@ -160,7 +160,9 @@ def make_growth_charts(history: History) -> tuple[Chart, ...]:
     shown_points = history.points[-_MAX_BARS:]
     if len(shown_points) < 2:  # noqa: PLR2004 - one point is no history
         return ()
-    notes = tuple(_note_older_points(history, len(shown_points)))
+    older_count = len(history.points) - len(shown_points)
+    plural = "s" if older_count > 1 else ""
+    notes = (f"The table has {older_count} older {history.by}{plural} too.",) if older_count else ()
     first, last = shown_points[0], shown_points[-1]
     progress_text = f"{_format_mapped(first)} in {name_point(first, history)}, {_format_mapped(last)} in {name_point(last, history)}."
     findings_text = f"{count_findings(first)} findings in {name_point(first, history)}, {count_findings(last)} in {name_point(last, history)}."
@@ -329,11 +331,3 @@ def count_findings(point: HistoryPoint) -> int:
     """Count the findings of all severities."""
     findings = point.project_row.findings
     return findings.error + findings.warning + findings.note
-
-
-def _note_older_points(history: History, shown_count: int) -> list[str]:
-    """Return a note on points that only the table has."""
-    older_count = len(history.points) - shown_count
-    return (
-        [f"The table has {older_count} older {history.by}{'s' if older_count > 1 else ''} too."] if older_count else []
-    )

@@ -8,7 +8,7 @@ from archgen.model.port_media import name_medium
 from archgen.views import element_references, inline_text
 from archgen.views.elements import promise_words, type_fields
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Column, Inlines, Table, Text
+from archgen.views.shapes import Inlines, Table, Text, make_columns
 from archgen.views.tables.functional_tables import shown_connections
 
 
@@ -41,12 +41,12 @@ def make_type_table(lookup: Lookup) -> Table | None:
         )
         for conceptual_type in sorted(shown_types(lookup), key=lambda each: each.name.casefold())
     )
-    columns = (
-        Column("Conceptual type", 1.3),
-        Column("ROS message", 1.9),
-        Column("Size", 0.9, "right"),
-        Column("Outputs", 0.5, "right"),
-        Column("Remarks", 1.6),
+    columns = make_columns(
+        ("Conceptual type", 1.3),
+        ("ROS message", 1.9),
+        ("Size", 0.9, "right"),
+        ("Outputs", 0.5, "right"),
+        ("Remarks", 1.6),
     )
     return Table("table:types", "Mapping of conceptual types to ROS messages", columns, rows) if rows else None
 

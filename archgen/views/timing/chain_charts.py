@@ -50,11 +50,17 @@ def make_chain_chart(lookup: Lookup, timing_lookup: TimingLookup, result: ChainR
         describe_chain_verdict(result, timing_lookup),
         tuple(_make_term_bars(lookup, timing_lookup, result)),
     )
+    length = None if result.best.value is None else to_float(result.best.value / _NS_PER_MS)
+    segment = BarSegment(length, "best", "", f"best case: {value_format.display_lower_bound(result.best)}")
     return Chart(
         f"chains/{result.id}",
         f"{title}: how the time adds up",
         "ms",
-        (*term_bars, _bound_bar(result), _best_case_bar(result)),
+        (
+            *term_bars,
+            _bound_bar(result),
+            ChartBar("At the earliest", (segment,), value_format.display_lower_bound(result.best)),
+        ),
         limit=(to_float(deadline / _NS_PER_MS), f"deadline {value_format.display_duration(TimingValue(deadline))}")
         if deadline
         else None,
@@ -140,13 +146,6 @@ def _bound_bar(result: ChainResult) -> ChartBar:
     )
 
 
-def _best_case_bar(result: ChainResult) -> ChartBar:
-    """Draw the best case."""
-    length = None if result.best.value is None else to_float(result.best.value / _NS_PER_MS)
-    segment = BarSegment(length, "best", "", f"best case: {value_format.display_lower_bound(result.best)}")
-    return ChartBar("At the earliest", (segment,), value_format.display_lower_bound(result.best))
-
-
 def describe_chain_verdict(result: ChainResult, timing_lookup: TimingLookup) -> str:
     """Describe in one sentence whether a chain meets its deadline, and by how much."""
     bound, deadline = result.bound, result.deadline
@@ -192,10 +191,8 @@ def _legend_keys(result: ChainResult) -> Iterator[str]:
     for kind in _TERM_KINDS:
         if any(getattr(term, kind).value for term in result.terms):
             yield kind
-    if any(_has_unknown_part(term) for term in result.terms) or not result.bound.complete:
+    if (
+        any(any(value.value is None for value in (term.sampling, term.response, term.link)) for term in result.terms)
+        or not result.bound.complete
+    ):
         yield "unknown"
-
-
-def _has_unknown_part(term: ChainTerm) -> bool:
-    """Whether any part of a step is unknown."""
-    return any(value.value is None for value in (term.sampling, term.response, term.link))

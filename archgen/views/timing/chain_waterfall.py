@@ -66,7 +66,10 @@ def make_waterfall(lookup: Lookup, timing_lookup: TimingLookup, result: ChainRes
         return None
     advice = advise_on_chain(timing_lookup.analysis, result)
     lead = advice.lateness if advice else chain_charts.describe_chain_verdict(result, timing_lookup)
-    total, deadline = _sum_known(result.terms), result.deadline.value if result.deadline else None
+    total, deadline = (
+        sum_fractions(map(chain_charts.sum_known_parts, result.terms)),
+        result.deadline.value if result.deadline else None,
+    )
     axis = _make_axis(result.terms, total)
     step_limit = axis.find_share(deadline) if deadline is not None and deadline <= total else None
     whole = max(total, deadline or Fraction(0)) or Fraction(1)
@@ -95,10 +98,6 @@ def _describe_cut(axis: _CutAxis) -> str:
         if start
         else f"The first {length} are drawn short."
     )
-
-
-def _sum_known(terms: Sequence[ChainTerm]) -> Fraction:
-    return sum_fractions(map(chain_charts.sum_known_parts, terms))
 
 
 def _format_time(time: Fraction) -> str:
@@ -204,9 +203,12 @@ def _make_steps(
                 start_share = pieces[-1].end if pieces else axis.find_share(time)
                 end_share = min(1.0, start_share + _UNKNOWN_LENGTH)
                 pieces.append(WaterfallPiece("unknown", start_share, end_share, f"{word} for how long, nobody knows"))
+        owners = inline_text.owner_links(lookup.architecture, _list_owners(lookup, timing_lookup, term.activity))
+        activity = timing_lookup.analysis.system.activities.get(term.activity)
+        host = inline_text.host_link(lookup.architecture, activity.host) if activity and activity.host else ()
         yield WaterfallStep(
             timing_tables.activity_link(timing_lookup, term.activity)[0],
-            _describe_place(lookup, timing_lookup, term),
+            inline_text.join_inlines(tuple(part for part in (owners, host) if part)),
             tuple(pieces),
             _describe_step(term),
         )
@@ -220,14 +222,6 @@ def _describe_step(term: ChainTerm) -> str:
         if value.value or value.value is None
     ]
     return " · ".join(filter(None, (", ".join(phrases) or "adds no time", term.why)))
-
-
-def _describe_place(lookup: Lookup, timing_lookup: TimingLookup, term: ChainTerm) -> Inlines:
-    """Name the owner of a step and its host."""
-    owners = inline_text.owner_links(lookup.architecture, _list_owners(lookup, timing_lookup, term.activity))
-    activity = timing_lookup.analysis.system.activities.get(term.activity)
-    host = inline_text.host_link(lookup.architecture, activity.host) if activity and activity.host else ()
-    return inline_text.join_inlines(tuple(part for part in (owners, host) if part))
 
 
 def _list_owners(lookup: Lookup, timing_lookup: TimingLookup, activity_id: str) -> tuple[str, ...]:

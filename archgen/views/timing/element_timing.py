@@ -13,7 +13,7 @@ from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.system.timing_system import Activity
 from archgen.views import element_references, inline_text
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Block, Column, Fact, Figure, Inlines, Table, Text, show_facts
+from archgen.views.shapes import Block, Fact, Figure, Inlines, Table, Text, make_columns, show_facts
 from archgen.views.timing import chain_charts, load_charts, timing_tables, use_tables, value_format
 from archgen.views.timing.late_run_charts import make_late_run_figures
 from archgen.views.timing.timing_lookup import TimingLookup
@@ -59,7 +59,11 @@ def make_chain_blocks(
             "At the earliest",
             timing_tables.figure_cell(value_format.display_lower_bound(result.best), result.best),
         ),
-        Fact("", "From the earliest to the latest", _spread_cell(result)),
+        Fact(
+            "",
+            "From the earliest to the latest",
+            () if result.spread is None else timing_tables.duration_cell(TimingValue(result.spread)),
+        ),
         Fact(
             "",
             "Reaction time without the first wait",
@@ -86,13 +90,13 @@ def make_chain_blocks(
     name = f"chains/{result.id}"
     title = f"{chain.title}: how the time adds up"
     rows = tuple(_term_row(lookup, timing_lookup, result, index) for index in range(len(result.terms)))
-    columns = (
-        Column("Activity", 1.6),
-        Column("Waits", 0.85, "right"),
-        Column("Responds", 0.85, "right"),
-        Column("Link", 0.7, "right"),
-        Column("Why", 1.8),
-        Column("Place", 1.4),
+    columns = make_columns(
+        ("Activity", 1.6),
+        ("Waits", 0.85, "right"),
+        ("Responds", 0.85, "right"),
+        ("Link", 0.7, "right"),
+        ("Why", 1.8),
+        ("Place", 1.4),
     )
     return (
         show_facts((fact for fact in facts if fact.value and not timing_tables.is_blank(fact.value)), without),
@@ -100,10 +104,6 @@ def make_chain_blocks(
         *make_late_run_figures(lookup, timing_lookup, result),
         *([Table(f"table:{name}", f"{chain.title}: parts of the bound", columns, rows)] if rows else []),
     )
-
-
-def _spread_cell(result: ChainResult) -> Inlines:
-    return () if result.spread is None else timing_tables.duration_cell(TimingValue(result.spread))
 
 
 def _list_advice(timing_lookup: TimingLookup, result: ChainResult) -> Iterator[Fact]:

@@ -22,6 +22,7 @@ from archgen.views.shapes import (
     Waterfall,
     WaterfallPiece,
     WaterfallStep,
+    make_columns,
 )
 from archgen.views.timing import chain_status, load_charts, value_format
 from archgen.views.timing.chain_waterfall import list_known_kinds, list_node_owners
@@ -228,12 +229,7 @@ def _make_cards(lookup: Lookup, shares: dict[str, TimingValue], load: HostLoad) 
     columns: tuple[Column, ...]
     partner_rows = tuple(_make_partner_rows(lookup, shares))
     if partner_rows:
-        columns = (
-            Column("Partner", 1.6),
-            Column("Nodes", 0.6, "right"),
-            Column("Of all cores"),
-            Column("", 0.8, "right"),
-        )
+        columns = make_columns(("Partner", 1.6), ("Nodes", 0.6, "right"), "Of all cores", ("", 0.8, "right"))
         table = Table("table:load/partners", "Load by partner", columns, partner_rows)
         yield DashboardCard("By partner", (table,), 6 if has_cores else 12)
     if has_cores:

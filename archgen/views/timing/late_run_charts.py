@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
-from typing import NamedTuple
 
+from archgen.frozen import NamedTuple
 from archgen.simulation.drawn_orders import describe_orders
 from archgen.simulation.schedule_log import LateSchedule, TrackSpan
 from archgen.timing.analysis import ChainResult

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import field
 from typing import TYPE_CHECKING
 
-from archgen.frozen import dataclass, replace
+from archgen.frozen import dataclass, field, replace
 from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.system.timing_system import Activity

@@ -12,7 +12,7 @@ from archgen.timing.system.timing_system import Activity
 from archgen.views import element_references, inline_text, timing_words
 from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import PeriodStep as Step
-from archgen.views.shapes import Column, Inlines, Status, Table, Text, drop_empty_columns
+from archgen.views.shapes import Column, Inlines, Status, Table, Text, drop_empty_columns, make_columns
 from archgen.views.timing import load_charts, value_format
 from archgen.views.timing.timing_lookup import TimingLookup
 
@@ -24,6 +24,7 @@ TIER_WORDS = {
     "non_preemptive": "by priorities, without preemption",
     "fifo": "first in, first out",
     "edf": "earliest deadline first",
+    "fair": "fair shares of the cores",
     "executor": "single-threaded executor",
     "ros2_executor": "by rounds of the executor",
     "cores": "several cores",
@@ -120,14 +121,14 @@ def make_activity_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | 
         for activity in timing_lookup.analysis.system.activities.values()
         if lookup.scope.shows_node(activity.node)
     )
-    columns = (
-        Column("Activity", 1.5),
-        Column("Behaviour", 0.8),
-        Column("Rate", 0.8, "right"),
-        Column("Longest gap", 0.8, "right"),
-        Column("Source of the rate", 1.7),
-        Column("Response", 0.9, "right"),
-        Column("How it was found", 1.3),
+    columns = make_columns(
+        ("Activity", 1.5),
+        ("Behaviour", 0.8),
+        ("Rate", 0.8, "right"),
+        ("Longest gap", 0.8, "right"),
+        ("Source of the rate", 1.7),
+        ("Response", 0.9, "right"),
+        ("How it was found", 1.3),
     )
     return (
         Table("table:timing", "Behaviour, rate and response of every activity", columns, rows, wide=True)
@@ -216,14 +217,14 @@ def make_load_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | None
         )
         for name, load in rank_hosts(timing_lookup)
     )
-    columns = (
-        Column("Host", 1.2),
-        Column("Cores", 0.5, "right"),
-        Column("Load of all cores", 0.9, "right"),
-        Column("Rate-monotonic bound", 0.8, "right"),
-        Column("Earliest-deadline bound", 0.8, "right"),
-        Column("Verdict", 1.1),
-        Column("Figures missing", 1.6),
+    columns = make_columns(
+        ("Host", 1.2),
+        ("Cores", 0.5, "right"),
+        ("Load of all cores", 0.9, "right"),
+        ("Rate-monotonic bound", 0.8, "right"),
+        ("Earliest-deadline bound", 0.8, "right"),
+        ("Verdict", 1.1),
+        ("Figures missing", 1.6),
     )
     return drop_blank_columns(Table("table:load", "Load of the hosts", columns, rows)) if rows else None
 
@@ -241,13 +242,13 @@ def make_traffic_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | N
         )
         for name, load in timing_lookup.analysis.links.items()
     )
-    columns = (
-        Column("Link", 1.2),
-        Column("Traffic", 0.9, "right"),
-        Column("Share", 0.7, "right"),
-        Column("Burst", 0.8, "right"),
-        Column("Longest queueing", 0.9, "right"),
-        Column("Figures missing", 1.5),
+    columns = make_columns(
+        ("Link", 1.2),
+        ("Traffic", 0.9, "right"),
+        ("Share", 0.7, "right"),
+        ("Burst", 0.8, "right"),
+        ("Longest queueing", 0.9, "right"),
+        ("Figures missing", 1.5),
     )
     return drop_blank_columns(Table("table:traffic", "Traffic on links", columns, rows)) if rows else None
 
@@ -268,11 +269,8 @@ def make_bandwidth_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table |
         )
         for name in topic_names
     )
-    columns = (
-        Column("Topic", 2.2),
-        Column("Message", 0.8, "right"),
-        Column("Published", 0.9, "right"),
-        Column("Delivered", 0.9, "right"),
+    columns = make_columns(
+        ("Topic", 2.2), ("Message", 0.8, "right"), ("Published", 0.9, "right"), ("Delivered", 0.9, "right")
     )
     return Table("table:bandwidth", "Traffic of topics", columns, rows) if rows else None
 

@@ -12,7 +12,7 @@ from archgen.timing.chains.unfound_bounds import UnfoundPlace, group_by_host
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Block, Bullets, Column, Inlines, Paragraph, Table, Text
+from archgen.views.shapes import Block, Bullets, Inlines, Paragraph, Table, Text, make_columns
 from archgen.views.timing import chain_charts, chain_status, load_charts, timing_tables, value_format
 from archgen.views.timing.timing_lookup import TimingLookup
 
@@ -141,15 +141,15 @@ def make_bound_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | Non
         for result in timing_lookup.chains
         if result.id in lookup.architecture.chains
     )
-    columns = (
-        Column("Chain", 1.6),
-        Column("At the latest", 0.9, "right"),
-        Column("At the earliest", 0.9, "right"),
-        Column("Largest step", 1.5),
-        Column("Deadline", 0.8, "right"),
-        Column("Margin", 0.8, "right"),
-        Column("Verdict", 0.7),
-        Column("Figures missing", 1.6),
+    columns = make_columns(
+        ("Chain", 1.6),
+        ("At the latest", 0.9, "right"),
+        ("At the earliest", 0.9, "right"),
+        ("Largest step", 1.5),
+        ("Deadline", 0.8, "right"),
+        ("Margin", 0.8, "right"),
+        ("Verdict", 0.7),
+        ("Figures missing", 1.6),
     )
     # The same anchor as `make_chain_table`, which this table replaces; only one of them is ever in a document.
     return (

@@ -13,7 +13,7 @@ from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.system.timing_system import Activity
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Block, Column, Fact, Inlines, Paragraph, Table, Text, drop_empty_columns
+from archgen.views.shapes import Block, Fact, Inlines, Paragraph, Table, Text, drop_empty_columns, make_columns
 from archgen.views.timing import timing_tables, value_format
 from archgen.views.timing.timing_lookup import TimingLookup
 
@@ -35,11 +35,8 @@ def make_fused_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | Non
         for fused in timing_lookup.fused_inputs
         if lookup.scope.shows_node(timing_lookup.analysis.system.activities[fused.activity].node)
     )
-    columns = (
-        Column("Activity", 1.5),
-        Column("Takes", 1.2),
-        Column("Apart, at most", 0.8, "right"),
-        Column("Age when it begins, at most", 2.5),
+    columns = make_columns(
+        ("Activity", 1.5), ("Takes", 1.2), ("Apart, at most", 0.8, "right"), ("Age when it begins, at most", 2.5)
     )
     return Table("table:fused", "Messages that are used together", columns, rows) if rows else None
 
@@ -71,12 +68,8 @@ def make_resource_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | 
         )
         for name, load in analysis.resources.items()
     )
-    columns = (
-        Column("Resource", 1),
-        Column("Host", 0.8),
-        Column("Load", 0.6, "right"),
-        Column("Verdict", 0.8),
-        Column("Longest use, waiting included", 2.5),
+    columns = make_columns(
+        ("Resource", 1), ("Host", 0.8), ("Load", 0.6, "right"), ("Verdict", 0.8), ("Longest use, waiting included", 2.5)
     )
     return Table("table:resources", "Resources that work on one use at a time", columns, rows) if rows else None
 
@@ -94,11 +87,8 @@ def make_measured_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | 
         for activity in timing_lookup.analysis.system.activities.values()
         if (activity.percentiles or activity.wcet_measured) and lookup.scope.shows_node(activity.node)
     )
-    columns = (
-        Column("Activity", 1.5),
-        Column("Measured", 2),
-        Column("Longest", 0.8, "right"),
-        Column("Where the longest is from", 1.4),
+    columns = make_columns(
+        ("Activity", 1.5), ("Measured", 2), ("Longest", 0.8, "right"), ("Where the longest is from", 1.4)
     )
     return (
         Table("table:measured", "Measured execution times: bounds rest on the longest", columns, rows) if rows else None
@@ -147,7 +137,11 @@ def make_edge_blocks(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator[Bl
         if _is_any_shown(lookup, timing_lookup, edge.arc.source, edge.arc.target)
     ]
     shown_edges = [edge for edge in all_edges if edge.arc.target not in on_demand_ids]
-    notable_edges = sorted((edge for edge in shown_edges if edge.loss.value or edge.beat.value), key=_loss_order)
+    # Greatest loss first, then the ids.
+    notable_edges = sorted(
+        (edge for edge in shown_edges if edge.loss.value or edge.beat.value),
+        key=lambda edge: (-(edge.loss.value or 0), edge.arc.source, edge.arc.topic, edge.arc.target),
+    )
     unknown_count = sum(edge.loss.value is None for edge in shown_edges)
     if not notable_edges and not unknown_count:
         return
@@ -164,15 +158,15 @@ def make_edge_blocks(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator[Bl
         )
     yield Paragraph(inline_text.to_inlines(" ".join(sentences)))
     if notable_edges:
-        columns = (
-            Column("From", 1.6),
-            Column("Topic", 2),
-            Column("To", 1.6),
-            Column("Not read", 0.8, "right"),
-            Column("Times read", 0.7, "right"),
-            Column("Beat", 0.8, "right"),
-            Column("Burst", 0.8, "right"),
-            Column("Queue", 0.6, "right"),
+        columns = make_columns(
+            ("From", 1.6),
+            ("Topic", 2),
+            ("To", 1.6),
+            ("Not read", 0.8, "right"),
+            ("Times read", 0.7, "right"),
+            ("Beat", 0.8, "right"),
+            ("Burst", 0.8, "right"),
+            ("Queue", 0.6, "right"),
         )
         rows = tuple(_edge_row(timing_lookup, edge) for edge in notable_edges)
         table = Table("table:edges", "Topics whose readers keep another pace", columns, rows, wide=True)
@@ -183,11 +177,6 @@ def _is_any_shown(lookup: Lookup, timing_lookup: TimingLookup, *activity_ids: st
     """Whether any of the activities runs in a shown node."""
     activities = timing_lookup.analysis.system.activities
     return any(lookup.scope.shows_node(activities[name].node) for name in activity_ids if name in activities)
-
-
-def _loss_order(edge: EdgeFit) -> tuple[object, ...]:
-    """Return the sort key of an edge: greatest loss first, then the ids, for a stable order."""
-    return (-(edge.loss.value or 0), edge.arc.source, edge.arc.topic, edge.arc.target)
 
 
 def _edge_row(timing_lookup: TimingLookup, edge: EdgeFit) -> tuple[Inlines, ...]:
@@ -238,11 +227,11 @@ def make_service_blocks(lookup: Lookup, timing_lookup: TimingLookup) -> Iterator
         for server, load in timing_lookup.analysis.services.items()
         if load.callers and _is_any_shown(lookup, timing_lookup, server, *load.callers)
     )
-    columns = (
-        Column("Server", 1.2),
-        Column("Callers", 0.6, "right"),
-        Column("Answers all of them within", 1, "right"),
-        Column("A caller that waits for its answers responds within", 2.4),
+    columns = make_columns(
+        ("Server", 1.2),
+        ("Callers", 0.6, "right"),
+        ("Answers all of them within", 1, "right"),
+        ("A caller that waits for its answers responds within", 2.4),
     )
     if rows:
         yield Table("table:services-load", "Servers and their callers, one call each at once", columns, rows)

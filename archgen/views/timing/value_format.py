@@ -7,6 +7,7 @@ from decimal import ROUND_HALF_UP, Decimal
 from fractions import Fraction
 from functools import lru_cache
 
+from archgen.diagnostics.common_wording import join_first
 from archgen.frozen import replace
 from archgen.timing import analysis
 from archgen.timing.analysis import Analysis
@@ -156,7 +157,7 @@ def describe_missing(value: TimingValue, analysis: Analysis, limit: int | None =
         names_by_lack.setdefault(_describe_lack(name, analysis), []).append(name)
     # What is no figure of an element has words of its own.
     other_phrases = [_describe_other_lack(name) for name in names_by_lack.pop("", ())]
-    phrases = [f"{lack} {_join_names(names, limit)}" for lack, names in names_by_lack.items()]
+    phrases = [f"{lack} {join_first(names, limit or len(names))}" for lack, names in names_by_lack.items()]
     unknown_text = [f"{' and '.join(phrases)} unknown"] if phrases else []
     return "; ".join((*unknown_text, *other_phrases))
 
@@ -166,13 +167,6 @@ def _describe_other_lack(missing_name: str) -> str:
     if is_missing_cores(missing_name):
         return f"{missing_name} not written"
     return f"no link joins {' and '.join(missing_name.split(' - '))}"
-
-
-def _join_names(names: list[str], limit: int | None) -> str:
-    """Join names with commas; beyond the limit only their number is given."""
-    if limit is None or len(names) <= limit:
-        return ", ".join(names)
-    return f"{', '.join(names[:limit])} and {len(names) - limit} more"
 
 
 def _describe_lack(element_id: str, analysis: Analysis) -> str:

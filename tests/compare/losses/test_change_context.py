@@ -232,9 +232,7 @@ def test_how_much_worse_a_chain_is(before: Any, after: Any, reason: str) -> None
 
 def test_a_host_of_several_cores(compared: Compared) -> None:
     base = (
-        TIMED[: TIMED.index("chains:")]
-        .replace("pc: {cores: 1}", "pc: {cores: 2}")
-        .replace("wcet: 20 ms", "wcet: 60 ms")
+        TIMED[: TIMED.index("chains:")].replace("pc: {cores: 1", "pc: {cores: 2").replace("wcet: 20 ms", "wcet: 60 ms")
     )
     assert broken(compared, base, [("wcet: 2 ms", "wcet: 150 ms")]) == [
         "sensing.camera/timing.wcet sssa: overloads the host `pc` (105 % of its 2 cores), where `mind` of SSSA runs"

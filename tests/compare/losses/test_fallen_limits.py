@@ -15,7 +15,7 @@ project: {id: p, title: P}
 partners: {a: A, b: B, c: C}
 types: {Rows: std_msgs/msg/Int32}
 review: {breaking: error}
-hosts: {pc: {cores: 1}}
+hosts: {pc: {cores: 1, scheduling: fixed_priority}}
 groups:
   sense:
     owner: a

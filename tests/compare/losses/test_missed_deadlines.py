@@ -33,7 +33,7 @@ nodes:
   eye: {implements: camera, timing: {rate: 10 Hz, wcet: 2 ms}, host: pc}
   mind: {implements: tracker, timing: {behaviour: event, wcet: 20 ms}, host: pc}
   feet: {implements: planner, timing: {behaviour: event, wcet: 5 ms}, host: base}
-hosts: {pc: {cores: 1}, base: {cores: 1}}
+hosts: {pc: {cores: 1, scheduling: fixed_priority}, base: {cores: 1, scheduling: fixed_priority}}
 links: {lan: {connects: [pc, base], bandwidth: 10 Mbit/s, latency: {best: 1 ms, worst: 2 ms}}}
 chains: {react: {through: [camera, tracker, planner], deadline: 250 ms}}
 """
@@ -42,7 +42,7 @@ CHAINS = BASE[BASE.index("chains:") :]
 LATE_START = ("behaviour: event, wcet: 20 ms", "behaviour: event, jitter: 1 us, wcet: 20 ms")
 # Three cores, which three fans share with the others.
 CROWDED = (
-    BASE.replace("pc: {cores: 1}", "pc: {cores: 3}")
+    BASE.replace("pc: {cores: 1, scheduling: fixed_priority}", "pc: {cores: 3, scheduling: fixed_priority}")
     .replace("rate: 10 Hz, wcet: 2 ms", "rate: 5 Hz, wcet: 10 ms")
     .replace(
         "      tracker: {",
@@ -321,8 +321,10 @@ TABLE = {
         ["tracking.tracker/timing.wcet certh: overloads the host `pc` (122 % of its core), where `eye` of CERTH runs"],
     ),
     "a host with a core less": (
-        BASE[: BASE.index("chains:")].replace("pc: {cores: 1}", "pc: {cores: 2}").replace("wcet: 20 ms", "wcet: 99 ms"),
-        [("pc: {cores: 2}", "pc: {cores: 1}")],
+        BASE[: BASE.index("chains:")]
+        .replace("pc: {cores: 1, scheduling: fixed_priority}", "pc: {cores: 2, scheduling: fixed_priority}")
+        .replace("wcet: 20 ms", "wcet: 99 ms"),
+        [("pc: {cores: 2, scheduling: fixed_priority}", "pc: {cores: 1, scheduling: fixed_priority}")],
         both(
             "pc/cores",
             "overloads the host `pc` (101 % of its core), where `eye` of CERTH and `mind` of SSSA run",

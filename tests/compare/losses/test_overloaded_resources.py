@@ -128,7 +128,7 @@ LINKS = {
     ),
     "a topic that is new on the link": (
         LINKED,
-        [("{tracks: tracker.tracks}", "{tracks: tracker.tracks, image: camera.image}"), ("cores: 1}, base", "cores: 2}, base")],
+        [("{tracks: tracker.tracks}", "{tracks: tracker.tracks, image: camera.image}"), ("cores: 1, scheduling: fixed_priority}, base", "cores: 2, scheduling: fixed_priority}, base")],
         ["moving.planner.image sssa: asks the link `lan` for 8080 % of its bandwidth; `mind` of SSSA uses it"],
     ),
 }  # fmt: skip

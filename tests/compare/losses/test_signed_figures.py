@@ -16,7 +16,7 @@ from archgen.compare.compare_versions import compare_versions
 from archgen.compare.losses.change_context import ChangeContext
 from archgen.compare.losses.separated_causes import VersionsWithout
 from archgen.compare.match_elements import match_elements
-from archgen.products.comparison_input import make_comparison_input
+from archgen.products.compared_versions import make_comparison_input
 from archgen.timing.run_analysis import analyse_for_chains
 from archgen.views.agreement.partner_agreement import make_agreement
 from archgen.views.agreement.signed_terms import list_departures

@@ -32,7 +32,7 @@ FAN = (
     .replace("      tracker: {", "      fan: {outputs: {wind: Wind}}\n      tracker: {")
 )
 BOX = (
-    ROBOT.replace("pc: {cores: 1}", "pc: {cores: 2}")
+    ROBOT.replace("pc: {cores: 1, scheduling: fixed_priority}", "pc: {cores: 2, scheduling: fixed_priority}")
     .replace("wcet: 2 ms}, host: pc", "wcet: 30 ms}, container: box")
     .replace("behaviour: event, wcet: 20 ms}, host: pc", "behaviour: event, jitter: 1 us, wcet: 20 ms}, container: box")
     + "containers: {box: {host: pc, threads: 2}}\n"
@@ -60,8 +60,8 @@ CASES = {
         both("tracking.fan/timing.wcet", f"leaves the {MET} ~154 ms, without a bound; `eye` of CERTH and `feet` of TUM are on it", "certh", "tum"),
     ),
     "the cores of the host": (
-        ROBOT.replace("pc: {cores: 1}", "pc: {cores: 2}").replace(*LATE_START).replace("wcet: 20 ms", "wcet: 80 ms"),
-        [("pc: {cores: 2}", "pc: {cores: 1}")],
+        ROBOT.replace("pc: {cores: 1, scheduling: fixed_priority}", "pc: {cores: 2, scheduling: fixed_priority}").replace(*LATE_START).replace("wcet: 20 ms", "wcet: 80 ms"),
+        [("pc: {cores: 2, scheduling: fixed_priority}", "pc: {cores: 1, scheduling: fixed_priority}")],
         both("pc/cores", f"leaves the {MET} ~190 ms, without a bound; {ALL}", "certh", "sssa", "tum"),
     ),
     "the threads of the container": (

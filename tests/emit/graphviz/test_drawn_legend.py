@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from archgen.emit.graphviz.drawn_legend import add_graph_legend
 from archgen.emit.graphviz.placed_scene import Scene
-from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.graphs.graph_folding import add_legend_keys
 from archgen.views.picture_shapes import Arrow, Box, Graph
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from archgen.emit import graphviz
-from archgen.emit.graphviz.glyph_outlines import shorten_glyphs, shorten_path
+from archgen.emit.graphviz.graph_drawing import shorten_glyphs, shorten_path
 from archgen.views.picture_shapes import BarSegment, Chart, ChartBar
 
 

@@ -13,7 +13,7 @@ from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.run_analysis import analyse_architecture
 
 ROBOT = """\
-hosts: {pc: {cores: 2}, auto: {cores: 1}, far: {}}
+hosts: {pc: {cores: 2, scheduling: round_robin}, auto: {cores: 1}, far: {}}
 links: {cable: {connects: [pc, far], latency: 1 ms}}
 groups:
   g:
@@ -57,7 +57,7 @@ def test_a_chain_behind_a_missing_link_names_it(tmp_path: Path) -> None:
 
 # `e` and `f` may start a little late: so they are no part of a run, and each makes the next one wait without end.
 HEAVY = """\
-hosts: {pc: {cores: 1}}
+hosts: {pc: {cores: 1, scheduling: round_robin}}
 groups:
   g:
     components:
@@ -97,7 +97,7 @@ def test_where_no_bound_was_found_is_said_on_one_core_and_on_several(tmp_path: P
 def test_a_search_that_found_nothing_names_the_host_where_that_begins(tmp_path: Path) -> None:
     """What reads on `far` has no bound either, but for no fault of its own: it works at a load of 3 %."""
     text = (
-        HEAVY.replace("{pc: {cores: 1}}", "{pc: {cores: 1}, far: {cores: 1}}")
+        HEAVY.replace("round_robin}}", "round_robin}, far: {cores: 1}}")
         .replace("f: {implements: f, host: pc}", "f: {implements: f, host: pc}, r: {implements: r, host: far}")
         .replace("      p: {", "      r: {inputs: {i: f.o}, timing: {wcet: 1 ms}}\n      p: {")
         .replace("through: [g.s, g.e, g.f]", "through: [g.f, g.r]")

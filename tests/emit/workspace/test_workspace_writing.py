@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from archgen.emit import file_tree
 from archgen.emit.file_tree import OutputError
 from archgen.emit.workspace import workspace_writing
 from archgen.emit.workspace.disk_files import DiskReader, GeneratedFile, find_path_problems
@@ -263,7 +264,8 @@ def test_a_record_says_what_it_read(tmp_path: Path) -> None:
     assert write_run_record(record) == (tmp_path / ".archgen" / "code.json").read_bytes()
 
 
-def test_another_archgen_waits(tmp_path: Path) -> None:
+def test_another_archgen_waits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(file_tree, "_LOCK_TRIES", 2)
     with workspace_writing.lock_workspace(tmp_path), pytest.raises(OutputError, match="another archgen"):
         generate(tmp_path, files(a="1"))
 

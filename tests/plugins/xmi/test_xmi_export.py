@@ -11,8 +11,7 @@ import pytest
 
 from archgen.checking.checked_packing import pack_checked_project
 from archgen.pipeline import CheckedProject, check_project
-from archgen.plugins.xmi.views.uml_tree import IdRegistry
-from archgen.plugins.xmi.views.uml_types import UmlTypes
+from archgen.plugins.xmi.views.uml_types import IdRegistry, UmlTypes
 from archgen.plugins.xmi.xmi_import import read_xmi
 from archgen.products.output_options import OutputOptions
 from archgen.products.project_outputs import render_exported

@@ -61,13 +61,17 @@ def print_reasons(results: Results, word: str) -> Sequence[str]:
 def recompute_response(lines: Sequence[str], name: str) -> Fraction | None:
     """Add up the work below a response, and take off what does not count; None where no work is listed."""
     start = next(at for at, line in enumerate(lines) if line.startswith(f"{name}: response"))
-    total = Fraction(0)
+    total = own = Fraction(0)
     for line in lines[start + 1 :]:
         if re.match(r"\S+: ", line):
             break
         equation = next(read_equations(line), None)
         if equation and re.match(r"\d+ x ", line):
             total += equation.computed
+        elif line.startswith("A = "):
+            own = total
+        elif equation and line.startswith("F = "):
+            total = own + equation.computed
         elif equation and ("comes" in line or "begins" in line):
             total = equation.computed
     return total or None
@@ -80,7 +84,7 @@ def recompute_storing_wait(lines: Sequence[str], name: str) -> Fraction | None:
         return None
     below = lines[start + 1 :]
     end = next((at for at, line in enumerate(below) if re.match(r"\S+: ", line)), len(below))
-    blocked = [next(read_equations(line)).computed for line in below[:end] if line.startswith("B = (")]
+    blocked = [next(read_equations(line)).computed for line in below[:end] if line.startswith(("B = (", "F = "))]
     own_end = next((at for at, line in enumerate(below) if line.startswith("A = ")), end)
     own = [next(read_equations(line)).computed for line in below[:own_end] if re.match(r"\d+ x ", line)]
     return sum((*own, *blocked), Fraction(0))
@@ -117,7 +121,7 @@ def test_the_responses_of_all_tiers_follow_from_the_work_that_is_listed(case_stu
             tiers.add(response.tier)
             count += 1
     assert count > 55
-    assert tiers == {"host", "priorities", "executor", "cores"}
+    assert tiers == {"host", "priorities", "executor", "cores", "fair"}
 
 
 def test_the_largest_gaps_follow_from_the_last_formula_that_is_printed(case_study: Results) -> None:

@@ -14,7 +14,6 @@ from archgen.timing.figures.figure_wording import (
     format_rate,
     format_share,
     format_size,
-    join_first_names,
     name_unknown_reason,
 )
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
@@ -103,13 +102,6 @@ def test_a_share_has_tenths_of_a_per_cent_and_more_where_it_is_small(share: Frac
 
 def test_a_rate_is_in_hertz() -> None:
     assert format_rate(Fraction(15, 2)) == "7.5 Hz"
-
-
-def test_the_first_six_names_are_written_and_the_others_counted() -> None:
-    assert join_first_names(("a",)) == "a"
-    assert join_first_names(tuple("abcdef")) == "a, b, c, d, e, f"
-    assert join_first_names(tuple("abcdefgh")) == "a, b, c, d, e, f and 2 more"
-    assert join_first_names(("a", "b"), 1) == "a and 1 more"
 
 
 @pytest.mark.parametrize(

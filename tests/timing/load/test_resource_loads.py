@@ -39,4 +39,5 @@ def test_a_use_waits_for_one_of_each_other_user() -> None:
         "b @pc": "rate: 10 Hz, wcet: 1 ms, uses: {gpu: 3 ms}",
     }
     gpu = analyse_sketch(nodes, "", HOST).resources["gpu"]
-    assert {name: show_ms(wait) for name, wait in gpu.waits.items()} == {"a": "5", "b": "5"}
+    note = "[gpu serves whoever came first]"
+    assert {name: show_ms(wait) for name, wait in gpu.waits.items()} == {"a": f"5 {note}", "b": f"5 {note}"}

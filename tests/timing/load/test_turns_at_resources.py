@@ -82,23 +82,23 @@ def test_one_use_of_each_other_thread_comes_before(
 ) -> None:
     made = join([user(*each) for each in uses], threads)
     names = find_users(made, "gpu")
-    assert {name: bound_in_turn(made, name, "gpu", names) for name in times} == times
-    assert {name: find_turn_times(made, name) for name in times} == times
+    assert {name: bound_in_turn(made, "gpu", names)[name] for name in times} == times
+    assert {name: find_turn_times(made)[name] for name in times} == times
 
 
 def test_turns_are_known_in_the_order_of_arrival_alone() -> None:
     made = join([user(*each) for each in ALONE], order="fixed_priority")
-    assert find_turn_times(made, "a") is None
-    assert find_turn_times(replace(made, resources={}), "a") is None
+    assert find_turn_times(made)["a"] is None
+    assert find_turn_times(replace(made, resources={}))["a"] is None
 
 
 def test_turns_at_two_resources_add_up() -> None:
     a, b = user("a", 10), user("b", 20)
     both = replace(a, uses={"gpu": ResourceUse(10, 10), "npu": ResourceUse(3, 3)})
     made = join([both, b])
-    assert find_turn_times(made, "a") is None
+    assert find_turn_times(made)["a"] is None
     made = replace(made, resources={key: SharedResource(key, "pc", "fifo") for key in ("gpu", "npu")})
-    assert find_turn_times(made, "a") == 10 + 20 + 3
+    assert find_turn_times(made)["a"] == 10 + 20 + 3
 
 
 def test_what_works_once_is_no_user() -> None:

@@ -23,7 +23,7 @@ _FAR = parse_quantity("1 h", "duration")
 def draw_late_system(seed: int) -> Architecture | None:
     """Return a random system with deadlines; None where a core or an order is written, or no chain has a floor."""
     draw = (random_style_text, random_robot_text, random_threads_text)[seed % 3]
-    drawn = architecture(draw(seed // 3))
+    drawn = architecture(draw(seed // 3), is_fair=True)
     timings = [timing for node in drawn.nodes.values() for timing in node.timing.values()]
     is_pinned = any(timing.core is not None or timing.cores for timing in timings)
     if is_pinned or any(host.scheduling or host.core_scheduling for host in drawn.hosts.values()):

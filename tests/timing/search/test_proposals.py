@@ -24,7 +24,7 @@ _SENSOR = "period: 100 ms, wcet: 1 ms, response: 1 ms"
 
 def test_one_trigger_proves_the_newcomers_robot() -> None:
     """Nothing else can prove its second chain: with nobody in its way it takes 424.8 ms."""
-    asked = architecture(ROBOT)
+    asked = architecture(ROBOT, is_fair=True)
     proposal = propose_for(asked)
     assert proposal.hopeless == {"scan_and_stop": 424_800_000}
     assert proposal.best.late == ()
@@ -38,7 +38,7 @@ def test_one_trigger_proves_the_newcomers_robot() -> None:
 
 
 def test_the_newcomers_robot_is_least_late_without_a_trigger() -> None:
-    asked = architecture(ROBOT)
+    asked = architecture(ROBOT, is_fair=True)
     kept = propose_for(asked).kept_triggers
     alone = find_proposal(
         start_trials(asked, 60), bound_all_chains(analyse_architecture(asked), asked), keep_triggers=True
@@ -88,7 +88,7 @@ def test_a_project_that_is_in_time_is_left_alone() -> None:
 
 
 def test_what_is_proposed_is_proposed_no_second_time() -> None:
-    asked = architecture(ROBOT)
+    asked = architecture(ROBOT, is_fair=True)
     changes = list(map(str, propose_for(asked).best.changes))
     proposal = propose_for(apply_overrides(asked, changes))
     assert (len(proposal.tried), proposal.best.changes) == (1, ())
@@ -141,7 +141,7 @@ def test_where_no_clock_is_to_blame_a_trigger_is_the_last_resort() -> None:
 
 
 def test_tries_are_counted_and_the_same_each_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    asked = architecture(ROBOT)
+    asked = architecture(ROBOT, is_fair=True)
     assert propose_for(asked, 3).is_cut
     assert len(propose_for(asked, 3).tried) == 4
     assert propose_for(asked) == propose_for(asked)

@@ -38,7 +38,7 @@ resources: {gpu: {host: pc, scheduling: fixed_priority}, tpu: {}}
 
 
 def built(timing: str = "") -> TimingSystem:
-    return build_system(architecture(TEXT.replace("TIMING", timing)))[0]
+    return build_system(architecture(TEXT.replace("TIMING", timing), is_fair=True))[0]
 
 
 def mind(timing: str) -> tuple[Activity, int]:
@@ -89,7 +89,7 @@ def test_orders_and_resources_are_those_that_are_written() -> None:
     assert system.core_orders == {("arm", 0): "fifo", ("arm", 2): "round_robin"}
     assert system.resources == {
         "gpu": SharedResource("gpu", "pc", "fixed_priority"),
-        "tpu": SharedResource("tpu", None, None),
+        "tpu": SharedResource("tpu", None, "fifo", is_order_assumed=True),
     }
 
 

@@ -13,16 +13,15 @@ from archgen.compare import Comparison
 from archgen.compare.compare_versions import compare_versions
 from archgen.compare.figure_noise import FigureNoise
 from archgen.emit.data.comparison_json import comparison_record
-from archgen.products.comparison_input import make_comparison_input
-from archgen.views.changes.comparison_document import describe_comparison
+from archgen.products.compared_versions import make_comparison_input
+from archgen.views.changes.comparison_document import ReadingErrors, describe_comparison
 from archgen.views.changes.figure_lines import write_limit_lines, write_noise_line
-from archgen.views.changes.reading_errors import ReadingErrors
 
 PROJECT = """\
 project: {id: p, title: P}
 partners: {a: A, b: B, c: C}
 types: {Rows: std_msgs/msg/Int32}
-hosts: {pc: {cores: 1}}
+hosts: {pc: {cores: 1, scheduling: fixed_priority}}
 groups:
   sense: {owner: a, components: {eye: {outputs: {rows: {type: Rows, promise: {max_gap: 130 ms}}}}}}
   act: {owner: b, components: {base: {inputs: {rows: eye.rows}}}}

@@ -9,7 +9,7 @@ import pytest
 from archgen import pipeline
 from archgen.compare import Comparison
 from archgen.compare.compare_versions import compare_versions
-from archgen.products.comparison_input import make_comparison_input
+from archgen.products.compared_versions import make_comparison_input
 from archgen.views.changes.breaking_items import find_repeated_findings
 from archgen.views.changes.comparison_document import describe_comparison
 

@@ -10,7 +10,7 @@ from archgen.views.elements.element_card import make_card
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.pages.message_pages import MessagePages
 from archgen.views.records.resolved_record import make_record, write_record
-from archgen.views.search.implementation_entries import make_message_entries
+from archgen.views.search import make_message_entries
 from archgen.views.shapes import Facts, Table
 from archgen.views.tables import type_tables
 

@@ -30,7 +30,7 @@ from archgen.views.graphs.graph_folding import MAX_ARROWS, MAX_BOXES, fold_graph
 from archgen.views.graphs.selection_graphs import draw_functional_part, draw_implementation_part
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.picture_shapes import Arrow, Box, Cluster, Graph
-from archgen.views.search.implementation_entries import make_host_entries
+from archgen.views.search import make_host_entries
 from archgen.views.tables.deployment_tables import make_link_table
 from archgen.views.timing.timing_lookup import analyse_with_chains
 from tests.architectures import generated, robot, topics

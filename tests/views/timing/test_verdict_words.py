@@ -8,7 +8,7 @@ import pytest
 
 from archgen import pipeline
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.emit.graphviz.chart_styles import STRETCH_FORMS
+from archgen.emit.graphviz.chart_layout import STRETCH_FORMS
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.shapes import Bullets, Inlines, Paragraph
 from archgen.views.timing import chain_charts, element_timing, load_charts, timing_tables, timing_verdicts
@@ -25,7 +25,7 @@ nodes:
   a: {implements: a, host: pc, timing: {period: 100 ms, COSTS}}
   b: {implements: b, host: pc, timing: {COSTS}}
   c: {implements: c, host: pc, timing: {COSTS}}
-hosts: {pc: {title: Computer, CORES}}
+hosts: {pc: {title: Computer, CORES, scheduling: round_robin}}
 chains: {c: {through: [g.a, g.b, g.c], deadline: LIMIT}}
 """
 

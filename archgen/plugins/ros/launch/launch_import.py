@@ -23,7 +23,8 @@ from archgen.plugins.ros.launch.launch_entities import read_xml_entities, read_y
 from archgen.plugins.ros.launch.launch_files import MAX_LAUNCH_BYTES, LaunchFiles
 from archgen.plugins.ros.launch.launch_run import LaunchRun
 from archgen.plugins.ros.launch.launch_slices import SliceMaker
-from archgen.plugins.ros.launch.python_launch import read_python_launch, read_python_text
+from archgen.plugins.ros.launch.python_launch import read_python_launch
+from archgen.plugins.ros.launch.python_parsing import read_python_text
 from archgen.plugins.ros.launch.server_parameters import give_server_parameters
 
 _ENDINGS = (".launch.py", ".launch.xml", ".launch.yaml", ".launch.yml", ".launch", ".py", ".xml", ".yaml", ".yml")

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 
 from archgen.plugins.ros.launch.launch_actions import LaunchAction, LaunchedNode, join_names
 from archgen.plugins.ros.launch.launch_arguments import LaunchArguments
 from archgen.plugins.ros.launch.launch_context import LaunchContext, LaunchScope
 from archgen.plugins.ros.launch.launch_files import LaunchFiles
-from archgen.plugins.ros.launch.launch_values import OPEN, UnknownValue
+from archgen.plugins.ros.launch.launch_values import OPEN, LaunchValue, UnknownValue
 from archgen.plugins.ros.launch.node_making import NodeMaker
 from archgen.plugins.ros.launch.scope_run import ScopeRun
 from archgen.plugins.ros.launch.server_parameters import ServerParameter, read_server_parameters
@@ -127,15 +128,23 @@ class LaunchRun(ScopeRun):
         is_scoped = action.get("scoped", True)
         is_scoped = is_scoped if isinstance(is_scoped, bool) else self.context.judge(is_scoped) is not False
         pairs = self.resolve_pairs(action.get("configurations"))
+        forwards = action.get("forwards") is None or self.context.judge(action.get("forwards")) is not False
+        with self._enter_scope(action, pairs, is_scoped=is_scoped, keeps_others=forwards):
+            self.run_actions(action.children)
+
+    @contextmanager
+    def _enter_scope(
+        self, action: LaunchAction, pairs: Iterable[tuple[str, LaunchValue]], *, is_scoped: bool, keeps_others: bool
+    ) -> Iterator[None]:
+        """Set values, and a namespace, for what stands in an action; what is not scoped sets them for what follows, too."""
         if is_scoped:
             self.context.push()
-            if action.get("forwards") is not None and self.context.judge(action.get("forwards")) is False:
+            if not keeps_others:
                 self.context.scope.configurations = {}
-        for name, value in pairs:
-            self.context.scope.configurations[name] = value
+        self.context.scope.configurations.update(pairs)
         if action.get("namespace") is not None:
             self.push_namespace(action, action.get("namespace"))
-        self.run_actions(action.children)
+        yield
         if is_scoped:
             self.context.pop()
 
@@ -177,19 +186,10 @@ class LaunchRun(ScopeRun):
     def _run_included(self, action: LaunchAction, path: Path) -> None:
         arguments = action.get("arguments")
         given = self.resolve_pairs(arguments if isinstance(arguments, dict) else self.choose_values(action, arguments))
-        is_scoped = bool(action.get("scoped"))
-        if is_scoped:
-            self.context.push()
-            if not action.get("passes_all"):
-                self.context.scope.configurations = {}
-        for name, value in given:
-            self.context.scope.configurations[name] = value
-        if action.get("namespace") is not None:
-            self.push_namespace(action, action.get("namespace"))
-        self.included.add(path)
-        self._run_file(path)
-        if is_scoped:
-            self.context.pop()
+        is_scoped, keeps_others = bool(action.get("scoped")), bool(action.get("passes_all"))
+        with self._enter_scope(action, given, is_scoped=is_scoped, keeps_others=keeps_others):
+            self.included.add(path)
+            self._run_file(path)
 
     def _run_node(self, action: LaunchAction) -> None:
         self._add_node(self._maker.make_node(action, "node"), action)

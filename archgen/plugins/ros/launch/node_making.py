@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -27,6 +28,8 @@ from archgen.plugins.ros.launch.launch_values import (
     describe_launch_value,
 )
 from archgen.plugins.ros.launch.scope_run import ScopeRun
+
+_VARIABLE = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 
 CONTAINER_PACKAGE = "rclcpp_components"
 
@@ -159,8 +162,7 @@ class NodeMaker:
         delay = action.get("respawn_delay")
         delay_text = context.resolve(delay) if delay is not None else ""
         node.respawn_delay = delay_text if isinstance(delay_text, str) and node.respawn else ""
-        for name, value in context.scope.environment:
-            node.environment[name] = value
+        node.environment.update(context.scope.environment)
         given = action.get("environment")
         pairs = given.items() if isinstance(given, Mapping) else _list_pairs(self._run.choose_values(action, given))
         for name, value in pairs:
@@ -170,6 +172,9 @@ class NodeMaker:
             else:
                 unknown = setting if isinstance(setting, UnknownValue) else UnknownValue(describe_launch_value(name))
                 self._run.tell_computed(action, "a variable of its environment", unknown)
+        for name in [name for name in node.environment if not _VARIABLE.match(name)]:
+            del node.environment[name]
+            self._run.add_note(action.word, f"`{name}` is no name of a variable of an environment", action.span)
         directory = context.resolve(action.get("directory")) if action.get("directory") is not None else ""
         if isinstance(directory, UnknownValue):
             self._run.tell_computed(action, "its folder", directory)
@@ -224,7 +229,7 @@ class NodeMaker:
         if found is not None:
             self._keep_written(node, f"parameters.{name}", value)
             # In ROS 1 a `/` in a parameter's name is a level of its tree.
-            for part in reversed(name.strip("/").split("/") if self._run.context.is_ros_1 else [name]):
+            for part in reversed([each for each in name.split("/") if each] if self._run.context.is_ros_1 else [name]):
                 found = {part: found}
             overlay_parameters(node.parameters, found)
             node.parameter_commands.pop(name, None)

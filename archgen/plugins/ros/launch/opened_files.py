@@ -9,10 +9,15 @@ from __future__ import annotations
 import ast
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from archgen.plugins.ros.launch.launch_values import OPEN_FILE, LaunchValue, Substitution, UnknownValue
 from archgen.plugins.ros.launch.python_methods import MethodReader
 from archgen.plugins.ros.launch.python_values import BoundMethod, CallArguments, RecordValue
+
+if TYPE_CHECKING:
+    from archgen.plugins.ros.launch.launch_run import LaunchRun
 
 _COMMAND_WORDS = 2
 
@@ -20,8 +25,8 @@ _COMMAND_WORDS = 2
 class OpenedFileReader(MethodReader):
     """Reads calls that open files."""
 
-    def __init__(self, file: str, lines: list[str]) -> None:
-        super().__init__(file, lines)
+    def __init__(self, path: Path, text: str, run: LaunchRun) -> None:
+        super().__init__(path, text, run)
         self._callers: dict[str, Callable[[CallArguments, ast.Call], LaunchValue]] = {
             "MoveItConfigsBuilder": self._call_moveit_builder,
             "open": self._call_open,
@@ -36,6 +41,32 @@ class OpenedFileReader(MethodReader):
             "process_doc": self._call_process_doc,
         }
         """Who reads the calls of imported functions and classes, by the last part of their names."""
+
+    def read_yaml(self, path: LaunchValue, node: ast.AST) -> LaunchValue:
+        """Return what a file says, as a mapping; an UnknownValue where it cannot be read."""
+        text = self._run.context.resolve(path)
+        if isinstance(text, UnknownValue):
+            return self.quote(node)
+        file = self._run.files.find_file(text)
+        values = None if file is None else self._run.parameter_reader.read_mapping(file)
+        if values is None:
+            is_far = file is None
+            near_words = "it is no mapping in YAML, or more is opened than archgen reads"
+            words = "it does not lie in the folders that were given" if is_far else near_words
+            help_line = "give the folder of its package, too" if is_far else ""
+            self._run.add_note("open", f"`{text}` is not read: {words}", self.place(node), help_line)
+            return UnknownValue(text, getattr(node, "lineno", 0), self.file)
+        return values
+
+    def has_file(self, path: LaunchValue) -> bool:
+        """Whether a file lies in the folders that were given."""
+        text = self._run.context.resolve(path)
+        return isinstance(text, str) and self._run.files.find_file(text) is not None
+
+    def list_names(self, folder: LaunchValue) -> list[str]:
+        """Return the names of the files in a folder."""
+        text = self._run.context.resolve(folder)
+        return self._run.files.list_names(text) if isinstance(text, str) else []
 
     def call_method(self, method: BoundMethod, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         """Return what a method gives; what it changes is changed."""
@@ -149,7 +180,7 @@ def make_builder(arguments: CallArguments) -> MoveItBuilder | None:
 
 
 def call_builder(
-    reader: MethodReader, builder: MoveItBuilder, name: str, arguments: CallArguments, node: ast.Call
+    reader: OpenedFileReader, builder: MoveItBuilder, name: str, arguments: CallArguments, node: ast.Call
 ) -> LaunchValue:
     """Return what a method of a builder gives: mostly itself."""
     files = _MoveItReader(reader, builder, node)
@@ -165,7 +196,7 @@ def call_builder(
 class _MoveItReader:
     """Reads the files of one call."""
 
-    def __init__(self, reader: MethodReader, builder: MoveItBuilder, node: ast.Call) -> None:
+    def __init__(self, reader: OpenedFileReader, builder: MoveItBuilder, node: ast.Call) -> None:
         self._reader, self._builder, self._node = reader, builder, node
         self._steps: dict[str, Callable[[CallArguments], dict[LaunchValue, LaunchValue]]] = {
             "robot_description": self._read_robot_description,

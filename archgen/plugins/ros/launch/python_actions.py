@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import NamedTuple
 
-from archgen.plugins.ros.launch.launch_actions import LaunchAction, LaunchCondition
+from archgen.plugins.ros.launch.launch_actions import ActionKind, LaunchAction, LaunchCondition
 from archgen.plugins.ros.launch.launch_context import LaunchContext
 from archgen.plugins.ros.launch.launch_values import LaunchValue, Substitution, UnknownValue, copy_value
 from archgen.plugins.ros.launch.python_methods import MethodReader
@@ -13,49 +15,81 @@ from archgen.plugins.ros.launch.python_values import CallArguments, FunctionValu
 
 LAUNCH_MODULES = frozenset({"launch", "launch_ros"})
 CONDITIONS = frozenset({"IfCondition", "UnlessCondition", "LaunchConfigurationEquals", "LaunchConfigurationNotEquals"})
+_Argument = tuple[int | None, *tuple[str, ...]]
+"""Where a call has something: at a place, where it has one, or by one of these names."""
 _NODES = {"Node": "node", "LifecycleNode": "node", "ComposableNode": "node", "ComposableNodeContainer": "container"}
-_NODE_KEYS = {
-    "package": ("package",),
-    "executable": ("executable", "node_executable"),
-    "plugin": ("plugin", "node_plugin"),
-    "name": ("name", "node_name"),
-    "namespace": ("namespace", "node_namespace"),
-    "remaps": ("remappings",),
-    "parameters": ("parameters",),
-    "arguments": ("arguments",),
-    "ros_arguments": ("ros_arguments",),
-    "respawn": ("respawn",),
-    "respawn_delay": ("respawn_delay",),
-    "directory": ("cwd",),
-    "prefix": ("prefix",),
+_PROGRAM_KEYS: Mapping[str, _Argument] = {
+    "name": (None, "name", "node_name"),
+    "respawn": (None, "respawn"),
+    "respawn_delay": (None, "respawn_delay"),
+    "directory": (None, "cwd"),
+    "prefix": (None, "prefix"),
 }
-_PAIRS: dict[str, tuple[str, tuple[str, str]]] = {
-    "SetParameter": ("parameter", ("name", "value")),
-    "SetRemap": ("remap", ("src", "dst")),
-    "SetLaunchConfiguration": ("configure", ("name", "value")),
-    "SetEnvironmentVariable": ("environment", ("name", "value")),
+_NODE_KEYS: Mapping[str, _Argument] = {
+    **_PROGRAM_KEYS,
+    "package": (None, "package"),
+    "executable": (None, "executable", "node_executable"),
+    "plugin": (None, "plugin", "node_plugin"),
+    "namespace": (None, "namespace", "node_namespace"),
+    "remaps": (None, "remappings"),
+    "parameters": (None, "parameters"),
+    "arguments": (None, "arguments"),
+    "ros_arguments": (None, "ros_arguments"),
 }
-_PAIR_KEYS = {"remap": ("from", "to")}
-_LISTS = (
-    "LogInfo",
-    "SetROSLogDir",
-    "Shutdown",
-    "PopLaunchConfigurations",
-    "PushLaunchConfigurations",
-    "PushEnvironment",
-    "PopEnvironment",
+
+
+class _ActionShape(NamedTuple):
+    """What an action takes from the arguments of its call, which of these are actions in it, and what it always says."""
+
+    kind: ActionKind
+    taken: Mapping[str, _Argument] = MappingProxyType({})
+    children: _Argument | None = None
+    said: Mapping[str, LaunchValue] = MappingProxyType({})
+
+
+_ARGUMENT = _ActionShape(
+    "argument", {"name": (0, "name"), "default": (None, "default_value"), "choices": (None, "choices")}
 )
-_EVENTS = {
-    "OnProcessExit": ("target_action", "on_exit", "what is in it starts when another process has ended"),
-    "OnProcessStart": ("target_action", "on_start", "what is in it starts once another process runs"),
-    "OnProcessIO": ("target_action", "on_stdout", "what is in it starts when another process has printed something"),
-    "OnExecutionComplete": ("target_action", "on_completion", "what is in it starts when another action is complete"),
-    "OnStateTransition": (
-        "target_lifecycle_node",
-        "entities",
-        "what is in it starts when a lifecycle node changes its state",
+_NAMESPACE = _ActionShape("namespace", {"namespace": (0, "namespace")})
+_LOADED_NODES: _Argument = (None, "composable_node_descriptions")
+_ACTIONS: Mapping[str, _ActionShape] = {
+    "DeclareLaunchArgument": _ARGUMENT,
+    # MoveIt's own: one that is true or false.
+    "DeclareBooleanLaunchArg": _ARGUMENT,
+    "GroupAction": _ActionShape(
+        "group",
+        {
+            "scoped": (None, "scoped"),
+            "forwards": (None, "forwarding"),
+            "configurations": (None, "launch_configurations"),
+        },
+        (0, "actions"),
     ),
-    "OnShutdown": (None, "on_shutdown", "what is in it starts when the launch ends"),
+    "LoadComposableNodes": _ActionShape("load", {"target": (None, "target_container")}, _LOADED_NODES),
+    "PushROSNamespace": _NAMESPACE,
+    "PushRosNamespace": _NAMESPACE,
+    "RegisterEventHandler": _ActionShape("group", {}, (0, "event_handler"), {"scoped": False}),
+    "SetEnvironmentVariable": _ActionShape("environment", {"name": (0, "name"), "value": (1, "value")}),
+    "SetLaunchConfiguration": _ActionShape("configure", {"name": (0, "name"), "value": (1, "value")}),
+    "SetParameter": _ActionShape("parameter", {"name": (0, "name"), "value": (1, "value")}),
+    "SetParametersFromFile": _ActionShape("parameter_file", {"file": (0, "filename")}),
+    "SetRemap": _ActionShape("remap", {"from": (0, "src"), "to": (1, "dst")}),
+    "SetUseSimTime": _ActionShape("parameter", {"value": (0, "value")}, None, {"name": "use_sim_time"}),
+    **dict.fromkeys(
+        (
+            *("LogInfo", "SetROSLogDir", "Shutdown", "PushEnvironment", "PopEnvironment"),
+            *("PushLaunchConfigurations", "PopLaunchConfigurations"),
+        ),
+        _ActionShape("ignored"),
+    ),
+}
+_EVENTS = {
+    "OnProcessExit": ("on_exit", "what is in it starts when another process has ended"),
+    "OnProcessStart": ("on_start", "what is in it starts once another process runs"),
+    "OnProcessIO": ("on_stdout", "what is in it starts when another process has printed something"),
+    "OnExecutionComplete": ("on_completion", "what is in it starts when another action is complete"),
+    "OnStateTransition": ("entities", "what is in it starts when a lifecycle node changes its state"),
+    "OnShutdown": ("on_shutdown", "what is in it starts when the launch ends"),
 }
 _INCLUDED = frozenset(
     {
@@ -79,17 +113,10 @@ def make_action(
     """Return the action that a call makes; None where it makes none that archgen knows."""
     if name in _INCLUDED:
         return Substitution("join", (arguments.get(0, "launch_file_path", "location"),))
-    if name in _NODES:
-        action = _make_node(reader, name, arguments, node)
-    elif name in _PAIRS:
-        action = _make_pair(reader, name, arguments, node)
-    elif name in _LISTS:
-        action = LaunchAction("ignored", name, reader.place(node))
-    else:
-        maker = _MAKERS.get(name)
-        if maker is None:
-            return None
-        action = maker(reader, name, arguments, node)
+    maker = _MAKERS.get(name)
+    if maker is None:
+        return None
+    action = maker(reader, name, arguments, node)
     condition = arguments.get(None, "condition")
     if isinstance(condition, LaunchCondition):
         action.conditions.append(condition)
@@ -102,43 +129,29 @@ def make_action(
 
 
 def _make_node(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
-    values: dict[str, LaunchValue] = {}
-    for key, names in _NODE_KEYS.items():
-        value = arguments.get(None, *names)
-        if value is not None:
-            values[key] = copy_value(value)
+    values = _take_arguments(arguments, _NODE_KEYS)
     environment = arguments.get(None, "additional_env") or arguments.get(None, "env")
     if isinstance(environment, Mapping):
         values["environment"] = copy_value(environment)
     values["is_lifecycle"] = name == "LifecycleNode"
     action = LaunchAction(_NODES[name], name, reader.place(node), values)
-    reader.add_children(action, arguments.get(None, "composable_node_descriptions"))
+    reader.add_children(action, arguments.get(*_LOADED_NODES))
     return action
 
 
-def _make_pair(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
-    kind, names = _PAIRS[name]
-    keys = _PAIR_KEYS.get(kind, names)
-    values = {
-        key: copy_value(arguments.get(place, each)) for place, (key, each) in enumerate(zip(keys, names, strict=True))
-    }
-    return LaunchAction(kind, name, reader.place(node), values)
-
-
-def _make_argument(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
-    values = {
-        "name": arguments.get(0, "name"),
-        "default": copy_value(arguments.get(None, "default_value")),
-        "choices": copy_value(arguments.get(None, "choices")),
-    }
-    return LaunchAction("argument", name, reader.place(node), values)
-
-
-def _make_load(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
-    target = arguments.get(None, "target_container")
-    action = LaunchAction("load", name, reader.place(node), {"target": copy_value(target)})
-    reader.add_children(action, arguments.get(None, "composable_node_descriptions"))
+def _make_listed(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
+    kind, taken, children, said = _ACTIONS[name]
+    values = {**said, **_take_arguments(arguments, taken)}
+    action = LaunchAction(kind, name, reader.place(node), values)
+    if children:
+        reader.add_children(action, arguments.get(*children))
     return action
+
+
+def _take_arguments(arguments: CallArguments, taken: Mapping[str, _Argument]) -> dict[str, LaunchValue]:
+    """Return the arguments that are there, by archgen's names for them."""
+    found = {key: arguments.get(place, *names) for key, (place, *names) in taken.items()}
+    return {key: copy_value(value) for key, value in found.items() if value is not None}
 
 
 def _make_include(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
@@ -150,41 +163,11 @@ def _make_include(reader: MethodReader, name: str, arguments: CallArguments, nod
     return LaunchAction("include", name, reader.place(node), values)
 
 
-def _make_group(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
-    scoped = arguments.get(None, "scoped")
-    values = {
-        "scoped": True if scoped is None else copy_value(scoped),
-        "forwards": copy_value(arguments.get(None, "forwarding")),
-        "configurations": copy_value(arguments.get(None, "launch_configurations")),
-    }
-    action = LaunchAction("group", name, reader.place(node), values)
-    reader.add_children(action, arguments.get(0, "actions"))
-    return action
-
-
-def _make_simulated_time(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
-    values = {"name": "use_sim_time", "value": copy_value(arguments.get(0, "value"))}
-    return LaunchAction("parameter", name, reader.place(node), values)
-
-
-def _make_namespace(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
-    return LaunchAction("namespace", name, reader.place(node), {"namespace": copy_value(arguments.get(0, "namespace"))})
-
-
-def _make_parameter_file(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
-    return LaunchAction("parameter_file", name, reader.place(node), {"file": copy_value(arguments.get(0, "filename"))})
-
-
 def _make_process(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
     command = arguments.get(None, "cmd")
     values = {
+        **_take_arguments(arguments, {**_PROGRAM_KEYS, "environment": (None, "additional_env")}),
         "command": copy_value(command if isinstance(command, list | tuple) else [command]),
-        "name": copy_value(arguments.get(None, "name")),
-        "environment": copy_value(arguments.get(None, "additional_env")),
-        "directory": copy_value(arguments.get(None, "cwd")),
-        "prefix": copy_value(arguments.get(None, "prefix")),
-        "respawn": copy_value(arguments.get(None, "respawn")),
-        "respawn_delay": copy_value(arguments.get(None, "respawn_delay")),
         "splits_words": arguments.get(None, "shell") is True,
     }
     return LaunchAction("process", name, reader.place(node), values)
@@ -199,20 +182,14 @@ def _make_timer(reader: MethodReader, name: str, arguments: CallArguments, node:
 
 
 def _make_event(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
-    target, key, reason = _EVENTS[name]
+    key, reason = _EVENTS[name]
     action = LaunchAction("later", name, reader.place(node), {"reason": reason})
     started = arguments.get(None, key)
     if isinstance(started, FunctionValue):
         started = reader.quote(node)
     reader.add_children(action, started)
-    if target and name == "OnProcessExit" and not action.children:
+    if name == "OnProcessExit" and not action.children:
         reader.add_children(action, arguments.get(1, key))
-    return action
-
-
-def _make_handler(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
-    action = LaunchAction("group", name, reader.place(node), {"scoped": False})
-    reader.add_children(action, arguments.get(0, "event_handler"))
     return action
 
 
@@ -242,21 +219,13 @@ def _make_call(reader: MethodReader, name: str, arguments: CallArguments, node: 
 
 
 _MAKERS: dict[str, Callable[[MethodReader, str, CallArguments, ast.Call], LaunchAction]] = {
-    "DeclareLaunchArgument": _make_argument,
-    # MoveIt's own: one that is true or false.
-    "DeclareBooleanLaunchArg": _make_argument,
-    "LoadComposableNodes": _make_load,
     "IncludeLaunchDescription": _make_include,
-    "GroupAction": _make_group,
-    "PushRosNamespace": _make_namespace,
-    "PushROSNamespace": _make_namespace,
-    "SetParametersFromFile": _make_parameter_file,
     "ExecuteProcess": _make_process,
     "ExecuteLocal": _make_process,
     "TimerAction": _make_timer,
-    "RegisterEventHandler": _make_handler,
-    "OpaqueFunction": _make_call,
     "RosTimer": _make_timer,
-    "SetUseSimTime": _make_simulated_time,
+    "OpaqueFunction": _make_call,
+    **dict.fromkeys(_ACTIONS, _make_listed),
     **dict.fromkeys(_EVENTS, _make_event),
+    **dict.fromkeys(_NODES, _make_node),
 }

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import ast
 import posixpath
-from abc import abstractmethod
 from collections.abc import Mapping
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from archgen.plugins.ros.launch.launch_actions import LaunchAction, LaunchCondition
 from archgen.plugins.ros.launch.launch_parameter_values import FILE_KIND, FileRewrites
@@ -13,6 +15,9 @@ from archgen.plugins.ros.launch.launch_values import LaunchValue, Substitution, 
 from archgen.plugins.ros.launch.opened_files import OpenedFileReader
 from archgen.plugins.ros.launch.python_actions import CONDITIONS, LAUNCH_MODULES, make_action, make_condition
 from archgen.plugins.ros.launch.python_values import BoundMethod, CallArguments, FunctionValue, ImportedName
+
+if TYPE_CHECKING:
+    from archgen.plugins.ros.launch.launch_run import LaunchRun
 
 _SUBSTITUTIONS: dict[str, tuple[str, tuple[str, ...]]] = {
     "LaunchConfiguration": ("var", ("variable_name", "default")),
@@ -68,24 +73,23 @@ _MODULES = {
 
 
 class CallReader(OpenedFileReader):
-    """Reads calls. `own_name` is the file's as launch files name it."""
+    """Reads calls, and so whole files."""
 
-    def __init__(self, file: str, own_name: str, lines: list[str]) -> None:
-        super().__init__(file, lines)
-        self.own_name = own_name
+    def __init__(self, path: Path, text: str, run: LaunchRun) -> None:
+        super().__init__(path, text, run)
         self._callers |= {
             "LaunchDescription": self._call_launch_description,
             "PathJoinSubstitution": self._call_path_join,
             "join": self._call_join,
             "joinpath": self._call_join,
             "dirname": self._call_dirname,
-            "ThisLaunchFileDir": self._call_this_folder,
-            "ThisLaunchFile": self._call_this_file,
+            "ThisLaunchFileDir": lambda *_: posixpath.dirname(self.own_name),
+            "ThisLaunchFile": lambda *_: self.own_name,
             "ParameterValue": self._call_parameter_value,
             "RewrittenYaml": self._call_rewritten_yaml,
             "ReplaceString": self._call_replace_string,
             "getenv": self._call_getenv,
-            "get": self._call_get,
+            "get": self._call_getenv,
             "range": self._call_range,
             "list": self._call_list,
             "str": self._call_str,
@@ -93,8 +97,8 @@ class CallReader(OpenedFileReader):
             "enumerate": self._call_enumerate,
             "zip": self._call_zip,
             "len": self._call_len,
-            "int": self._call_int,
-            "float": self._call_float,
+            "int": partial(self._convert, int),
+            "float": partial(self._convert, float),
         }
 
     def call(self, function: LaunchValue, arguments: CallArguments, node: ast.Call) -> LaunchValue:
@@ -129,16 +133,8 @@ class CallReader(OpenedFileReader):
         if action is not None:
             return action
         if function.name.partition(".")[0] in LAUNCH_MODULES and ".actions" in function.name:
-            return self._finish_action(LaunchAction("unread", name, self.place(node)))
+            return LaunchAction("unread", name, self.place(node), conditions=[*self.conditions])
         return self.quote(node)
-
-    @abstractmethod
-    def add_module_folder(self, folder: LaunchValue) -> None:
-        """Look for modules in a folder, too; by the reader of the whole file."""
-
-    def _finish_action(self, action: LaunchAction) -> LaunchAction:
-        action.conditions += self.conditions
-        return action
 
     def _make_substitution(self, name: str, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         kind, names = _SUBSTITUTIONS[name]
@@ -173,12 +169,6 @@ class CallReader(OpenedFileReader):
             return Substitution("path", path.parts[:-1])
         return posixpath.dirname(path) if isinstance(path, str) else self.quote(node)
 
-    def _call_this_folder(self, _arguments: CallArguments, _node: ast.Call) -> LaunchValue:
-        return posixpath.dirname(self.own_name)
-
-    def _call_this_file(self, _arguments: CallArguments, _node: ast.Call) -> LaunchValue:
-        return self.own_name
-
     def _call_parameter_value(self, arguments: CallArguments, _node: ast.Call) -> LaunchValue:
         kind = arguments.get(1, "value_type")
         word = kind.last if isinstance(kind, ImportedName) else "yaml"
@@ -207,9 +197,6 @@ class CallReader(OpenedFileReader):
         return Substitution(FILE_KIND, (arguments.get(0, "source_file"), "", made))
 
     def _call_getenv(self, arguments: CallArguments, _node: ast.Call) -> LaunchValue:
-        return Substitution("env", tuple(arguments.positional[:2]))
-
-    def _call_get(self, arguments: CallArguments, _node: ast.Call) -> LaunchValue:
         return Substitution("env", tuple(arguments.positional[:2]))
 
     def _call_range(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
@@ -256,12 +243,6 @@ class CallReader(OpenedFileReader):
     def _call_len(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         value = arguments.get(0)
         return len(value) if isinstance(value, list | tuple | str | Mapping) else self.quote(node)
-
-    def _call_int(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
-        return self._convert(int, arguments, node)
-
-    def _call_float(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
-        return self._convert(float, arguments, node)
 
     def _convert(self, kind: type[int | float], arguments: CallArguments, node: ast.Call) -> LaunchValue:
         value = self.force(arguments.get(0))

@@ -5,8 +5,10 @@ from __future__ import annotations
 import ast
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
+from archgen.plugin.importing import Span
 from archgen.plugins.ros.launch.launch_actions import LaunchAction
 from archgen.plugins.ros.launch.launch_context import LaunchContext
 from archgen.plugins.ros.launch.launch_values import MAX_TEXT, LaunchValue, Substitution, UnknownValue, join_values
@@ -21,6 +23,9 @@ from archgen.plugins.ros.launch.python_values import (
     RecordValue,
 )
 
+if TYPE_CHECKING:
+    from archgen.plugins.ros.launch.launch_run import LaunchRun
+
 MAX_STEPS = 300_000
 MAX_DEPTH = 60
 _MAX_QUOTED = 80
@@ -31,10 +36,14 @@ _KNOWN_TEXTS = {"os.sep": "/", "os.path.sep": "/", "os.pathsep": ":"}
 class ExpressionReader(ABC):
     """Reads expressions. `context` is there while a function is read that is called at the launch."""
 
-    def __init__(self, file: str, lines: list[str]) -> None:
-        self.file = file
+    def __init__(self, path: Path, text: str, run: LaunchRun) -> None:
+        self.file = run.files.show_path(path)
+        self.own_name = run.files.name_file(path)
+        """What launch files call it."""
         self.context: LaunchContext | None = None
-        self._lines = lines
+        self._path = path
+        self._run = run
+        self._lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
         self._steps = 0
         self._depth = 0
         self._expression_readers: dict[type[ast.expr], Callable[[Any, NameScope], LaunchValue]] = {
@@ -74,9 +83,20 @@ class ExpressionReader(ABC):
         shown = text if len(text) <= _MAX_QUOTED else f"{text[:_MAX_QUOTED]}..."
         return UnknownValue(shown if is_one_line or shown.endswith("...") else f"{shown}...", line_number, self.file)
 
-    @abstractmethod
+    def place(self, node: ast.AST) -> Span:
+        """Return where a part of the file stands."""
+        line, byte_offset = getattr(node, "lineno", 1), getattr(node, "col_offset", 0)
+        text = self._lines[line - 1] if line <= len(self._lines) else ""
+        column = len(text.encode("utf-8", "replace")[:byte_offset].decode("utf-8", "replace")) + 1
+        return Span(self.file, line, column, line, column + 1)
+
     def tell_lost(self, word: str, message: str, node: ast.AST) -> None:
-        """Note what is left out because only running it would tell; by the reader of the whole file."""
+        """Note what is left out because only running it would tell."""
+        self._run.add_note(word, message, self.place(node))
+
+    def tell_noted(self, word: str, message: str, node: ast.AST) -> None:
+        """Note what is taken otherwise than it is written."""
+        self._run.add_note(word, message, self.place(node), fate="noted")
 
     def count_steps(self, number: int) -> None:
         """Count what takes the time of several steps."""

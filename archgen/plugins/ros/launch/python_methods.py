@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-from abc import abstractmethod
 from collections.abc import Mapping
 
 from archgen.plugin.importing import Span
@@ -23,22 +22,6 @@ _SAME_METHODS = frozenset(
 
 class MethodReader(StatementReader):
     """Reads calls of methods."""
-
-    @abstractmethod
-    def place(self, node: ast.AST) -> Span:
-        """Return where a part of the file stands; by the reader of the whole file."""
-
-    @abstractmethod
-    def read_yaml(self, path: LaunchValue, node: ast.AST) -> LaunchValue:
-        """Return what a file says, as a mapping; an UnknownValue where it cannot be read; by the reader of the whole file."""
-
-    @abstractmethod
-    def has_file(self, path: LaunchValue) -> bool:
-        """Whether a file lies in the folders that were given; by the reader of the whole file."""
-
-    @abstractmethod
-    def list_names(self, folder: LaunchValue) -> list[str]:
-        """Return the names of the files in a folder; by the reader of the whole file."""
 
     def add_children(self, action: LaunchAction, value: LaunchValue, depth: int = 0) -> None:
         """Put what a value holds into an action, list by list."""
@@ -90,7 +73,13 @@ class MethodReader(StatementReader):
             and isinstance(text, str)
             and all(isinstance(each, str) for each in arguments.positional)
         ):
-            found: LaunchValue = getattr(text, name)(*arguments.positional) if len(arguments.positional) <= 2 else None  # noqa: PLR2004
+            try:
+                found: LaunchValue = getattr(text, name)(*arguments.positional)
+            except (
+                TypeError,
+                ValueError,
+            ):  # as it would be when the file is run: an empty separator, an argument too few
+                return self.quote(node)
             return found if not isinstance(found, str) or len(found) <= 2 * len(text) + 100 else self.quote(node)
         return self.quote(node)
 

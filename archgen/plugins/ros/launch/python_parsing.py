@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import ast
 import warnings
+from pathlib import Path
 from typing import Literal
+
+from archgen.plugin.importing import ForeignFileError, Span, read_bounded
+from archgen.plugins.ros.launch.launch_files import MAX_LAUNCH_BYTES
 
 MAX_CHARACTERS = 1_000_000
 """Launch files have a few thousand characters, the longest of known robots sixty thousand."""
@@ -56,3 +60,24 @@ def _parse_quietly(text: str, mode: Literal["exec", "eval"]) -> ast.AST:
     except ValueError as error:
         # Null bytes, before Python 3.11.4: the same words as a SyntaxError has later.
         raise PythonRefusedError(str(error)) from None
+
+
+def read_python_text(file: str, path: Path) -> str:
+    """Return the text of a file. Raise ForeignFileError."""
+    data = read_bounded(path, MAX_LAUNCH_BYTES)
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        words = "it is no UTF-8"
+        raise ForeignFileError(words, Span(file, line, 1, line, 2), "save it as UTF-8") from None
+
+
+def read_launch_module(file: str, path: Path) -> tuple[str, ast.Module]:
+    """Return the text and the syntax tree of a file. Raise ForeignFileError for what is no Python."""
+    text = read_python_text(file, path)
+    try:
+        return text, parse_python(text)
+    except PythonRefusedError as error:
+        span = Span(file, error.line, error.column, error.line, error.column + 1)
+        raise ForeignFileError(error.message, span, "archgen reads launch files as Python 3 does") from None

@@ -6,63 +6,21 @@ Work out comprehensions in launch files in Python over what is known.
 from __future__ import annotations
 
 import ast
-from abc import abstractmethod
 from collections.abc import Callable
-from typing import Any, Literal
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
 
+from archgen.plugin.importing import ForeignFileError
 from archgen.plugins.ros.launch.launch_actions import LaunchCondition
 from archgen.plugins.ros.launch.launch_values import LaunchValue, UnknownValue
 from archgen.plugins.ros.launch.python_branches import BranchRecord, Container, merge_names
 from archgen.plugins.ros.launch.python_expressions import MAX_DEPTH, ExpressionReader, list_loop_items
 from archgen.plugins.ros.launch.python_operators import MANY_ITEMS, MAX_ITEMS
+from archgen.plugins.ros.launch.python_parsing import read_launch_module
 from archgen.plugins.ros.launch.python_values import CallArguments, FunctionValue, ImportedName, ModuleValue, NameScope
 
-
-class ComprehensionReader(ExpressionReader):
-    """Reads comprehensions, besides all other expressions."""
-
-    def __init__(self, file: str, lines: list[str]) -> None:
-        super().__init__(file, lines)
-        self._expression_readers |= {
-            ast.ListComp: self._read_list_comprehension,
-            ast.GeneratorExp: self._read_list_comprehension,
-            ast.DictComp: self._read_dict_comprehension,
-        }
-
-    def _read_list_comprehension(self, node: ast.ListComp | ast.GeneratorExp, scope: NameScope) -> LaunchValue:
-        scopes = self._walk_generators(node.generators, NameScope(scope), 0)
-        return self.quote(node) if scopes is None else [self.evaluate(node.elt, each) for each in scopes]
-
-    def _read_dict_comprehension(self, node: ast.DictComp, scope: NameScope) -> LaunchValue:
-        scopes = self._walk_generators(node.generators, NameScope(scope), 0)
-        if scopes is None:
-            return self.quote(node)
-        pairs = [(self.evaluate(node.key, each), self.evaluate(node.value, each)) for each in scopes]
-        return dict(pairs) if all(isinstance(key, str | int) for key, _ in pairs) else self.quote(node)
-
-    def _walk_generators(
-        self, generators: list[ast.comprehension], scope: NameScope, depth: int
-    ) -> list[NameScope] | None:
-        """Return a scope for each round of a comprehension; None where that is not known."""
-        if depth == len(generators):
-            return [scope]
-        generator = generators[depth]
-        items = list_loop_items(self.evaluate(generator.iter, scope))
-        if items is None:
-            return None
-        found: list[NameScope] = []
-        for item in items:
-            inner = NameScope(scope)
-            self.assign(generator.target, item, inner)
-            verdicts = [self.judge(self.evaluate(test, inner)) for test in generator.ifs]
-            if None in verdicts:
-                return None
-            if all(verdicts):
-                inner_scopes = self._walk_generators(generators, inner, depth + 1)
-                if inner_scopes is None or len(found) + len(inner_scopes) > MAX_ITEMS or not self.count_step():
-                    return None
-                found += inner_scopes
-        return found
+if TYPE_CHECKING:
+    from archgen.plugins.ros.launch.launch_run import LaunchRun
 
 
 Ending = Literal["", "return", "break", "continue", "raise"]
@@ -72,11 +30,14 @@ _MAX_FUNCTIONS = 20
 _REMEMBERED_IN_A_STEP = 10
 
 
-class StatementReader(ComprehensionReader):
-    """Follows statements. What a function may return stands in its scope."""
+class StatementReader(ExpressionReader):
+    """Follows statements, and comprehensions. What a function may return stands in its scope."""
 
-    def __init__(self, file: str, lines: list[str]) -> None:
-        super().__init__(file, lines)
+    def __init__(self, path: Path, text: str, run: LaunchRun) -> None:
+        super().__init__(path, text, run)
+        self._folders: list[str] = []
+        self.modules: dict[Path, NameScope] = {}
+        """The modules beside the file that were read, for all of them together."""
         self.conditions: list[LaunchCondition] = []
         """The conditions around that are not known: what is made there counts only if they hold."""
         self._functions = 0
@@ -97,14 +58,37 @@ class StatementReader(ComprehensionReader):
             ast.While: self._run_while,
         }
         """Who follows which kind of statement; any other kind is passed over."""
+        self._expression_readers |= {
+            ast.ListComp: self._read_list_comprehension,
+            ast.GeneratorExp: self._read_list_comprehension,
+            ast.DictComp: self._read_dict_comprehension,
+        }
 
-    @abstractmethod
-    def tell_noted(self, word: str, message: str, node: ast.AST) -> None:
-        """Note what is taken otherwise than it is written; by the reader of the whole file."""
+    def add_module_folder(self, folder: LaunchValue) -> None:
+        """Look for modules in a folder, too."""
+        text = self._run.context.resolve(folder)
+        if isinstance(text, str):
+            self._folders.append(text)
 
-    @abstractmethod
     def load_module(self, name: str) -> ModuleValue | None:
-        """Return a module that lies beside the file; by the reader of the whole file."""
+        """Return a module that lies beside the file."""
+        if not name.isidentifier():
+            return None
+        texts = [f"{folder}/{name}.py" for folder in (self._path.parent.as_posix(), *self._folders)]
+        path = next((found for text in texts if (found := self._run.files.find_file(text)) is not None), None)
+        if path is None:
+            return None
+        if path not in self.modules:
+            self.modules[path] = scope = NameScope(values={"__file__": path.as_posix(), "__name__": name})
+            try:
+                text, tree = read_launch_module(self._run.files.show_path(path), path)
+            except ForeignFileError as error:
+                self._run.add_note("import", error.message, error.span)
+            else:
+                reader = type(self)(path, text, self._run)
+                reader.modules = self.modules
+                reader.run_block(tree.body, scope)
+        return ModuleValue(name, self.modules[path])
 
     def run_block(self, statements: list[ast.stmt], scope: NameScope) -> Ending:
         """Follow statements in their order."""
@@ -308,6 +292,41 @@ class StatementReader(ComprehensionReader):
             return self.call_function(function, arguments, function.definition)
         finally:
             self.context, self.conditions, self._functions = before
+
+    def _read_list_comprehension(self, node: ast.ListComp | ast.GeneratorExp, scope: NameScope) -> LaunchValue:
+        scopes = self._walk_generators(node.generators, NameScope(scope), 0)
+        return self.quote(node) if scopes is None else [self.evaluate(node.elt, each) for each in scopes]
+
+    def _read_dict_comprehension(self, node: ast.DictComp, scope: NameScope) -> LaunchValue:
+        scopes = self._walk_generators(node.generators, NameScope(scope), 0)
+        if scopes is None:
+            return self.quote(node)
+        pairs = [(self.evaluate(node.key, each), self.evaluate(node.value, each)) for each in scopes]
+        return dict(pairs) if all(isinstance(key, str | int) for key, _ in pairs) else self.quote(node)
+
+    def _walk_generators(
+        self, generators: list[ast.comprehension], scope: NameScope, depth: int
+    ) -> list[NameScope] | None:
+        """Return a scope for each round of a comprehension; None where that is not known."""
+        if depth == len(generators):
+            return [scope]
+        generator = generators[depth]
+        items = list_loop_items(self.evaluate(generator.iter, scope))
+        if items is None:
+            return None
+        found: list[NameScope] = []
+        for item in items:
+            inner = NameScope(scope)
+            self.assign(generator.target, item, inner)
+            verdicts = [self.judge(self.evaluate(test, inner)) for test in generator.ifs]
+            if None in verdicts:
+                return None
+            if all(verdicts):
+                inner_scopes = self._walk_generators(generators, inner, depth + 1)
+                if inner_scopes is None or len(found) + len(inner_scopes) > MAX_ITEMS or not self.count_step():
+                    return None
+                found += inner_scopes
+        return found
 
     def _bind_arguments(self, function: FunctionValue, arguments: CallArguments, scope: NameScope) -> None:
         declared = function.definition.args

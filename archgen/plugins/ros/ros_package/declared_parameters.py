@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
+from math import isfinite
 from typing import Any
 
 from archgen.plugin.importing import MappingNode, ScalarNode, YamlNode, node_to_data
+from archgen.plugin.model import MAX_NAME_LENGTH
 from archgen.plugins.ros.ros_package.import_account import ImportAccount
 
 _TYPES = {
@@ -16,6 +19,7 @@ _TYPES = {
 }
 _KEYS = frozenset({"type", "default_value", "description", "read_only", "validation", "additional_constraints"})
 _MAX_DEPTH = 20
+_PARAMETER_NAME = re.compile(r"[^\s.]+(?:\.[^\s.]+)*\Z")
 
 
 def is_declaration_file(root: MappingNode) -> bool:
@@ -28,6 +32,17 @@ def _find_declaration(mapping: MappingNode, depth: int) -> bool:
         return True
     inner = [entry.value for entry in mapping if isinstance(entry.value, MappingNode)]
     return depth < _MAX_DEPTH and any(_find_declaration(each, depth + 1) for each in inner)
+
+
+def is_parameter_name(name: str) -> bool:
+    """Whether the language takes a dotted name of a parameter."""
+    return _PARAMETER_NAME.match(name) is not None and len(name) <= MAX_NAME_LENGTH
+
+
+def is_parameter_value(value: object) -> bool:
+    """Whether a parameter of ROS can have a value: a single one, or a list of such."""
+    items = value if isinstance(value, list | tuple) else [value]
+    return not any(item is None or isinstance(item, dict | list | tuple) for item in items)
 
 
 def _is_declaration(mapping: MappingNode) -> bool:
@@ -60,6 +75,8 @@ def read_declared_parameters(
             account.add_note("__map_", words, entry.key_span, fate="noted")
         elif not isinstance(entry.value, MappingNode):
             account.add_note(entry.key, "it is no parameter", entry.key_span)
+        elif _is_declaration(entry.value) and not is_parameter_name(f"{outer}{entry.key}"):
+            account.add_note("parameter", f"`{outer}{entry.key}` is no name of a parameter", entry.key_span)
         elif _is_declaration(entry.value):
             parameters[f"{outer}{entry.key}"] = _read_parameter(entry.key, entry.value, account)
             account.count("parameter")
@@ -77,8 +94,11 @@ def _read_parameter(name: str, declaration: MappingNode, account: ImportAccount)
     data: dict[str, Any] = {"type": type_name or "string"}
     if not type_name:
         account.add_note("type: none", f"`{name}` has no type of its own", declaration.span, fate="noted")
-    if default is not None:
-        value = node_to_data(default)
+    value = None if default is None else node_to_data(default)
+    if default is not None and value is not None and not is_parameter_value(value):
+        words = f"what `{name}` is by default is no value that a parameter of ROS can have"
+        account.add_note("default_value", words, default.span)
+    elif value is not None:
         data["value"] = float(value) if type_name == "float" and isinstance(value, int) else value
     if length is not None:
         account.add_note("fixed", f"`{name}` has at most {length} items: a length cannot be said", declaration.span)
@@ -99,7 +119,8 @@ def _read_validation(name: str, validation: MappingNode, data: dict[str, Any], a
     greatest: Any = None
     for rule, arguments, node in _list_rules(validation):
         is_list = str(data["type"]).endswith("[]")
-        if rule == "one_of" and len(arguments) == 1 and isinstance(arguments[0], list) and not is_list:
+        is_choice = len(arguments) == 1 and isinstance(arguments[0], list) and is_parameter_value(arguments[0])
+        if rule == "one_of" and is_choice and not is_list:
             data["choices"] = arguments[0]
         elif rule in {"bounds", "element_bounds"} and len(arguments) == 2:  # noqa: PLR2004 - least and greatest
             least, greatest = arguments
@@ -110,7 +131,11 @@ def _read_validation(name: str, validation: MappingNode, data: dict[str, Any], a
         else:
             shown = f"{rule}: {arguments}" if arguments else rule
             account.add_note(f"validation {rule}", f"`{name}`: `{shown}` cannot be said", node.span)
-    if _are_numbers(least, greatest) and data["type"] in {"integer", "float", "integer[]", "float[]"}:
+    if (
+        _are_numbers(least, greatest)
+        and least <= greatest
+        and data["type"] in {"integer", "float", "integer[]", "float[]"}
+    ):
         data["range"] = [least, greatest]
     elif least is not None or greatest is not None:
         words = f"`{name}` is at {'least' if greatest is None else 'most'} {least if greatest is None else greatest}: a range has two ends"
@@ -118,7 +143,7 @@ def _read_validation(name: str, validation: MappingNode, data: dict[str, Any], a
 
 
 def _are_numbers(*values: object) -> bool:
-    return all(isinstance(value, int | float) and not isinstance(value, bool) for value in values)
+    return all(isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value) for value in values)
 
 
 def _list_rules(validation: MappingNode) -> Iterator[tuple[str, list[Any], YamlNode]]:

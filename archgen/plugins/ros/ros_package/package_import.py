@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -17,9 +16,13 @@ from archgen.plugin.importing import (
     parse_yaml,
     read_bounded,
 )
-from archgen.plugin.model import MAX_NAME_LENGTH
 from archgen.plugin.ros import INVALID_INTERFACE, ParameterSection, read_parameter_text
-from archgen.plugins.ros.ros_package.declared_parameters import is_declaration_file, read_declared_parameters
+from archgen.plugins.ros.ros_package.declared_parameters import (
+    is_declaration_file,
+    is_parameter_name,
+    is_parameter_value,
+    read_declared_parameters,
+)
 from archgen.plugins.ros.ros_package.import_account import ImportAccount
 from archgen.plugins.ros.ros_package.message_files import make_type_name, read_message_definition
 from archgen.plugins.ros.ros_package.package_files import (
@@ -32,7 +35,6 @@ from archgen.plugins.ros.ros_package.package_files import (
 from archgen.plugins.ros.ros_package.package_programs import find_programs
 
 HINT = "package"
-_PARAMETER_NAME = re.compile(r"[^\s.]+(?:\.[^\s.]+)*\Z")
 _MAX_BYTES = 4_000_000
 _MESSAGE_KINDS = {".msg": "msg", ".srv": "srv", ".action": "action"}
 _YAML = (".yaml", ".yml")
@@ -197,16 +199,13 @@ class _PackageReader:
         """Return the values of a section by their dotted names: a set of them might be read as a declaration."""
         values: dict[str, Any] = {}
         for value in section.values:
-            if not _PARAMETER_NAME.match(value.name) or len(value.name) > MAX_NAME_LENGTH:
-                words = f"`{value.name}` is no name of a parameter"
-                self._account.add_note("parameter", words, value.name_at)
-            elif isinstance(value.value, list | tuple) and any(
-                isinstance(item, dict | list | tuple) for item in value.value
-            ):
-                words = f"`{value.name}` is no value that a parameter of ROS can have"
-                self._account.add_note("parameter", words, value.name_at)
-            elif value.value is not None:
+            if value.value is not None and is_parameter_name(value.name) and is_parameter_value(value.value):
                 values[value.name] = value.value
+            elif value.value is not None or not is_parameter_name(value.name):
+                what = (
+                    "value that a parameter of ROS can have" if is_parameter_name(value.name) else "name of a parameter"
+                )
+                self._account.add_note("parameter", f"`{value.name}` is no {what}", value.name_at)
         return values
 
 

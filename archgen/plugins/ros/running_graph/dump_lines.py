@@ -21,7 +21,7 @@ from archgen.plugin.importing import (
     parse_yaml,
     read_bounded,
 )
-from archgen.plugin.ros import flatten_parameters
+from archgen.plugin.ros import find_name_fault, flatten_parameters
 
 MAX_DUMP_BYTES = 64_000_000
 _MAX_LINE = 20_000
@@ -117,7 +117,8 @@ class RunningNode:
 class RunningGraph:
     """All that a dump says, with an account of what was taken."""
 
-    def __init__(self) -> None:
+    def __init__(self, *, is_ros_1: bool) -> None:
+        self.is_ros_1 = is_ros_1
         self.nodes: dict[str, RunningNode] = {}
         self.messages: dict[str, str] = {}
         """Messages by the names of topics, services and actions."""
@@ -133,7 +134,11 @@ class RunningGraph:
         return self.nodes[full_name]
 
     def add_use(self, node: RunningNode, use: str, name: str, message: str) -> None:
-        """Add a topic, service or action of a node."""
+        """Add a topic, service or action of a node, unless ROS knows no such name: a line of a dump may be cut or garbled."""
+        fault = "it is only a `/`" if name == "/" else find_name_fault(name, ros_1=self.is_ros_1)
+        if fault:
+            self.add_note("name", f"`{name}` of `{node.full_name}` is no name of ROS: {fault}", node.span)
+            return
         if name not in node.uses[use]:
             self.taken[use] += 1
         if message or name not in node.uses[use]:

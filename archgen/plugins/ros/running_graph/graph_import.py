@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from archgen.plugin.importing import ForeignFileError, ForeignImport, Span, make_id, make_unique_id, title_from_id
-from archgen.plugin.ros import is_common_callback
+from archgen.plugin.ros import find_name_fault, find_node_name_fault, is_common_callback
 from archgen.plugins.ros.ros_package.message_files import make_type_name
 from archgen.plugins.ros.running_graph.dump_lines import USES, DumpLine, RunningGraph, RunningNode, read_dump_lines
 from archgen.plugins.ros.running_graph.ros_1_dump import read_ros_1_dump
@@ -30,7 +30,7 @@ def read_ros_1_graph(files: Sequence[Path]) -> ForeignImport:
 def _read_graph(
     files: Sequence[Path], read: Callable[[Iterable[DumpLine], RunningGraph], None], wanted_format: str
 ) -> ForeignImport:
-    graph = RunningGraph()
+    graph = RunningGraph(is_ros_1=read is read_ros_1_dump)
     read(read_dump_lines(files), graph)
     slices = write_graph(graph)
     if not slices:
@@ -54,7 +54,12 @@ def write_graph(graph: RunningGraph) -> dict[str, dict[str, Any]]:
     """Return the slices: one of component types, one of nodes; of messages alone one of types."""
     maker = _SliceMaker(graph)
     for node in graph.nodes.values():
-        if node.full_name not in _NO_NODES and not node.full_name.rpartition("/")[2].startswith("_"):
+        namespace, _, name = node.full_name.rpartition("/")
+        fault = find_node_name_fault(name) or (namespace and find_name_fault(namespace, ros_1=graph.is_ros_1))
+        if fault:
+            graph.add_note("node", f"`{node.full_name}` is no name of ROS: {fault}", node.span)
+            graph.taken["node"] -= 1
+        elif node.full_name not in _NO_NODES and not name.startswith("_"):
             maker.add_node(node)
     slices = maker.finish()
     if not slices and any(graph.messages.values()):

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable
 from typing import Any
 
-from archgen.plugin.ros import KNOWN_DISTROS, PAST_DISTROS
+from archgen.plugin.ros import KNOWN_DISTROS, PAST_DISTROS, full_message_name
 from archgen.plugins.ros.running_graph.dump_lines import DumpLine, RunningGraph, RunningNode, read_server_values
 
 _NODE = re.compile(r"Node \[(/\S+)\]")
@@ -15,7 +15,6 @@ _USE = re.compile(r" *\* (/\S+)(?: \[([^\]]+)\])?(?: \d+ (?:publishers?|subscrib
 _BAG_TOPIC = re.compile(r"(?:topics:)?\s+(/\S+)\s+\d+ msgs?\b.*: ([A-Za-z]\w*/[A-Za-z]\w*)(?:\s.*)?")
 _SERVICE_INFO = re.compile(r"rosservice (?:info|type) (/\S+)")
 _SERVICE_TYPE = re.compile(r"(?:Type: )?([A-Za-z]\w*)/([A-Za-z]\w*)")
-_SHORT_MESSAGE = re.compile(r"([A-Za-z]\w*)/([A-Za-z]\w*)")
 _PARAMETER_COMMAND = re.compile(r"rosparam dump\b.*")
 
 
@@ -58,8 +57,9 @@ class _Ros1DumpReader:
     def _read_detail(self, line: DumpLine) -> None:
         service = _SERVICE_INFO.fullmatch(line.command)
         found = _SERVICE_TYPE.fullmatch(line.text.strip())
-        if service and found:
-            self._graph.messages[service[1]] = f"{found[1]}/srv/{found[2]}"
+        message = full_message_name(f"{found[1]}/srv/{found[2]}") if found else None
+        if service and message:
+            self._graph.messages[service[1]] = message
             self._graph.taken["service type"] += 1
             return
         recorded = _BAG_TOPIC.fullmatch(line.text)
@@ -110,8 +110,7 @@ class _Ros1DumpReader:
 
 
 def _write_message(short: str) -> str:
-    match = _SHORT_MESSAGE.fullmatch(short)
-    return f"{match[1]}/msg/{match[2]}" if match else ""
+    return full_message_name(short.replace("/", "/msg/", 1)) or ""
 
 
 def _list_leaves(values: dict[str, Any], outer: str) -> list[str]:

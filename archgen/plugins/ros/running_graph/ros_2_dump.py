@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from archgen.plugin.importing import Span
+from archgen.plugin.ros import full_message_name
 from archgen.plugins.ros.running_graph.dump_lines import (
     FULL_NAME,
     DumpLine,
@@ -39,7 +40,6 @@ _ACTION_END = re.compile(r" +(/\S+)(?: \[([^\]]+)\])?")
 _COMPONENT = re.compile(r"\s+\d+\s+(/\S+)")
 _PARAMETER_HEAD = re.compile(r"(/\S+):")
 _BAG_TOPIC = re.compile(r"(?:Topic information:)?\s*Topic: (/\S+) \| Type: (\S+) \|.*")
-_MESSAGE = re.compile(r"[A-Za-z]\w*/(?:msg|srv|action)/[A-Za-z]\w*\Z", re.ASCII)
 _QUIET = re.compile(
     r"(?:Type|Publisher count|Subscription count|Clients count|Services count|Node name|There are \d++|WARNING"
     r"|(?:Published|Subscribed) topics:|Action: /|/\S+: \w+ \[\d+\]|\w+ \[\d+\]|\[(?:WARN|INFO)\]).*"
@@ -165,7 +165,7 @@ class _Ros2DumpReader:
         if len(found) > 1:
             words = f"`{name}` has several types: {messages}; the first one is taken"
             self._graph.add_note("type", words, line.span, fate="noted")
-        if not _MESSAGE.match(found[0]):
+        if full_message_name(found[0]) != found[0]:
             self._graph.add_note("type", f"`{found[0]}` of `{name}` is no message of ROS 2", line.span)
             return ""
         return found[0]

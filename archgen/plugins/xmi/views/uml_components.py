@@ -8,17 +8,18 @@ from typing import Any
 from archgen.plugin.generating import make_camel_name, title_from_id
 from archgen.plugin.model import Architecture, Component, read_generic_name
 from archgen.plugins.xmi.views.uml_features import UmlFeatures
-from archgen.plugins.xmi.views.uml_tree import (
+from archgen.plugins.xmi.views.uml_types import (
     TYPE_PREFIX,
     IdRegistry,
     UmlTree,
+    UmlTypes,
     make_comments,
     make_id_word,
+    make_signature,
     make_tree,
     read_hints,
     read_mapping,
 )
-from archgen.plugins.xmi.views.uml_types import UmlTypes, make_signature
 
 PortPath = tuple[str, str]
 """A component's or type's path, and the id of a port of it."""

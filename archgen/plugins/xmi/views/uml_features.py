@@ -7,8 +7,7 @@ from decimal import Decimal
 from typing import Any
 
 from archgen.plugin.model import parse_quantity
-from archgen.plugins.xmi.views.uml_tree import IdRegistry, UmlTree, make_comments, make_tree, read_mapping
-from archgen.plugins.xmi.views.uml_types import UmlTypes
+from archgen.plugins.xmi.views.uml_types import IdRegistry, UmlTree, UmlTypes, make_comments, make_tree, read_mapping
 
 _DECLARATION_KEYS = frozenset(
     {"type", "value", "unit", "range", "choices", "description", "read_only", "visibility", "from", "hints"}

@@ -11,17 +11,17 @@ from typing import Any
 from archgen.plugin.generating import GeneratedView, GenerationContext, title_from_id
 from archgen.plugin.model import Architecture
 from archgen.plugins.xmi.views.uml_components import UmlComponents
-from archgen.plugins.xmi.views.uml_tree import (
+from archgen.plugins.xmi.views.uml_types import (
     TYPE_PREFIX,
     IdRegistry,
     UmlTree,
+    UmlTypes,
     list_names,
     make_comments,
     make_tree,
     read_hints,
     read_mapping,
 )
-from archgen.plugins.xmi.views.uml_types import UmlTypes
 from archgen.plugins.xmi.views.uml_wiring import UmlWiring
 
 

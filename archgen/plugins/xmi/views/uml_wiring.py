@@ -8,16 +8,16 @@ from typing import Any
 from archgen.plugin.generating import make_camel_name
 from archgen.plugin.model import Architecture, Connection, Input
 from archgen.plugins.xmi.views.uml_components import PortPath, UmlComponents, name_output_interface
-from archgen.plugins.xmi.views.uml_tree import (
+from archgen.plugins.xmi.views.uml_types import (
     TYPE_PREFIX,
     IdRegistry,
     UmlTree,
+    UmlTypes,
     list_names,
     make_tree,
     read_hints,
     read_mapping,
 )
-from archgen.plugins.xmi.views.uml_types import UmlTypes
 
 
 class UmlWiring:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
+from archgen.diagnostics.common_wording import fit_lines
+from archgen.frozen import dataclass
 from archgen.views.changes.change_wording import BREAK_SIGN, CHANGE_SIGNS
 from archgen.views.graphs.drawn_level import FlowStyle
 from archgen.views.picture_shapes import Arrow, ElementChange
@@ -63,7 +64,4 @@ def _draw_bundle(key: ArrowKey, bundle: Sequence[ConnectionLine]) -> Arrow:
 
 def _bundle_label(bundle: Sequence[ConnectionLine], sign: str) -> str:
     labels = list(dict.fromkeys(line.label for line in bundle if line.label))
-    shown_labels = (
-        labels if len(labels) <= _MAX_LABELS else [*labels[: _MAX_LABELS - 1], f"{len(labels) - _MAX_LABELS + 1} more"]
-    )
-    return "\n".join(f"{sign} {name}" for name in shown_labels)
+    return "\n".join(f"{sign} {name}" for name in fit_lines(labels, _MAX_LABELS, "{} more"))

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 
 from archgen.compare import Comparison
+from archgen.compare.agreements import find_partner_id
+from archgen.diagnostics.common_wording import fit_lines
+from archgen.frozen import dataclass, replace
+from archgen.model.architecture import Architecture
 from archgen.model.component import Component
+from archgen.views.changes.breaking_items import is_break_shown
 from archgen.views.changes.change_wording import BREAK_SIGN, CHANGE_SIGNS
+from archgen.views.changes.named_elements import name_each, name_partners
 from archgen.views.elements import element_names
 from archgen.views.graphs import element_boxes
-from archgen.views.graphs.changes.broken_readers import BrokenReaders
 from archgen.views.graphs.changes.change_arrows import ConnectionLine, bundle_arrows
 from archgen.views.graphs.changes.merged_versions import (
     ChangeNotes,
@@ -20,7 +25,7 @@ from archgen.views.graphs.changes.merged_versions import (
     merged_edges,
 )
 from archgen.views.graphs.changes.picture_folding import PictureBudget, fold_neighbours, fold_to_budget
-from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.graphs.graph_folding import add_legend_keys
 from archgen.views.inline_text import count_noun
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.picture_shapes import Box, Cluster, ElementChange, Graph
@@ -75,14 +80,7 @@ def _find_loose_ports(comparison: Comparison, lines: Sequence[ConnectionLine]) -
             if change.kind == "removed":
                 component = comparison.matched_ids.common_id("component", component)
             ports.setdefault(component, []).append(f"{CHANGE_SIGNS[change.kind]} {change.element_kind} {name}")
-    return {name: _shorten_list(words) for name, words in ports.items()}
-
-
-def _shorten_list(words: Sequence[str]) -> tuple[str, ...]:
-    """Return a few lines; the last one counts those that are left out."""
-    if len(words) <= _MAX_LINES:
-        return tuple(words)
-    return (*words[: _MAX_LINES - 1], f"{len(words) - _MAX_LINES + 1} more ports")
+    return {name: tuple(fit_lines(words, _MAX_LINES, "{} more ports")) for name, words in ports.items()}
 
 
 def draw_component_changes(comparison: Comparison, budget: PictureBudget) -> Graph | None:
@@ -283,3 +281,66 @@ def _alternative_text(overlay: _OverlaidComponents) -> str:
     counts = {kind: sum(line.change == kind for line in overlay.lines) for kind in ("added", "removed", "changed")}
     phrases += [f"{count_noun(count, 'connection')} {kind}" for kind, count in counts.items() if count]
     return "; ".join(phrases) + "."
+
+
+_NAMES = re.compile(r"`([^`]+)`")
+
+
+@dataclass(frozen=True, slots=True)
+class PartnerLosses:
+    """What a partner loses by a change: the outputs that it is about; inputs where no output is named; a type."""
+
+    partner: str
+    outputs: frozenset[str]
+    inputs: frozenset[str]
+    type_name: str | None
+
+    def are_about(self, edge: MergedEdge, old_input_id: str) -> bool:
+        """Return whether what is lost runs along a connection."""
+        if self.type_name is not None:
+            return self.type_name == edge.label
+        # An input may read many outputs, of which one changed.
+        return edge.output_id in self.outputs or (
+            not self.outputs and not self.inputs.isdisjoint((edge.input_id, old_input_id))
+        )
+
+
+class BrokenReaders:
+    """Tells for each connection which partners it breaks."""
+
+    def __init__(self, comparison: Comparison) -> None:
+        self._partner_names: Mapping[str, str] = name_partners(comparison)
+        self._losses = tuple(_list_losses(comparison))
+        # Those of the later version win: who reads it now is who is broken.
+        self._owners = _collect_owners(comparison.before.architecture) | _collect_owners(comparison.after.architecture)
+
+    def find_partners(self, edge: MergedEdge, old_input_id: str) -> tuple[str, ...]:
+        """Return what people call the partners for whom a connection breaks."""
+        owners = self._owners.get(edge.input_id) or self._owners.get(old_input_id, ())
+        partners = [
+            losses.partner
+            for losses in self._losses
+            if losses.partner in owners and losses.are_about(edge, old_input_id)
+        ]
+        return name_each(dict.fromkeys(partners), self._partner_names)
+
+
+def _list_losses(comparison: Comparison) -> Iterator[PartnerLosses]:
+    architectures = (comparison.before.architecture, comparison.after.architecture)
+    outputs = {name for architecture in architectures for name in architecture.outputs}
+    inputs = {name for architecture in architectures for name in architecture.inputs}
+    for change in comparison.changes:
+        for partner_break in change.breaks:
+            if is_break_shown(partner_break.category, comparison):
+                names = {change.element_id, *_NAMES.findall(partner_break.reason)}
+                yield PartnerLosses(
+                    find_partner_id(partner_break.partner, comparison.matched_ids),
+                    frozenset(names & outputs),
+                    frozenset(names & inputs),
+                    change.element_id if change.element_kind == "type" else None,
+                )
+
+
+def _collect_owners(architecture: Architecture) -> dict[str, tuple[str, ...]]:
+    """Return the owners of the component of each input."""
+    return {name: tuple(architecture.components[port.component].owners) for name, port in architecture.inputs.items()}

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
 
 from archgen.compare import Change, Comparison
 from archgen.compare.matched_ids import MatchedIds
+from archgen.frozen import dataclass, field
 from archgen.model.architecture import Architecture
 from archgen.views.changes.change_wording import is_textual
 from archgen.views.graphs.drawn_level import FlowStyle, flow_style

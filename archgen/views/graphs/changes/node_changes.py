@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
 
 from archgen.compare import Change, Comparison
 from archgen.compare.matched_ids import MatchedIds
+from archgen.frozen import dataclass, replace
 from archgen.model.architecture import Architecture
 from archgen.model.node import Endpoint, Topic
 from archgen.views.changes.change_wording import CHANGE_SIGNS, is_textual
 from archgen.views.graphs import element_boxes
 from archgen.views.graphs.changes.change_arrows import ConnectionLine, bundle_arrows
 from archgen.views.graphs.changes.picture_folding import PictureBudget, fits_budget
-from archgen.views.graphs.legend_keys import add_legend_keys
+from archgen.views.graphs.graph_folding import add_legend_keys
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.picture_shapes import Box, ElementChange, Graph
 
@@ -151,7 +151,14 @@ def _use_lines(comparison: Comparison, port_sentences: dict[UseKey, list[str]]) 
         change_kind: ElementChange | None = "changed" if sentences else None
         if (key in new_endpoints) != (key in old_endpoints):
             change_kind = "added" if key in new_endpoints else "removed"
-        yield _use_line(key, endpoint, change_kind, sentences)
+        node, topic, use = key
+        tail, head = f"node {node}", f"topic {topic}"
+        if use in {"subscribes", "serves"}:
+            tail, head = head, tail
+        use_text = f"{node} {use} {topic}"
+        style = "data" if endpoint.flow == "topic" else endpoint.flow
+        sentence = "\n".join((f"{CHANGE_SIGNS[change_kind]} {use_text}" if change_kind else use_text, *sentences))
+        yield ConnectionLine(tail, head, style, use if change_kind else "", change_kind, sentence)
 
 
 def _sentences_about(key: UseKey, endpoint: Endpoint, port_sentences: dict[UseKey, list[str]]) -> Iterator[str]:
@@ -165,19 +172,6 @@ def _sentences_about(key: UseKey, endpoint: Endpoint, port_sentences: dict[UseKe
     for (owner, use_of_port, port), sentences in port_sentences.items():
         if (owner, use_of_port) == (node, use) and port in port_names:
             yield from sentences
-
-
-def _use_line(
-    key: UseKey, endpoint: Endpoint, change_kind: ElementChange | None, sentences: tuple[str, ...]
-) -> ConnectionLine:
-    node, topic, use = key
-    tail, head = f"node {node}", f"topic {topic}"
-    if use in {"subscribes", "serves"}:
-        tail, head = head, tail
-    use_text = f"{node} {use} {topic}"
-    style = "data" if endpoint.flow == "topic" else endpoint.flow
-    sentence = "\n".join((f"{CHANGE_SIGNS[change_kind]} {use_text}" if change_kind else use_text, *sentences))
-    return ConnectionLine(tail, head, style, use if change_kind else "", change_kind, sentence)
 
 
 def _draw_box(overlay: _OverlaidNodes, box_id: str) -> Box:

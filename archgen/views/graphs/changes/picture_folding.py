@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from typing import get_args
 
+from archgen.diagnostics.common_wording import fit_lines
+from archgen.frozen import dataclass, replace
 from archgen.views.changes.change_wording import CHANGE_SIGNS
 from archgen.views.inline_text import count_noun
 from archgen.views.picture_shapes import Arrow, Box, Cluster, ElementChange, Graph
@@ -219,11 +220,10 @@ def _draw_group(box_id: str, cluster: Cluster, members: Sequence[Box]) -> Box:
     if len(members) == 1:
         return replace(_name_group(members[0], cluster), id=box_id)
     names = [" · ".join((*box.lines[:1], box.title)) for box in members]
-    shown = names if len(names) <= _MAX_NAMES else [*names[: _MAX_NAMES - 1], f"and {len(names) - _MAX_NAMES + 1} more"]
     return Box(
         box_id,
         cluster.title,
-        tuple(shown),
+        tuple(fit_lines(names, _MAX_NAMES)),
         style="group",
         emphasis="neighbour",
         ref=cluster.ref,

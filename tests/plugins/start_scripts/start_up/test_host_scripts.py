@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -139,6 +140,31 @@ def test_when_the_script_itself_is_killed_nothing_is_left(script: Path, port: in
     run.wait_for("up        all: 4 steps")
     run.send(signal.SIGKILL)
     run.wait_for_nothing_left()
+
+
+def test_where_no_log_can_be_written_nothing_starts(script: Path, port: int, tmp_path: Path) -> None:
+    stage = Stage(tmp_path / "stage", PROGRAMS, needs=NEEDS, ports={"world": port}, ends={"clock": 0})
+    done = subprocess.run(  # noqa: S603 - the script that was just generated
+        ["bash", script],  # noqa: S607
+        env={**stage.environment, "START_LOGS": "/proc/logs"},
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=120,
+    )
+    assert done.returncode == 2
+    assert "/proc/logs" in done.stderr
+    assert stage.journal == []
+
+
+def test_it_needs_no_home(script: Path, port: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("HOME", "USER", "LOGNAME", "TMPDIR"):
+        monkeypatch.delenv(name, raising=False)
+    run, stage = start(script, tmp_path, port)
+    run.wait_for("up        all: 4 steps")
+    run.send(signal.SIGTERM)
+    assert run.wait_for_end() == 0
+    assert stage.journal.count("start world") == 1
 
 
 def test_it_does_not_run_twice(script: Path, port: int, tmp_path: Path) -> None:

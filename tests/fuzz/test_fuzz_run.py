@@ -1,0 +1,100 @@
+"""A minute of `make fuzz`, with the same seed each time: all readers, guided by coverage where Atheris is installed for it."""
+
+from __future__ import annotations
+
+import ast
+import io
+import json
+import os
+import random
+import subprocess
+import sys
+import zipfile
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import pytest
+import yaml
+from lxml import etree
+
+from tests.fuzz import run_fuzz
+from tests.fuzz.fuzz_mutations import SEPARATOR, mutate_input, write_zip
+from tests.fuzz.fuzz_targets import Target, list_targets
+from tests.fuzz.run_fuzz import FuzzRun
+from tests.running import ROOT
+
+FUZZ_PYTHON = ROOT / ".make/fuzz-tools/bin/python"
+
+
+def start_fuzz(work: Path, *words: str, python: str = sys.executable) -> subprocess.CompletedProcess[str]:
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    command = [python, "-m", "tests.fuzz.run_fuzz", "--work", str(work), *words]
+    return subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False, timeout=1800)  # noqa: S603 - our own program
+
+
+@pytest.mark.slow
+def test_a_minute_finds_nothing(tmp_path: Path) -> None:
+    python = str(FUZZ_PYTHON) if FUZZ_PYTHON.exists() else sys.executable
+    done = start_fuzz(tmp_path, "--seconds", "60", python=python)
+    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-2000:]
+    counts = {file.stem: json.loads(file.read_text()) for file in (tmp_path / "counts").glob("*.json")}
+    assert set(counts) == {target.name for target in list_targets()}
+    assert all(count["inputs"] for count in counts.values())
+
+
+def break_on_purpose(parts: Sequence[bytes], folder: Path) -> None:
+    del folder
+    if parts[0].startswith(b"loop"):
+        while True:
+            pass
+    assert 1 / (len(parts[0]) - 3)
+
+
+def test_what_breaks_is_kept_once_for_each_place_as_its_smallest_input(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(run_fuzz, "PROCESSOR_SECONDS", 0.2)
+    run = FuzzRun(Target("x", ("lines",), break_on_purpose, lambda: [b"a"]), tmp_path, 1)
+    run.begin()
+    for data in (b"abc" + SEPARATOR + b"more", b"fine", b"abc", b"abc" + SEPARATOR, b"looping", b"loop"):
+        run.take_input(data)
+    run.write_counts(1)
+    kept = {path.name: path.read_bytes() for path in (tmp_path / "found").iterdir() if path.suffix != ".txt"}
+    assert kept == {"x-ZeroDivisionError-oracle": b"abc", "x-TooLongError-oracle": b"loop"}
+    counts = json.loads((tmp_path / "counts/x.json").read_text())
+    assert (counts["inputs"], counts["faults"]) == (6, {"x-ZeroDivisionError-oracle": 3, "x-TooLongError-oracle": 2})
+
+
+@pytest.mark.parametrize("kind", ["xml", "yaml", "python", "zip", "lines"])
+def test_changes_are_the_same_for_a_seed_and_mostly_sound(kind: str) -> None:
+    sound = {
+        "xml": b"<a x='1'><b>text</b><c/></a>",
+        "yaml": b"a: {b: [1, 2], c: text}",
+        "python": b"x = f(1, [2, 'a'])\ny = x",
+        "zip": write_zip([("a.xml", b"<a><b/></a>")]),
+        "lines": b"one two\nthree",
+    }[kind]
+    made = [mutate_input((kind,), sound, ["word"], random.Random(seed)) for seed in range(200)]  # noqa: S311 - no secrets
+    assert made == [mutate_input((kind,), sound, ["word"], random.Random(seed)) for seed in range(200)]  # noqa: S311 - no secrets
+    assert len(set(made)) > 100
+    assert sum(map(READS[kind], made)) > 100
+
+
+def can(read: Callable[[bytes], object]) -> Callable[[bytes], bool]:
+    def try_it(data: bytes) -> bool:
+        try:
+            read(data)
+        except (ValueError, SyntaxError, yaml.YAMLError, etree.LxmlError, zipfile.BadZipFile):
+            return False
+        return True
+
+    return try_it
+
+
+READS = {
+    "xml": can(etree.fromstring),
+    "yaml": can(yaml.safe_load),
+    "python": can(ast.parse),
+    "zip": can(lambda data: zipfile.ZipFile(io.BytesIO(data)).namelist()),
+    "lines": can(bytes.decode),
+}
