@@ -122,6 +122,8 @@ def _name_fields(code: CodeType, field_names: Iterable[str]) -> CodeType:
 
 
 _NO_VALUE: Any = object()
+_NOTHING: Mapping[Any, Any] = {}
+"""What all fields of type `Mapping` share that are empty unless given: nobody may write to them, and models have a million."""
 _PLAIN_FIELD: dataclasses.Field[Any] = dataclasses.field()
 
 
@@ -168,6 +170,11 @@ def _take_field(namespace: dict[str, Any], name: str) -> dataclasses.Field[Any]:
     return value if isinstance(value, dataclasses.Field) else dataclasses.field(default=value)
 
 
+def _is_mapping(annotation: object) -> bool:
+    """Whether a field can only be read: a `dict` may be filled later."""
+    return str(annotation).startswith("Mapping[")
+
+
 class _StandardAttribute:
     """What `dataclasses.fields` and its like ask of a class: the standard library makes it once they do, for few classes."""
 
@@ -210,6 +217,8 @@ def _make_init(slotted_class: type, fields: Mapping[str, dataclasses.Field[Any]]
             namespace[f"set_{at}"] = slotted_class.__dict__[name].__set__
         if given_field.default is not dataclasses.MISSING:
             defaults[name] = given_field.default
+        elif frozen and given_field.default_factory is dict and _is_mapping(slotted_class.__annotations__[name]):
+            defaults[name] = _NOTHING
         elif given_field.default_factory is not dataclasses.MISSING:
             namespace[f"make_{at}"], defaults[name] = given_field.default_factory, _NO_VALUE
             made_places.append(at)

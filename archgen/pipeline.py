@@ -18,6 +18,7 @@ from archgen import project
 from archgen.checking.all_rules import SHIPPED_RULES, index_all_rules
 from archgen.checking.checked_project import CheckedProject
 from archgen.checking.codeowners_age import add_codeowners_age
+from archgen.checking.linked_project import PartMemory
 from archgen.checking.merged_project import merge_project
 from archgen.checking.pass_judging import read_origins, transform_project
 from archgen.checking.variant_judging import (
@@ -58,14 +59,16 @@ __all__ = [
 class VersionCache:
     """What versions of one project share; checks fill it.
 
-    Pass the same one for all of them: files that are the same are parsed once, and timing that is as in the version
-    before is not analysed again.
+    Pass the same one for all of them: files that are the same are parsed once, components and nodes in these that mean
+    the same are linked once, and timing that is as in the version before is not analysed again.
     """
 
     def __init__(self) -> None:
         """Start empty."""
         self.parsed_slices: ParsedSlices = {}
         self.analysis_memory = AnalysisMemory()
+        self.analysis_memory.make_room(2)
+        self.part_memory = PartMemory()
 
 
 def check_project(
@@ -75,10 +78,9 @@ def check_project(
 
     `variants` are those that are asked for: others are not judged; None is all of them. Raises `project.ProjectNotFoundError` if there is no project.
     """
-    version_cache = version_cache or VersionCache()
     with _pause_garbage_collection():
-        loaded_project = project.load_project(path, version_cache.parsed_slices)
-        return judge_project(loaded_project, version_cache.analysis_memory, variants)
+        loaded_project = project.load_project(path, version_cache.parsed_slices if version_cache else None)
+        return judge_project(loaded_project, version_cache, variants)
 
 
 def check_at_revision(path: Path | None, revision: str, version_cache: VersionCache | None = None) -> CheckedProject:
@@ -97,13 +99,13 @@ def check_tracked_project(
     version_cache = version_cache or VersionCache()
     with _pause_garbage_collection():
         loaded_project = project.load_at_revision(tracked_project, revision, version_cache.parsed_slices)
-        return judge_project(loaded_project, version_cache.analysis_memory)
+        return judge_project(loaded_project, version_cache)
 
 
 def check_loaded_project(loaded_project: LoadedProject, version_cache: VersionCache) -> CheckedProject:
     """Check a project that is loaded already."""
     with _pause_garbage_collection():
-        return judge_project(loaded_project, version_cache.analysis_memory)
+        return judge_project(loaded_project, version_cache)
 
 
 @contextmanager
@@ -144,16 +146,17 @@ def link_slices(data: Mapping[str, Any]) -> Architecture:
 
 def judge_project(
     loaded_project: LoadedProject,
-    analysis_memory: AnalysisMemory | None = None,
+    version_cache: VersionCache | None = None,
     variant_names: Sequence[str] | None = None,
 ) -> CheckedProject:
     """Run all stages on a loaded project, up to its findings; of one with variants, on it in each of them, too.
 
-    `variant_names` are those that are asked for, None for all of them.
+    `variant_names` are those that are asked for, None for all of them. What `version_cache` knows is not made anew; without
+    one, nothing is remembered for another version.
 
     No stage stops at errors: each yields its diagnostics and passes on what is sound.
     """
-    checked_project = judge_in_variants(
-        merge_project(loaded_project), analysis_memory or AnalysisMemory(), variant_names
-    )
+    analysis_memory = version_cache.analysis_memory if version_cache else AnalysisMemory()
+    part_memory = version_cache.part_memory if version_cache else None
+    checked_project = judge_in_variants(merge_project(loaded_project), analysis_memory, variant_names, part_memory)
     return add_codeowners_age(read_origins(checked_project))

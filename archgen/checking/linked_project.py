@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class PartMemory:
-    """The parts of a project that its variants have in common."""
+    """The parts that the versions and the variants of a project have in common."""
 
     def __init__(self) -> None:
         """Start empty."""

@@ -35,14 +35,20 @@ class UnknownVariantError(Exception):
 
 
 def judge_in_variants(
-    merged_project: MergedProject, analysis_memory: AnalysisMemory, variant_names: Sequence[str] | None
+    merged_project: MergedProject,
+    analysis_memory: AnalysisMemory,
+    variant_names: Sequence[str] | None,
+    part_memory: PartMemory | None = None,
 ) -> CheckedProject:
-    """Judge a merged project, and, where it has variants, as it stands in each of those that are asked for (None: all)."""
+    """Judge a merged project, and, where it has variants, as it stands in each of those that are asked for (None: all).
+
+    What `part_memory` knows of other versions of the project is not made anew.
+    """
     if "variants" not in merged_project.table.entries:
-        return judge_merged_project(merged_project, analysis_memory)
+        return judge_merged_project(merged_project, analysis_memory, part_memory)
     from archgen.findings import variant_findings
 
-    part_memory = PartMemory()
+    part_memory = part_memory or PartMemory()
     loaded_project = merged_project.loaded_project
     merged_project = replace(
         merged_project, loaded_project=replace(loaded_project, files=RememberedFiles(loaded_project.files))

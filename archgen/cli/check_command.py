@@ -84,7 +84,7 @@ def command(  # noqa: PLR0913 - one for each option
     from archgen.pipeline import VersionCache
     from archgen.products import check_findings
 
-    version_cache = VersionCache()
+    version_cache = None if changed_since is None else VersionCache()
     checked_project = command_support.check_or_exit(project, version_cache)
     if variant is not None:
         checked_project = _keep_variants(checked_project, variant)

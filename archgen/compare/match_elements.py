@@ -225,7 +225,7 @@ class _Matcher:
 
     def pair_by_likeness(self, kind: KindSpec) -> None:
         """Pair the remaining elements by likeness; ports only within each pair of components."""
-        unmatched_before: dict[str, dict[str, FeatureMap]] = {}
+        unmatched_before: dict[str, dict[str, object]] = {}
         unread_keys = self.new_relations.architecture.unread_keys
         for element_id, element in _declared_elements(kind, self.old_relations).items():
             # What may be in a part that could not be read may have its old id there.
@@ -233,18 +233,24 @@ class _Matcher:
             if not is_unread and self.matched_ids.find_new_id(kind.name, element_id) is None:
                 parent = self._new_parent(kind, element_id)
                 if parent is not None:
-                    features = describe_element(kind, self.old_relations, element)
-                    unmatched_before.setdefault(parent, {})[element_id] = features
+                    unmatched_before.setdefault(parent, {})[element_id] = element
         if not unmatched_before:
             return
-        unmatched_after: dict[str, dict[str, FeatureMap]] = {parent: {} for parent in unmatched_before}
+        unmatched_after: dict[str, dict[str, object]] = {}
         for element_id, element in _declared_elements(kind, self.new_relations).items():
             parent = element_id.rpartition(".")[0] if kind.stays_in_parent else ""
-            # Described only where something is left to pair.
-            if parent in unmatched_after and not self.matched_ids.is_matched(kind.name, element_id):
-                unmatched_after[parent][element_id] = describe_element(kind, self.new_relations, element)
-        for parent, elements in unmatched_before.items():
-            for old_id, new_id, confidence in find_likely_pairs(elements, unmatched_after[parent]):
+            if parent in unmatched_before and not self.matched_ids.is_matched(kind.name, element_id):
+                unmatched_after.setdefault(parent, {})[element_id] = element
+        # Described only where something is left to pair.
+        for parent in (each for each in unmatched_before if each in unmatched_after):
+            before, after = (
+                {name: describe_element(kind, relations, each) for name, each in elements.items()}
+                for relations, elements in (
+                    (self.old_relations, unmatched_before[parent]),
+                    (self.new_relations, unmatched_after[parent]),
+                )
+            )
+            for old_id, new_id, confidence in find_likely_pairs(before, after):
                 self.matched_ids.add_pair(kind.name, old_id, new_id, confidence)
 
     def _new_parent(self, kind: KindSpec, element_id: str) -> str | None:

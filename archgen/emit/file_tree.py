@@ -14,11 +14,11 @@ import shutil
 import stat
 import tempfile
 import time
-from collections.abc import Iterable, Iterator, Mapping
+import weakref
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from pathlib import Path
-from types import MappingProxyType
-from typing import Literal
+from typing import IO, Literal
 
 from archgen.emit.own_file_marks import explain_refusal
 from archgen.emit.safe_names import is_safe_path
@@ -32,6 +32,8 @@ _MANIFEST_HEADER = "# archgen wrote these files. It removes those that it no lon
 _MAX_FILE_BYTES = 1_000_000_000
 _MAX_READ_BYTES = 16_000_000
 """A larger file is not read at once."""
+_MAX_HELD_BYTES = 64_000_000
+"""What comes after so many bytes of files waits on disk until it is written: the pages of 10,000 components have 290 MB."""
 _MAX_MANIFEST_BYTES = 64_000_000
 """More than the manifest of 500,000 files has."""
 _FILE_MANAGER_DEBRIS = frozenset({".DS_Store", "Thumbs.db", "desktop.ini"})
@@ -72,7 +74,7 @@ def make_file_tree(files: Iterable[tuple[str, bytes]]) -> FileTree:
     Raise ValueError for an unsafe path and for two paths that differ in case only (`assign_safe_paths` makes good
     ones).
     """
-    data_by_path: dict[str, bytes] = {}
+    held_files = _HeldFiles()
     folded_paths: set[str] = set()
     for path, data in files:
         if not is_safe_path(path) or path == TREE_MANIFEST:
@@ -82,8 +84,44 @@ def make_file_tree(files: Iterable[tuple[str, bytes]]) -> FileTree:
             msg = f"two output files are called {path!r}"
             raise ValueError(msg)
         folded_paths.add(path.casefold())
-        data_by_path[path] = data
-    return FileTree(MappingProxyType(dict(sorted(data_by_path.items()))))
+        held_files.add_file(path, data)
+    held_files.places = dict(sorted(held_files.places.items()))
+    return FileTree(held_files)
+
+
+class _HeldFiles(Mapping[str, bytes]):
+    """Files by path: the first ones in memory, those behind them in a file without a name, which goes when they do."""
+
+    def __init__(self) -> None:
+        self.places: dict[str, bytes | tuple[IO[bytes], int, int]] = {}
+        """The data, or the store where it is, where it begins there, and how many bytes it has."""
+        self._held_bytes = 0
+        self._store: IO[bytes] | None = None
+
+    def add_file(self, path: str, data: bytes) -> None:
+        self._held_bytes += len(data)
+        if self._held_bytes <= _MAX_HELD_BYTES:
+            self.places[path] = data
+            return
+        if self._store is None:
+            self._store = tempfile.TemporaryFile()  # noqa: SIM115 - for as long as the files are held
+            weakref.finalize(self, self._store.close)
+        self.places[path] = self._store, self._store.tell(), len(data)
+        self._store.write(data)
+
+    def __getitem__(self, path: str) -> bytes:
+        place = self.places[path]
+        if isinstance(place, bytes):
+            return place
+        store, begin, size = place
+        store.seek(begin)
+        return store.read(size)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.places)
+
+    def __len__(self) -> int:
+        return len(self.places)
 
 
 def write_tree(files: FileTree, folder: Path) -> WriteResult:
@@ -97,11 +135,12 @@ def write_tree(files: FileTree, folder: Path) -> WriteResult:
         old_manifest = _read_tree_manifest(folder)
         own_digests = _find_own_files(folder, old_manifest)
         new_digests = {path: hashlib.sha256(data).hexdigest() for path, data in files.files.items()}
-        changed = {path: data for path, data in files.files.items() if own_digests.get(path) != new_digests[path]}
+        changed = tuple(path for path, digest in new_digests.items() if own_digests.get(path) != digest)
         stale = tuple(path for path in own_digests if path not in new_digests)
         if changed or stale or old_manifest != {(digest, path) for path, digest in new_digests.items()}:
-            _replace_files(folder, changed, stale, old_manifest, new_digests)
-        return WriteResult(tuple(changed), tuple(path for path in new_digests if path not in changed), stale)
+            _replace_files(folder, files, changed, stale, old_manifest=old_manifest, new_digests=new_digests)
+        unchanged = tuple(path for path, digest in new_digests.items() if own_digests.get(path) == digest)
+        return WriteResult(changed, unchanged, stale)
 
 
 def write_file(path: Path, data: bytes) -> None:
@@ -242,10 +281,12 @@ def digest_named_file(name: str, size: int) -> str | None:
         return hashlib.sha256(stream.read()).hexdigest()
 
 
-def _replace_files(
+def _replace_files(  # noqa: PLR0913 - what the folder holds, and what it shall hold
     folder: Path,
-    changed: Mapping[str, bytes],
+    files: FileTree,
+    changed: Sequence[str],
     stale: Iterable[str],
+    *,
     old_manifest: set[tuple[str, str]],
     new_digests: Mapping[str, str],
 ) -> None:
@@ -258,8 +299,8 @@ def _replace_files(
         changed_folders = sorted({path.rpartition("/")[0] for path in changed})
         for name in changed_folders:
             (staging_folder / name).mkdir(parents=True, exist_ok=True)
-        for path, data in changed.items():
-            _write_named_file(f"{staging_folder}/{path}", data)
+        for path in changed:
+            _write_named_file(f"{staging_folder}/{path}", files.files[path])
         # From here on each step leaves a folder that the next run can take over: both digests of a changed file are
         # known.
         _write_bytes(staging_folder / TREE_MANIFEST, _format_manifest(final_manifest | old_manifest))

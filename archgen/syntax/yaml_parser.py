@@ -200,6 +200,7 @@ def _build_tree(walk: _TreeWalk, parser: Any, restore: dict[int, int]) -> None: 
             if style:
                 value = ScalarNode(text, text, span, False)  # noqa: FBT003
             elif text:
+                text = intern(text)  # types, units, names: most are written more than once
                 value = ScalarNode(resolve_scalar(text) if text[0] in non_text_starts else text, text, span)
             else:
                 value = ScalarNode(None, text, span)

@@ -52,10 +52,10 @@ class AnalysisMemory:
     def make_room(self, version_count: int) -> None:
         """Remember at least so many analyses: whoever judges so many versions holds all of them anyway.
 
-        They are variants of one project: what they are built from is the same, as far as they share it.
+        They are versions of one project: what they are built from is the same, as far as they share it.
         """
         self._room = max(self._room, version_count)
-        self._parts = BuiltParts()
+        self._parts = self._parts or BuiltParts()
 
     def judge_architecture(self, architecture: Architecture) -> Analysis:
         """Analyse an architecture for judging; an earlier analysis, where every figure and every place is the same."""

@@ -230,6 +230,18 @@ def test_one_file_is_never_written_over_something_else(tmp_path: Path, place: st
         write_file(tmp_path / place, b"x")
 
 
+def test_what_comes_after_many_bytes_waits_on_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    files = [(f"f{number}.txt", f"{number}\n".encode() * 9) for number in range(9, -1, -1)]
+    held = make_file_tree(files)
+    monkeypatch.setattr(file_tree, "_MAX_HELD_BYTES", 40)
+    stored = make_file_tree(files)
+    assert dict(stored.files) == dict(held.files) == dict(files)
+    assert list(stored.files) == sorted(dict(files))
+    assert write_tree(stored, tmp_path / "out").written == tuple(held.files)
+    assert {path.name: path.read_bytes() for path in (tmp_path / "out").glob("*.txt")} == dict(files)
+    assert write_tree(held, tmp_path / "out").unchanged == tuple(held.files)
+
+
 def test_what_killed_runs_left_is_removed_and_what_runs_hold_is_not(tmp_path: Path) -> None:
     out = tmp_path / "out"
     for folder in (tmp_path, out):

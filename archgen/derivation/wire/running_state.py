@@ -109,6 +109,8 @@ class NodeState:
     overrides: Mapping[tuple[str, UseKind | None], list[QosOverride]]
     """By the name on the wire and the use of the ends that they name."""
     evidence: Mapping[str, Evidence]
+    active_evidence: Mapping[str, Evidence]
+    """What is evidence of an end that runs, too: all but why others do not."""
     places: tuple[Span, ...]
     """Those of the evidence, which does not compare them."""
 
@@ -131,7 +133,8 @@ class RunningStates:
         for override in () if self._is_ros_1 or node.is_program else list_overrides(self._architecture, node):
             overrides.setdefault(override.wire_end, []).append(override)
         places = tuple(each.at for each in evidence.values())
-        return NodeState(domain, clock, runs, lifecycle, overrides, evidence, places)
+        active_evidence = {name: each for name, each in evidence.items() if name != "runs"}
+        return NodeState(domain, clock, runs, lifecycle, overrides, evidence, active_evidence, places)
 
     def _find_domain(self, node: Node, evidence: dict[str, Evidence]) -> int | None:
         text, place = find_environment(self._architecture, node).get(DOMAIN_VARIABLE, (None, NO_SPAN))
@@ -260,13 +263,13 @@ def complete_states(
 
 def _complete_endpoint(node: Node, state: NodeState, endpoint: Endpoint) -> Endpoint:
     runs = _find_end_state(node, state, endpoint)
-    evidence = {name: each for name, each in state.evidence.items() if name != "runs" or runs != "active"}
+    evidence = state.active_evidence if runs == "active" else state.evidence
     completed = replace(
         endpoint,
         domain=state.domain,
         clock=state.clock,
         runs=runs,
-        evidence={**endpoint.evidence, **evidence},
+        evidence={**endpoint.evidence, **evidence} if endpoint.evidence else evidence,
     )
     overrides = state.overrides.get((endpoint.name or "", endpoint.use)) if endpoint.flow == "topic" else None
     return override_qos(completed, overrides) if overrides else completed

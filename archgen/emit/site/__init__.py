@@ -56,19 +56,21 @@ def build_site(  # noqa: PLR0913 - what a site is made of
     frame = make_frame(pages, title=title, revision=revision, notices=notices)
     map_files = build_explorer_files(explorer_map, frame.links) if explorer_map else {}
     frame = replace(frame, map_parts=tuple(map_files))
-    files = [
-        *read_assets(),
-        *_picture_files(pictures, frame.links),
-        *build_search_files(search_entries, frame.links),
-        *map_files.items(),
-    ]
-    for page in pages:
-        path = frame.links.files[page.path]
-        if page.matrix:
-            files += build_matrix_files(page.matrix, open_page(path, frame.links))
-        # The writer fills `chapters.files` while it writes, so these files are added only when all pages are done.
-        files.append((path, write_page(path, page, pictures, frame, chapter_writer)))
-    return make_file_tree((*files, *chapter_writer.files.items()))
+
+    def yield_files() -> Iterator[tuple[str, bytes]]:
+        yield from read_assets()
+        yield from _picture_files(pictures, frame.links)
+        yield from build_search_files(search_entries, frame.links)
+        yield from map_files.items()
+        for page in pages:
+            path = frame.links.files[page.path]
+            if page.matrix:
+                yield from build_matrix_files(page.matrix, open_page(path, frame.links))
+            yield path, write_page(path, page, pictures, frame, chapter_writer)
+        # The writer fills these while it writes: they are there only when all pages are done.
+        yield from chapter_writer.files.items()
+
+    return make_file_tree(yield_files())
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,6 +21,7 @@ ActivityNames = Mapping[tuple[str, str | None], str]
 """The activity's id, by node id and component id."""
 _NO_TIMING = Timing()
 _NO_INPUT_TIMING = InputTiming()
+_NO_PORTS: frozenset[str] = frozenset()
 _WRITING_USES = frozenset({"publishes", "serves"})
 
 
@@ -150,7 +151,7 @@ def _build_activity(part: _NodePart, tick_unit: TickUnit) -> Activity:
         every=max(timing.every or 1, 1),
         throttle=tick_unit.quantity_to_ticks(timing.throttle) or 0,
         keeps_dropped=timing.dropped != "forgotten",
-        conditional=frozenset(port for port, output in timing.outputs.items() if output.conditional),
+        conditional=frozenset(port for port, output in timing.outputs.items() if output.conditional) or _NO_PORTS,
         max_gaps={port: tick_unit.ns_to_ticks(o.max_gap.value) for port, o in timing.outputs.items() if o.max_gap},
         calls=dict(timing.calls),
         priority=timing.priority,
@@ -166,7 +167,8 @@ def _build_activity(part: _NodePart, tick_unit: TickUnit) -> Activity:
             for each in part.endpoints
             if each.use == "subscribes"
             and keeps_each_source(each, timing.inputs.get(key := endpoint_key(each), _NO_INPUT_TIMING))
-        ),
+        )
+        or _NO_PORTS,
         uses={
             resource: ResourceUse(tick_unit.ns_to_ticks(use.max.value), tick_unit.quantity_to_ticks(use.min) or 0)
             for resource, use in timing.uses.items()

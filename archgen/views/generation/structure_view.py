@@ -71,15 +71,15 @@ def _sort_components(context: GenerationContext, wanted: Collection[str]) -> lis
         if component in wanted
         for each in (*reversed(tuple(_list_outer_components(architecture, component))), component)
     )
-    return [each for group in architecture.groups for each in in_order if each.partition(".")[0] == group]
+    places = {group: place for place, group in enumerate(architecture.groups)}
+    return sorted(in_order, key=lambda each: places[each.partition(".")[0]])
 
 
 def _record_groups(architecture: Architecture, wanted: Collection[str]) -> list[dict[str, Any]]:
-    outermost = [
-        each
-        for each in (*architecture.shells.values(), *architecture.components.values())
-        if each.id in wanted and each.parent is None
-    ]
+    outermost: dict[str, list[str]] = {}
+    for each in (*architecture.shells.values(), *architecture.components.values()):
+        if each.id in wanted and each.parent is None:
+            outermost.setdefault(each.group, []).append(each.id)
     records = [
         {
             "id": group.id,
@@ -87,9 +87,7 @@ def _record_groups(architecture: Architecture, wanted: Collection[str]) -> list[
             "description": group.description or "",
             "owner": group.owner or "",
             "place": write_place(group.at),
-            "components": [
-                _record_component(architecture, each.id, wanted) for each in outermost if each.group == group.id
-            ],
+            "components": [_record_component(architecture, each, wanted) for each in outermost.get(group.id, ())],
         }
         for group in architecture.groups.values()
     ]
