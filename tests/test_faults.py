@@ -312,7 +312,7 @@ def test_two_runs_at_once_leave_what_one_of_them_made(words: str, tmp_path: Path
                 stderr=subprocess.PIPE,
             )
             for name in ("first", "second")
-            for where in [["-o", place / (target or ["archgen-out"])[0]]]
+            for where in [["-o", str(place / (target or ["archgen-out"])[0])]]
         ]
         said = [each.communicate(timeout=600) for each in running]
         assert [each.returncode for each in running] == [0, 0], said
@@ -338,7 +338,7 @@ def test_a_real_disk_that_takes_no_more(options: str, tmp_path: Path) -> None:
         done
         find . -name '.archgen-new-*'; find . -empty -type f
     """
-    command = ["unshare", "--mount", "sh", "-c", script, sys.executable, disk, ROBOT]
+    command = ["unshare", "--mount", "sh", "-c", script, sys.executable, str(disk), ROBOT]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)  # noqa: S603
     if done.returncode == 77 or "unshare failed" in done.stderr:
         pytest.skip("who runs the tests may mount nothing")

@@ -234,7 +234,7 @@ def test_what_the_standard_library_says_of_a_class_is_made_when_it_is_asked_for(
     assert dataclasses.asdict(Fresh("a")) == {"name": "a", "words": []}
     assert dataclasses.fields(Fresh("b"))[1].metadata == {"unit": "m"}
     assert isinstance(Fresh.__dict__["__dataclass_fields__"], dict)
-    assert Fresh.__match_args__ == ("name", "words")  # type: ignore[attr-defined]
+    assert Fresh.__match_args__ == ("name", "words")
 
 
 def test_fields_are_not_inherited() -> None:
@@ -270,7 +270,8 @@ class UsualPoint(typing.NamedTuple):
 
 def test_a_named_tuple_is_that_of_the_standard_library() -> None:
     point, usual = Point(1, words=("a",)), UsualPoint(1, words=("a",))
-    assert point == usual == (1, 2, ("a",))
+    assert tuple(point) == tuple(usual) == (1, 2, ("a",))
+    assert hash(point) == hash(usual)
     assert (point.x, point.y, point.words, point.total) == (1, 2, ("a",), 3)
     assert repr(point) == repr(usual).removeprefix("Usual")
     assert point._asdict() == usual._asdict()

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from archgen.bringup.plan_shapes import StartPlan
-from archgen.bringup.start_plan import describes_start, make_start_plan
+from archgen.bringup.start_plan import make_start_plan
 from archgen.model.architecture import Architecture
 
 Derived = Callable[[str], Architecture]
@@ -265,12 +265,12 @@ nodes:
 
 
 def test_what_describes_a_start_up(derived: Derived) -> None:
-    assert describes_start(derived(STACK))
-    assert not describes_start(derived(ring("data", "data")))
-    assert describes_start(derived("nodes: {a: {kind: program, command: [a]}}"))
-    assert describes_start(
-        derived("groups: {g: {components: {a: A}}}\nnodes: {a: {implements: a, start: {phase: core}}}")
-    )
+    assert derived(STACK).describes_start()
+    assert not derived(ring("data", "data")).describes_start()
+    assert derived("nodes: {a: {kind: program, command: [a]}}").describes_start()
+    assert derived(
+        "groups: {g: {components: {a: A}}}\nnodes: {a: {implements: a, start: {phase: core}}}"
+    ).describes_start()
 
 
 def test_of_many_components_with_loops_none_is_lost(derived: Derived) -> None:

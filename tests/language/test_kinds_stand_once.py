@@ -20,6 +20,7 @@ REASONS = {
     "edit/imported_slices.py": "the mappings by id that models of other tools bring",
     "plugins/xmi/xmi_import.py": "the files that a model becomes",
     "link/declare/element_declaration.py": "the class of each kind",
+    "link/variants/element_removal.py": "how what is gone is taken out of each section",
     "model/document_chapters.py": "chapters, some of which are called like sections",
     "views/changes/site_changes.py": "kinds with a page of their own",
     "views/elements/element_card.py": "the function that makes each card",
