@@ -74,11 +74,14 @@ CASES = {
     "generate": Case("generate start -o ws", PLAIN),
     "generate again": Case("generate start -o ws", {"archgen.yaml": OLDER}, ("generate start -o ws",), PLAIN),
     "diff": Case("diff HEAD~1 HEAD --format html -o diff.html", PLAIN, is_repository=True),
-    "review": Case("review --base HEAD~1 -o review", PLAIN, is_repository=True),
+    "review": Case("review --base HEAD~1 -o archgen-out/review", PLAIN, is_repository=True),
     "sign": Case("sign a b --by a Ada --by b Ben --date 2026-03-01 -o signed.md", PLAIN, is_repository=True),
     "new": Case("new component sense.nose", PLAIN, refuses_again=True),
     "propose": Case("timing --propose --apply", {"archgen.yaml": "archgen: 1\n"}),
-    "adopt": Case("timing --measured run.csv --adopt measured.yaml", PLAIN | {"run.csv": FIGURES}),
+    "adopt": Case(
+        "timing --measured run.csv --adopt measured.yaml",
+        {"archgen.yaml": ROBOT.replace(", timing: {wcet: 20 ms}", ""), "run.csv": FIGURES},
+    ),
     "import": Case("import x.launch.xml -o .", PLAIN | {"x.launch.xml": LAUNCH}, refuses_again=True),
     "import --merge": Case(
         "import x.launch.xml --merge -o .",
@@ -187,6 +190,7 @@ def stage(request: pytest.FixtureRequest, faulty: FaultyArchgen, tmp_path: Path)
     first = Stage(faulty, case, tmp_path, FaultyRun(0, "", ""), {}, {})
     done = first.run()
     assert done.status == 0, done
+    assert done.writing_steps > 0, done
     return Stage(faulty, case, tmp_path, done, list_files(found), first.list_files())
 
 

@@ -216,6 +216,7 @@ def digest_manifest(folder: Path, *, just_written: bool = False) -> str | None:
     With `just_written` the caller has just written the folder, and its files are not read again.
     """
     if not just_written:
+        _remove_leftovers(folder)  # nobody may write this folder again
         manifest, own_digests = _read_tree_manifest(folder), dict[str, str]()
         if (
             any(_find_foreign_files(folder, manifest, own_digests))
