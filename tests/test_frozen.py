@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import copy
 import dataclasses
+import importlib
 import inspect
 import pickle
+import typing
 from dataclasses import field
-from typing import Any
+from typing import Any, ClassVar
 
 import pytest
 
-from archgen.frozen import dataclass, replace
+from archgen.frozen import NamedTuple, dataclass, replace
+from tests.running import ROOT
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,3 +193,113 @@ def test_a_field_without_a_default_stands_before_those_that_have_one() -> None:
 
     with pytest.raises(TypeError, match="Wrong: a field without a default follows one that has one"):
         dataclass(frozen=True, slots=True)(Wrong)
+
+
+@dataclass(slots=True, eq=False)
+class Counter:
+    """One that may change, is equal to itself alone, and shares a value with all of its kind."""
+
+    limit: ClassVar[int] = 3
+    name: str
+    seen: list[str] = field(default_factory=list)
+    at: int = 0
+
+
+def test_a_class_that_may_change_is_that_of_the_standard_library() -> None:
+    counter = Counter("a")
+    assert (counter.seen, counter.at, Counter.limit) == ([], 0, 3)
+    assert Counter("a").seen is not counter.seen
+    assert counter != Counter("a")
+    assert hash(counter) != hash(Counter("a"))
+    counter.at += 1
+    assert repr(counter) == "Counter(name='a', seen=[], at=1)"
+    assert repr(replace(counter, name="b")) == "Counter(name='b', seen=[], at=1)"
+    assert not hasattr(counter, "__dict__")
+    with pytest.raises(TypeError, match="unhashable"):
+        hash(Open(1))
+    assert pickle.loads(pickle.dumps(Open(2))) == Open(2)  # noqa: S301 - our own
+    assert [each.name for each in dataclasses.fields(Counter)] == ["name", "seen", "at"]
+
+
+def test_what_the_standard_library_says_of_a_class_is_made_when_it_is_asked_for() -> None:
+    @dataclass(frozen=True, slots=True)
+    class Fresh:
+        """One that nobody asked for its fields yet."""
+
+        name: str
+        words: list[str] = field(default_factory=list, metadata={"unit": "m"})
+
+    assert not isinstance(Fresh.__dict__["__dataclass_fields__"], dict)
+    assert dataclasses.is_dataclass(Fresh)
+    assert dataclasses.asdict(Fresh("a")) == {"name": "a", "words": []}
+    assert dataclasses.fields(Fresh("b"))[1].metadata == {"unit": "m"}
+    assert isinstance(Fresh.__dict__["__dataclass_fields__"], dict)
+    assert Fresh.__match_args__ == ("name", "words")  # type: ignore[attr-defined]
+
+
+def test_fields_are_not_inherited() -> None:
+    class Derived(Open):
+        """One that would have the fields of another one."""
+
+        more: int = 1
+
+    with pytest.raises(TypeError, match="Derived: a class with slots inherits no fields"):
+        dataclass(frozen=True, slots=True)(Derived)
+
+
+class Point(NamedTuple):
+    """A named tuple of ours."""
+
+    x: int
+    y: int = 2
+    words: tuple[str, ...] = ()
+
+    @property
+    def total(self) -> int:
+        """Their sum."""
+        return self.x + self.y
+
+
+class UsualPoint(typing.NamedTuple):
+    """The same of the standard library."""
+
+    x: int
+    y: int = 2
+    words: tuple[str, ...] = ()
+
+
+def test_a_named_tuple_is_that_of_the_standard_library() -> None:
+    point, usual = Point(1, words=("a",)), UsualPoint(1, words=("a",))
+    assert point == usual == (1, 2, ("a",))
+    assert (point.x, point.y, point.words, point.total) == (1, 2, ("a",), 3)
+    assert repr(point) == repr(usual).removeprefix("Usual")
+    assert point._asdict() == usual._asdict()
+    assert point._replace(y=5) == usual._replace(y=5)
+    assert type(point._replace(y=5)) is Point
+    assert (Point._fields, Point._field_defaults) == (UsualPoint._fields, UsualPoint._field_defaults)
+    assert Point._make([1, 2, ()]) == UsualPoint._make([1, 2, ()])
+    assert type(pickle.loads(pickle.dumps(point))) is type(copy.deepcopy(point)) is Point  # noqa: S301 - our own
+    assert str(inspect.signature(Point)) == "(x, y=2, words=())"
+    assert type(Point) is type
+    assert not hasattr(point, "__dict__")
+    match point:
+        case Point(x, y):
+            assert (x, y) == (1, 2)
+    with pytest.raises(TypeError):
+        Point()  # type: ignore[call-arg]
+    with pytest.raises(TypeError, match="Point has no fields"):
+        point._replace(z=1)  # type: ignore[call-arg]
+    with pytest.raises(AttributeError):
+        point.x = 3  # type: ignore[misc]
+
+
+def test_all_classes_of_the_package_are_dataclasses_to_the_standard_library() -> None:
+    """What it would refuse when a class is made, such as a list as a default, is refused here."""
+    for path in sorted((ROOT / "archgen").rglob("*.py")):
+        name = path.relative_to(ROOT).with_suffix("").as_posix().replace("/", ".").removesuffix(".__init__")
+        if "assets" in path.parts or "frozen" not in path.read_text(encoding="utf-8"):
+            continue
+        for each in vars(importlib.import_module(name)).values():
+            if isinstance(each, type) and each.__module__ == name and dataclasses.is_dataclass(each):
+                names = [one.name for one in dataclasses.fields(each)]
+                assert list(getattr(each, "__slots__", names)) == names

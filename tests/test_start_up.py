@@ -87,3 +87,28 @@ def test_a_site_that_is_compared_with_nothing_imports_no_comparison(tmp_path: Pa
     assert (tmp_path / "out/index.html").exists()
     rooms = ("archgen.compare", "archgen.views.changes", "archgen.timing.search")
     assert [name for name in modules if name.startswith(rooms)] == []
+
+
+def test_a_check_imports_nothing_for_what_a_project_does_not_have(tmp_path: Path) -> None:
+    modules = imported_modules(tmp_path, "check", str(RAMCIP))
+    rooms = (
+        "archgen.bringup.start_plan",  # no node waits for another one
+        "archgen.compose.type_table",  # no component has a type
+        "archgen.git",
+        "archgen.link.port_sources",  # no component holds others
+        "archgen.project.project_tracking",
+        "archgen.schema.schema_wording",  # no file is wrong
+        "archgen.timing.load.core_paths",  # no host has activities that fire one another on several cores
+        "archgen.views",
+    )
+    assert [name for name in sorted(modules) if name.startswith(rooms)] == []
+
+
+def test_a_build_of_what_nothing_changed_of_imports_no_views(tmp_path: Path) -> None:
+    words = ("build", str(ROOT / "examples/first_robot"), "-o", "out")
+    assert "archgen.views.pages.site_pages" in imported_modules(tmp_path, *words)
+    modules = imported_modules(tmp_path, *words)
+    rooms = ("archgen.bringup", "archgen.emit.docx", "archgen.emit.graphviz", "archgen.emit.site", "archgen.simulation")
+    views = {name for name in modules if name.startswith("archgen.views.")}
+    assert [name for name in sorted(modules) if name.startswith(rooms)] == []
+    assert views <= {"archgen.views.picture_shapes"}

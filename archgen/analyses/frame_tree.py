@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from itertools import islice
 
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.common_wording import join_words, keep_first
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import find_closest
@@ -100,9 +100,8 @@ def _diagnose_circle(circle: list[Frame]) -> Diagnostic:
     if not others:
         message = f"the frame `{first_frame.id}` stands in itself"
     else:
-        names = [f"`{frame.id}`" for frame in circle[:_MAX_LISTED]]
-        rest = [f"{len(circle) - _MAX_LISTED} more"] if len(circle) > _MAX_LISTED else []
-        message = f"the frames {join_words([*names, *rest], 'and')} stand in one another"
+        names = keep_first([f"`{frame.id}`" for frame in circle], _MAX_LISTED)
+        message = f"the frames {join_words(names)} stand in one another"
     return Diagnostic(
         "circular-frames",
         message,

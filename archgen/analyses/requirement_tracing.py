@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from itertools import dropwhile
 
-from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.common_wording import join_words, keep_first
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean, find_closest
@@ -196,9 +196,8 @@ def circular_requirement(architecture: Architecture) -> Iterator[Diagnostic]:
 def _diagnose_circle(requirements: Mapping[str, Requirement], circle: list[str]) -> Diagnostic:
     first, *others = (requirements[each] for each in circle)
     if others:
-        names = [f"`{each}`" for each in circle[:_MAX_LISTED]]
-        rest = [f"{len(circle) - _MAX_LISTED} more"] if len(circle) > _MAX_LISTED else []
-        message = f"the requirements {join_words([*names, *rest], 'and')} are part of one another"
+        names = keep_first([f"`{each}`" for each in circle], _MAX_LISTED)
+        message = f"the requirements {join_words(names)} are part of one another"
     else:
         message = f"the requirement `{first.id}` is its own parent"
     return Diagnostic(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
@@ -12,7 +12,6 @@ from archgen.cli import command_support, shared_options
 
 if TYPE_CHECKING:
     from archgen.diagnostics.source_span import Span
-    from archgen.edit.edit_proof import NewElement
     from archgen.edit.element_place import ElementPlace
     from archgen.model.component import Component
     from archgen.pipeline import CheckedProject
@@ -37,7 +36,14 @@ def drop_missing(**keys: Any) -> dict[str, Any]:  # noqa: ANN401 - text, tuples 
     return {key: value for key, value in keys.items() if value is not None}
 
 
-def require_free_id(element_id: str, kind: str, existing_spans: dict[str, Span]) -> None:
+def choose_title(element_id: str, title: str | None) -> str:
+    """Return the title that is asked for, else one that is made from the id."""
+    from archgen.model.path_resolver import title_from_id
+
+    return title or title_from_id(element_id)
+
+
+def require_free_id(element_id: str, kind: str, elements: Mapping[str, Any]) -> None:
     """Raise UsageError where a text is not a valid id, or the id is taken."""
     from archgen.diagnostics.safe_text import make_visible
     from archgen.model import element_ids
@@ -46,8 +52,8 @@ def require_free_id(element_id: str, kind: str, existing_spans: dict[str, Span])
         suggestion = element_ids.make_id(element_id, kind)
         msg = f"'{make_visible(element_id)}' is no id: lower-case words joined by '_', at most 64 characters; write '{suggestion}'"
         raise click.UsageError(msg)
-    if element_id in existing_spans:
-        msg = f"there is a {kind} '{element_id}' already: {make_visible(str(existing_spans[element_id]))}"
+    if element_id in elements:
+        msg = f"there is a {kind} '{element_id}' already: {make_visible(str(elements[element_id].at))}"
         raise click.UsageError(msg)
 
 
@@ -77,12 +83,12 @@ def find_place_of_component(checked_project: CheckedProject, name: str, group: s
         raise click.UsageError(msg)
     holder_id = _find_holder(checked_project, holder_id or group)
     architecture = checked_project.architecture
-    sibling_spans = {
-        component.id.rpartition(".")[2]: component.at
+    siblings = {
+        component.id.rpartition(".")[2]: component
         for component in architecture.list_described_components()
         if (component.parent or component.group) == holder_id
     }
-    require_free_id(component_id, "component", sibling_spans)
+    require_free_id(component_id, "component", siblings)
     return holder_id, component_id
 
 
@@ -118,15 +124,24 @@ def _find_type_span(checked_project: CheckedProject, instance: Component) -> Spa
     return component_type.at if component_type else instance.at
 
 
-def add_element(
-    checked_project: CheckedProject, place: ElementPlace, element: NewElement, full_id: str, *, dry_run: bool
+def add_element(  # noqa: PLR0913, PLR0917 - what is written, and where
+    checked_project: CheckedProject,
+    place: ElementPlace,
+    element_id: str,
+    body: dict[str, Any],
+    hints: dict[str, str] | None = None,
+    holder_id: str = "",
+    *,
+    dry_run: bool,
 ) -> None:
-    """Write an element to its place, or print the difference; refuse what is not proven."""
+    """Write an element to its place, or print the difference; refuse what is not proven. `hints` say what an open key takes."""
     from archgen.diagnostics.safe_text import make_visible
     from archgen.edit import element_edit
+    from archgen.edit.edit_proof import NewElement
 
+    full_id = f"{holder_id}.{element_id}" if holder_id else element_id
     try:
-        edit = element_edit.plan_edit(checked_project, place, element, full_id)
+        edit = element_edit.plan_edit(checked_project, place, NewElement(element_id, body, hints or {}), full_id)
     except element_edit.EditRefusedError as error:
         _raise_refusal(checked_project, error)
     for old_id, new_id in edit.renamed_nodes:

@@ -35,14 +35,10 @@ command.add_command(new_instance.add_variant)
 def add_group(name: str, title: str | None, owner: str | None, project: Path | None, *, dry_run: bool) -> None:
     """Add a functional group, in a file of its own where the others have one."""
     from archgen.edit import element_place
-    from archgen.edit.edit_proof import NewElement
-    from archgen.model.path_resolver import title_from_id
 
     checked_project = command_support.check_or_exit(project)
-    element_adding.require_free_id(
-        name, "group", {key: value.at for key, value in checked_project.architecture.groups.items()}
-    )
-    body = element_adding.drop_missing(title=title or title_from_id(name), owner=owner) | {
+    element_adding.require_free_id(name, "group", checked_project.architecture.groups)
+    body = element_adding.drop_missing(title=element_adding.choose_title(name, title), owner=owner) | {
         "description": None,
         "components": None,
     }
@@ -51,7 +47,7 @@ def add_group(name: str, title: str | None, owner: str | None, project: Path | N
         target_place = element_place.place_for_group(checked_project, name)
     except element_place.NoPlaceError as error:
         raise click.ClickException(str(error)) from None
-    element_adding.add_element(checked_project, target_place, NewElement(name, body, hints), name, dry_run=dry_run)
+    element_adding.add_element(checked_project, target_place, name, body, hints, dry_run=dry_run)
 
 
 @command.command("component")
@@ -75,13 +71,11 @@ def add_component(  # noqa: PLR0913, PLR0917 - one for each option
     GROUP.COMPONENT.ID adds it inside of a component that holds components.
     """
     from archgen.edit import element_place
-    from archgen.edit.edit_proof import NewElement
-    from archgen.model.path_resolver import title_from_id
 
     checked_project = command_support.check_or_exit(project)
     holder_id, component_id = element_adding.find_place_of_component(checked_project, name, group_)
     body = {
-        **element_adding.drop_missing(title=title or title_from_id(component_id), owner=owner, role=role),
+        **element_adding.drop_missing(title=element_adding.choose_title(component_id, title), owner=owner, role=role),
         "functionality": functionality,
         "inputs": None,
         "outputs": None,
@@ -91,13 +85,8 @@ def add_component(  # noqa: PLR0913, PLR0917 - one for each option
         "inputs": "id: component.output",
         "outputs": "id: conceptual type",
     }
-    element_adding.add_element(
-        checked_project,
-        element_place.place_for_component(checked_project, holder_id),
-        NewElement(component_id, body, hints),
-        f"{holder_id}.{component_id}",
-        dry_run=dry_run,
-    )
+    place = element_place.place_for_component(checked_project, holder_id)
+    element_adding.add_element(checked_project, place, component_id, body, hints, holder_id, dry_run=dry_run)
 
 
 @command.command("node")
@@ -122,24 +111,18 @@ def add_node(  # noqa: PLR0913, PLR0917 - one for each option
 ) -> None:
     """Add a ROS node, in the file where the nodes of the same components or groups stand."""
     from archgen.edit import edit_proof, element_place
-    from archgen.edit.edit_proof import NewElement
 
     checked_project = command_support.check_or_exit(project)
     element_adding.require_free_id(
-        name, "node", {node.id: node.at for node in edit_proof.list_written_nodes(checked_project)}
+        name, "node", {node.id: node for node in edit_proof.list_written_nodes(checked_project)}
     )
     implemented = implements[0] if len(implements) == 1 else implements or None
     body = element_adding.drop_missing(
         implements=implemented, title=title, owner=owner, package=package, host=host, status=status
     )
     components = tuple(id_ for words in implements if (id_ := _find_component(checked_project, words)))
-    element_adding.add_element(
-        checked_project,
-        element_place.place_for_node(checked_project, components),
-        NewElement(name, body),
-        name,
-        dry_run=dry_run,
-    )
+    place = element_place.place_for_node(checked_project, components)
+    element_adding.add_element(checked_project, place, name, body, dry_run=dry_run)
 
 
 @command.command("partner")
@@ -151,23 +134,14 @@ def add_node(  # noqa: PLR0913, PLR0917 - one for each option
 def add_partner(name: str, title: str | None, reviewers: str | None, project: Path | None, *, dry_run: bool) -> None:
     """Add a partner, with the file in which it agrees to changes that break it."""
     from archgen.edit import element_place
-    from archgen.edit.edit_proof import NewElement
-    from archgen.model.path_resolver import title_from_id
 
     checked_project = command_support.check_or_exit(project)
-    element_adding.require_free_id(
-        name, "partner", {key: value.at for key, value in checked_project.architecture.partners.items()}
-    )
-    body = element_adding.drop_missing(title=title or title_from_id(name), reviewers=reviewers)
-    element_adding.add_element(
-        checked_project,
-        element_place.place_in_section(checked_project, "partners"),
-        NewElement(name, body),
-        name,
-        dry_run=dry_run,
-    )
+    element_adding.require_free_id(name, "partner", checked_project.architecture.partners)
+    body = element_adding.drop_missing(title=element_adding.choose_title(name, title), reviewers=reviewers)
+    place = element_place.place_in_section(checked_project, "partners")
+    element_adding.add_element(checked_project, place, name, body, dry_run=dry_run)
     if not dry_run:
-        _add_agreement_file(checked_project, name, title or title_from_id(name))
+        _add_agreement_file(checked_project, name, element_adding.choose_title(name, title))
 
 
 def _add_agreement_file(checked_project: CheckedProject, name: str, title: str) -> None:

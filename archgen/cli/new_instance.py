@@ -36,16 +36,17 @@ def add_type(  # noqa: PLR0913, PLR0917 - one for each option
 ) -> None:
     """Add a component type, in the file that holds most of them."""
     from archgen.edit import element_place
-    from archgen.edit.edit_proof import NewElement
-    from archgen.model.path_resolver import title_from_id
 
     checked_project = command_support.check_or_exit(project)
     types = checked_project.architecture.component_types
-    element_adding.require_free_id(name, "component type", {key: value.at for key, value in types.items()})
+    element_adding.require_free_id(name, "component type", types)
     if base is not None:
         _find_type_body(checked_project, base, name, is_base=True)
     body = element_adding.drop_missing(
-        **{"is": base}, title=title or title_from_id(name), owner=owner, generic=tuple(dict.fromkeys(generic)) or None
+        **{"is": base},
+        title=element_adding.choose_title(name, title),
+        owner=owner,
+        generic=tuple(dict.fromkeys(generic)) or None,
     )
     # An empty key would take away what the type that it is made from has.
     open_keys = {"functionality": functionality, "inputs": None, "outputs": None}
@@ -55,13 +56,8 @@ def add_type(  # noqa: PLR0913, PLR0917 - one for each option
         "inputs": "id: conceptual type",
         "outputs": "id: conceptual type",
     }
-    element_adding.add_element(
-        checked_project,
-        element_place.place_in_section(checked_project, "component_types"),
-        NewElement(name, body, hints),
-        name,
-        dry_run=dry_run,
-    )
+    place = element_place.place_in_section(checked_project, "component_types")
+    element_adding.add_element(checked_project, place, name, body, hints, dry_run=dry_run)
 
 
 def _complete_types(context: click.Context, _parameter: click.Parameter, incomplete: str) -> list[str]:
@@ -92,8 +88,6 @@ def add_instance(  # noqa: PLR0913, PLR0917 - one for each option
     """Add an instance of a component type, with its inputs to be filled. ID is GROUP.ID; TYPE is as in `filter<Pose>`."""
     from archgen.diagnostics.common_wording import join_words
     from archgen.edit import element_place
-    from archgen.edit.edit_proof import NewElement
-    from archgen.model.path_resolver import title_from_id
 
     checked_project = command_support.check_or_exit(project)
     holder_id, component_id = element_adding.find_place_of_component(checked_project, name, group_)
@@ -101,17 +95,12 @@ def add_instance(  # noqa: PLR0913, PLR0917 - one for each option
     input_hints = _describe_open_inputs(_find_type_body(checked_project, type_text, full_id))
     body = element_adding.drop_missing(
         **{"is": type_text.strip()},
-        title=title or title_from_id(component_id),
+        title=element_adding.choose_title(component_id, title),
         owner=owner,
         inputs=dict.fromkeys(input_hints) or None,
     )
-    element_adding.add_element(
-        checked_project,
-        element_place.place_for_component(checked_project, holder_id),
-        NewElement(component_id, body, input_hints),
-        full_id,
-        dry_run=dry_run,
-    )
+    place = element_place.place_for_component(checked_project, holder_id)
+    element_adding.add_element(checked_project, place, component_id, body, input_hints, holder_id, dry_run=dry_run)
     if input_hints and not dry_run:
         click.echo(f"Say what feeds {join_words([f'`{port}`' for port in input_hints])}, where nothing does yet.")
 
@@ -166,8 +155,6 @@ def add_variant(  # noqa: PLR0913 - one for each option
 ) -> None:
     """Add a variant, in the file that holds most of them. What it changes is written below `changes`."""
     from archgen.edit import element_place
-    from archgen.edit.edit_proof import NewElement
-    from archgen.model.path_resolver import title_from_id
     from archgen.model.variant import BASE_NAME
 
     checked_project = command_support.check_or_exit(project)
@@ -175,22 +162,19 @@ def add_variant(  # noqa: PLR0913 - one for each option
     if name == BASE_NAME:
         msg = f"'{BASE_NAME}' is what the project itself is called where variants are named: choose another id"
         raise click.UsageError(msg)
-    element_adding.require_free_id(name, "variant", {key: value.at for key, value in variants.items()})
+    element_adding.require_free_id(name, "variant", variants)
     _require_variants(checked_project, bases)
     if without is not None:
         _require_selection(checked_project, without)
     bases = tuple(dict.fromkeys(bases))
     body = element_adding.drop_missing(
-        title=title or title_from_id(name), of=bases[0] if len(bases) == 1 else bases or None, without=without
+        title=element_adding.choose_title(name, title),
+        of=bases[0] if len(bases) == 1 else bases or None,
+        without=without,
     )
     hints = {"changes": "sections as in any file; what stands here wins"}
-    element_adding.add_element(
-        checked_project,
-        element_place.place_in_section(checked_project, "variants"),
-        NewElement(name, {**body, "changes": None}, hints),
-        name,
-        dry_run=dry_run,
-    )
+    place = element_place.place_in_section(checked_project, "variants")
+    element_adding.add_element(checked_project, place, name, {**body, "changes": None}, hints, dry_run=dry_run)
 
 
 def _require_variants(checked_project: CheckedProject, names: tuple[str, ...]) -> None:

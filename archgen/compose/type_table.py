@@ -24,7 +24,7 @@ from archgen.syntax.yaml_tree import (
 
 MAX_BASES = 60
 """So many types a type may be made from, one of the other."""
-_TYPE_KEYS = frozenset({"generic", "abstract", "title", "owner", "version", "deprecated"})
+_TYPE_KEYS = ("generic", "abstract", "title", "owner", "version", "deprecated")
 """Keys of a type that its instances do not have: they are about the type itself."""
 _NAMING_KEYS = frozenset({"type", "is", "same_as"})
 """Keys whose values name types."""
@@ -129,8 +129,7 @@ class TypeTable:
         base: TypeExpression | None = expression
         while base and base.name in self.entries and base.name not in bodies:
             bodies[base.name] = self.entries[base.name].value
-            reference = find_value(bodies[base.name], "is")
-            base = parse_type_expression(reference.text) if isinstance(reference, ScalarNode) else None
+            base = _read_base(bodies[base.name])
         sides = [(side, body) for side in ("inputs", "outputs") for body in reversed(bodies.values())]
         return list(dict.fromkeys((side, port.key) for side, body in sides for port in list_entries(body, side)))
 
@@ -166,8 +165,7 @@ class TypeTable:
 
     def _list_derived(self, name: str) -> Iterator[str]:
         for entry in self.entries.values():
-            reference = find_value(entry.value, "is")
-            base = parse_type_expression(reference.text) if isinstance(reference, ScalarNode) else None
+            base = _read_base(entry.value)
             if base and base.name == name and not is_abstract(entry):
                 yield entry.key
 
@@ -211,6 +209,11 @@ def _diagnose_in_library(reference: ScalarNode, library: str, library_names: lis
         or "the component types of a library see only one another: write it below `component_types` there",
         element=element_id,
     )
+
+
+def _read_base(body: YamlNode | None) -> TypeExpression | None:
+    reference = find_value(body, "is")
+    return parse_type_expression(reference.text) if isinstance(reference, ScalarNode) else None
 
 
 def list_generic_names(entry: MappingEntry) -> tuple[str, ...]:

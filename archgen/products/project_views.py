@@ -185,18 +185,6 @@ def _find_date(checked_project: CheckedProject, options: OutputOptions) -> str:
     return find_revision_date(checked_project.root, checked_project.input_files)
 
 
-def _format_rule_pages(checked_project: CheckedProject) -> Mapping[str, str]:
-    """Return the pages of the rules that found something, by name, without the titles."""
-    from archgen.findings import rule_pages
-
-    found_rules = {finding.rule for finding in checked_project.findings}
-    return {
-        rule.name: rule_pages.rule_page_to_markdown(rule).partition("\n")[2]
-        for rule in index_all_rules().values()
-        if rule.name in found_rules
-    }
-
-
 def _shows_history(checked_project: CheckedProject, options: OutputOptions) -> bool:
     """Whether documents show the history: not if it is not wanted, nor for a part, nor for a project from a commit."""
     return options.show_history and options.selection is None and not checked_project.loaded_project.files.commit

@@ -294,6 +294,9 @@ def main(words: Sequence[str] | None = None) -> int:
     parser.add_argument("--rounds", type=int, default=1, help="how often all targets have their turn")
     parser.add_argument("--work", type=Path, default=Path(".make/fuzzed"))
     parser.add_argument("--minimise", type=Path, nargs="+", help="leave out of these inputs what they break without")
+    parser.add_argument(
+        "--replay", action="store_true", help="feed what is in WORK/corpus once, in one process, for coverage.py"
+    )
     given = parser.parse_args(words)
     if given.minimise:
         _fork_templates()
@@ -305,6 +308,8 @@ def main(words: Sequence[str] | None = None) -> int:
     os.environ["COLUMNS"] = "100"
     warnings.simplefilter("ignore")
     targets = [target for target in list_targets() if not given.targets or target.name in given.targets]
+    if given.replay:
+        return _replay_corpus(targets, work)
     atheris = _prepare_atheris()
     runs = [FuzzRun(target, work, given.seed) for target in targets]
     _fork_templates()
@@ -315,6 +320,16 @@ def main(words: Sequence[str] | None = None) -> int:
         for run in runs:
             _feed_target(atheris, run, given.seconds * run.target.share / shares / given.rounds, given.seed + number)
     return _report(targets, work)
+
+
+def _replay_corpus(targets: Sequence[Target], work: Path) -> int:
+    """Feed the inputs of a run again: which lines they execute is measured from outside."""
+    faults = 0
+    with tempfile.TemporaryDirectory() as base:
+        for target in targets:
+            for path in sorted((work / "corpus" / target.name).glob("*")):
+                faults += find_fault(target, path.read_bytes(), Path(base)) is not None
+    return int(faults > 0)
 
 
 def _fork_templates() -> None:

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import io
-import lzma
-import struct
 import zipfile
-import zlib
 from posixpath import dirname, join, normpath
 
 from lxml import etree
 
-from archgen.plugin.importing import MAX_OFFICE_BYTES
+from archgen.plugin.importing import ARCHIVE_DAMAGE, MAX_OFFICE_BYTES
 
 # What zipfile and its methods of compression raise for bytes that are not what they should be.
-_DAMAGE = (zipfile.BadZipFile, zlib.error, lzma.LZMAError, RuntimeError, OSError, EOFError, ValueError, struct.error)
+_DAMAGE = (*ARCHIVE_DAMAGE, OSError)
 _RELATION = "{http://schemas.openxmlformats.org/package/2006/relationships}Relationship"
 
 

@@ -17,7 +17,7 @@ from archgen.timing.search.chain_budgets import SharedBudget
 from archgen.views import inline_text, start_phrases
 from archgen.views.agreement.agreement_content import AgreementContent
 from archgen.views.agreement.interface_record import InterfaceRecord
-from archgen.views.agreement.term_changes import AgreementChanges, write_signed_kind
+from archgen.views.agreement.term_changes import AgreementChanges, mark_changed_names
 from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.sequences.sequence_blocks import make_step_table
 from archgen.views.shapes import (
@@ -133,11 +133,7 @@ def _mark_frames(content: AgreementContent) -> dict[str, Text]:
         {shared.frame.id: _plain_terms(shared) for shared in find_shared_frames(architecture, *content.pair)}
         for architecture in (content.lookup.architecture, content.earlier_lookup.architecture)
     )
-    names = [name for name in {**earlier, **shown} if shown.get(name) != earlier.get(name)]
-    return {
-        name: write_signed_kind("removed" if name not in shown else "added" if name not in earlier else "changed")
-        for name in names
-    }
+    return mark_changed_names(shown, earlier)
 
 
 def _plain_terms(shared: SharedFrame) -> tuple[object, ...]:

@@ -16,7 +16,7 @@ from archgen.model.setting_sharing import (
 )
 from archgen.views import inline_text
 from archgen.views.agreement.agreement_content import AgreementContent
-from archgen.views.agreement.term_changes import write_signed_kind
+from archgen.views.agreement.term_changes import mark_changed_names
 from archgen.views.elements.parameter_blocks import describe_limits, describe_types
 from archgen.views.graphs.element_boxes import join_owner_titles
 from archgen.views.shapes import (
@@ -135,11 +135,7 @@ def _mark_settings(content: AgreementContent) -> dict[str, Text]:
         _list_terms(architecture, content.pair)
         for architecture in (content.lookup.architecture, content.earlier_lookup.architecture)
     )
-    names = [name for name in {**earlier, **shown} if shown.get(name) != earlier.get(name)]
-    return {
-        name: write_signed_kind("removed" if name not in shown else "added" if name not in earlier else "changed")
-        for name in names
-    }
+    return mark_changed_names(shown, earlier)
 
 
 def _list_terms(architecture: Architecture, pair: tuple[str, str]) -> _Terms:

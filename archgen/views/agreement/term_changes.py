@@ -22,6 +22,15 @@ NAME_KIND = "name"
 """The kind of the term that a renamed interface has its old and new id in."""
 
 
+def mark_changed_names(shown: Mapping[str, object], earlier: Mapping[str, object]) -> dict[str, Text]:
+    """Return what happened to each name since the earlier revision, of those that are not what they were."""
+    names = [name for name in {**earlier, **shown} if shown.get(name) != earlier.get(name)]
+    return {
+        name: write_signed_kind("removed" if name not in shown else "added" if name not in earlier else "changed")
+        for name in names
+    }
+
+
 def write_signed_kind(kind: ChangeKind) -> Text:
     """Return a kind of change as a sign and a word, so that nothing depends on colour."""
     return Text(f"{CHANGE_SIGNS[kind]} {kind}", change=choose_mark(kind))

@@ -37,16 +37,7 @@ def make_group_card(_lookup: Lookup, group: Group) -> ElementCard:
 
 def make_component_card(lookup: Lookup, component: Component) -> ElementCard:
     """Make the card of a component that holds no others."""
-    facts = [
-        ("group", component.group),
-        *_list_origin_facts(component),
-        ("owner", ", ".join(component.owners) or "?"),
-        ("role", component.role or "?"),
-        ("functionality", " ".join((component.functionality or "?").split())),
-        ("requirements", "; ".join(use.text for use in component.requirements)),
-        ("timing", timing_words.format_short_timing(component.timing)),
-        ("tags", ", ".join(component.tags)),
-    ]
+    facts = _list_component_facts(component, component.role or "?", timing_words.format_short_timing(component.timing))
     architecture = lookup.architecture
     inputs = tuple(
         f"{port.name} <- {'; '.join(_describe_sources(lookup, port)) or '?'}" for port in component.inputs.values()
@@ -62,35 +53,42 @@ def make_component_card(lookup: Lookup, component: Component) -> ElementCard:
     lists = (
         ("inputs", inputs),
         ("outputs", outputs),
-        *drop_empty_lists(
-            ("parameters", tuple(list_parameter_lines(component))),
-            ("operations", tuple(list_operation_lines(component))),
-        ),
+        *_list_setting_lists(component),
         ("nodes", nodes),
         ("findings", tuple(list_finding_lines(lookup, component.id))),
     )
     return ElementCard("component", component.id, component.title, component.at, known_facts(facts), lists)
 
 
-def _list_origin_facts(component: Component) -> list[tuple[str, str]]:
-    """Return what a component stands in, and what it is made from."""
+def _list_component_facts(component: Component, role: str, timing: str, way: str = "") -> list[tuple[str, str]]:
+    """Return the facts that components have in common, those that hold others too."""
     type_text = component.component_type or ""
-    return [("parent", component.parent or ""), ("is", f"exactly {type_text}" if component.is_reference else type_text)]
+    return [
+        ("group", component.group),
+        ("parent", component.parent or ""),
+        ("is", f"exactly {type_text}" if component.is_reference else type_text),
+        ("owner", ", ".join(component.owners) or "?"),
+        ("role", role),
+        ("functionality", " ".join((component.functionality or "?").split())),
+        ("requirements", "; ".join(use.text for use in component.requirements)),
+        ("timing", timing),
+        ("worst way", way),
+        ("tags", ", ".join(component.tags)),
+    ]
+
+
+def _list_setting_lists(holder: Component | ComponentType) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Yield the parameters and the operations of what has such."""
+    return drop_empty_lists(
+        ("parameters", tuple(list_parameter_lines(holder))), ("operations", tuple(list_operation_lines(holder)))
+    )
 
 
 def make_composed_card(lookup: Lookup, shell: Component) -> ElementCard:
     """Make the card of a component that holds components: its ports, with what stands behind them, and what is inside."""
     architecture = lookup.architecture
-    facts = [
-        ("group", shell.group),
-        *_list_origin_facts(shell),
-        ("owner", ", ".join(shell.owners) or "?"),
-        ("functionality", " ".join((shell.functionality or "?").split())),
-        ("requirements", "; ".join(use.text for use in shell.requirements)),
-        ("timing", timing_words.format_timing_sentence(shell.timing)),
-        ("worst way", "".join(run.text for run in make_whole_fact(lookup, shell.id))),
-        ("tags", ", ".join(shell.tags)),
-    ]
+    way = "".join(run.text for run in make_whole_fact(lookup, shell.id))
+    facts = _list_component_facts(shell, "", timing_words.format_timing_sentence(shell.timing), way)
     inputs = tuple(
         f"{port.name} <- {'; '.join(_describe_sources(lookup, port)) or '?'}"
         f" => {', '.join(architecture.shell_ports[f'input {port.id}']) or 'nobody inside'}"
@@ -105,9 +103,7 @@ def make_composed_card(lookup: Lookup, shell: Component) -> ElementCard:
         ("inputs", inputs),
         ("outputs", outputs),
         ("components", shell.children),
-        *drop_empty_lists(
-            ("parameters", tuple(list_parameter_lines(shell))), ("operations", tuple(list_operation_lines(shell)))
-        ),
+        *_list_setting_lists(shell),
         ("findings", tuple(list_finding_lines(lookup, shell.id))),
     )
     return ElementCard("composed", shell.id, shell.title, shell.at, known_facts(facts), lists)
@@ -133,10 +129,9 @@ def make_component_type_card(lookup: Lookup, component_type: ComponentType) -> E
         ("inputs", tuple(f"{name} ({kind or '?'})" for name, kind in component_type.inputs.items())),
         ("outputs", tuple(f"{name} ({kind or '?'})" for name, kind in component_type.outputs.items())),
         ("components", component_type.components),
+        *_list_setting_lists(component_type),
         *drop_empty_lists(
-            ("parameters", tuple(list_parameter_lines(component_type))),
-            ("operations", tuple(list_operation_lines(component_type))),
-            ("frames", tuple(f"{frame.id} in {frame.parent or 'nothing'}" for frame in component_type.frames)),
+            ("frames", tuple(f"{frame.id} in {frame.parent or 'nothing'}" for frame in component_type.frames))
         ),
         ("instances", tuple(dict.fromkeys(instances))),
         ("findings", tuple(list_finding_lines(lookup, component_type.id))),

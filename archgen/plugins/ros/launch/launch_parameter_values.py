@@ -88,6 +88,8 @@ def _evaluate_mapping(value: Mapping[Any, LaunchValue], context: LaunchContext, 
 
 def split_parameter(value: Any, name: str) -> tuple[Any, list[tuple[str, UnknownValue | CommandWords]]]:  # noqa: ANN401
     """Return what is plain of a parameter's value, None for nothing, and what is not, by the dotted names."""
+    if not name.rpartition(".")[2].strip("/"):
+        return None, [(name, UnknownValue("what has no name"))]
     if isinstance(value, UnknownValue | CommandWords):
         return None, [(name, value)]
     if not isinstance(value, dict) or not value:

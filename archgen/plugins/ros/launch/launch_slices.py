@@ -233,22 +233,20 @@ class SliceMaker:
 
 def _nest_parameters(parameters: Mapping[str, Any]) -> dict[str, Any]:
     """Return parameters by the parts of their names, as parameter files nest them; as they are where that is no tree."""
+    given = {name: value for name, value in parameters.items() if value is not None}
     tree: dict[str, Any] = {}
-    for name, value in parameters.items():
-        if value is None:
-            continue
+    for name, value in given.items():
         *folders, leaf = name.split(".")
         place = tree
         for folder in folders:
             inner = place.setdefault(folder, {})
             if not isinstance(inner, dict):
-                return {name: value for name, value in parameters.items() if value is not None}
+                return given
             place = inner
-        if not all(name.split(".")) or (
-            leaf in place and not (isinstance(place[leaf], dict) and isinstance(value, dict))
-        ):
-            return {name: value for name, value in parameters.items() if value is not None}
-        place[leaf] = {**place[leaf], **value} if leaf in place else value
+        are_both_trees = leaf in place and isinstance(place[leaf], dict) and isinstance(value, dict)
+        if not all(name.split(".")) or (leaf in place and not are_both_trees):
+            return given
+        place[leaf] = {**place[leaf], **value} if are_both_trees else value
     return tree
 
 

@@ -162,8 +162,7 @@ class NodeMaker:
         delay = action.get("respawn_delay")
         delay_text = context.resolve(delay) if delay is not None else ""
         node.respawn_delay = delay_text if isinstance(delay_text, str) and node.respawn else ""
-        for name, value in context.scope.environment:
-            node.environment[name] = value
+        node.environment.update(context.scope.environment)
         given = action.get("environment")
         pairs = given.items() if isinstance(given, Mapping) else _list_pairs(self._run.choose_values(action, given))
         for name, value in pairs:
@@ -230,7 +229,7 @@ class NodeMaker:
         if found is not None:
             self._keep_written(node, f"parameters.{name}", value)
             # In ROS 1 a `/` in a parameter's name is a level of its tree.
-            for part in reversed(name.strip("/").split("/") if self._run.context.is_ros_1 else [name]):
+            for part in reversed([each for each in name.split("/") if each] if self._run.context.is_ros_1 else [name]):
                 found = {part: found}
             overlay_parameters(node.parameters, found)
             node.parameter_commands.pop(name, None)

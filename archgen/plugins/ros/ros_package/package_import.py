@@ -199,14 +199,13 @@ class _PackageReader:
         """Return the values of a section by their dotted names: a set of them might be read as a declaration."""
         values: dict[str, Any] = {}
         for value in section.values:
-            if not is_parameter_name(value.name):
-                words = f"`{value.name}` is no name of a parameter"
-                self._account.add_note("parameter", words, value.name_at)
-            elif value.value is not None and not is_parameter_value(value.value):
-                words = f"`{value.name}` is no value that a parameter of ROS can have"
-                self._account.add_note("parameter", words, value.name_at)
-            elif value.value is not None:
+            if value.value is not None and is_parameter_name(value.name) and is_parameter_value(value.value):
                 values[value.name] = value.value
+            elif value.value is not None or not is_parameter_name(value.name):
+                what = (
+                    "value that a parameter of ROS can have" if is_parameter_name(value.name) else "name of a parameter"
+                )
+                self._account.add_note("parameter", f"`{value.name}` is no {what}", value.name_at)
         return values
 
 
