@@ -25,7 +25,7 @@ import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -175,7 +175,7 @@ def _cut_in_half(path: Path) -> None:
     path.write_bytes(data[: len(data) // 2])
 
 
-_CHANGES = {
+_CHANGES: dict[str, Callable[[Path], object]] = {
     "vanish": Path.unlink,
     "link": _replace_with_link,
     "pipe": _replace_with_pipe,
