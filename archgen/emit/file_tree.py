@@ -260,10 +260,11 @@ def _replace_files(
         for name in changed_folders:
             (staging_folder / name).mkdir(parents=True, exist_ok=True)
         for path, data in changed.items():
-            _write_named_file(f"{staging_folder}/{path}", data)
+            with open(f"{staging_folder}/{path}", "wb") as file:  # noqa: PTH123 - as in `digest_file`
+                file.write(data)
         # From here on each step leaves a folder that the next run can take over: both digests of a changed file are
         # known.
-        _write_bytes(staging_folder / TREE_MANIFEST, _format_manifest(final_manifest | old_manifest))
+        (staging_folder / TREE_MANIFEST).write_bytes(_format_manifest(final_manifest | old_manifest))
         os.replace(staging_folder / TREE_MANIFEST, folder / TREE_MANIFEST)  # noqa: PTH105
         for path in stale:
             _remove_file(folder, path)
@@ -271,18 +272,8 @@ def _replace_files(
             (folder / name).mkdir(parents=True, exist_ok=True)
         for path in changed:
             os.replace(f"{staging_folder}/{path}", f"{folder}/{path}")  # noqa: PTH105
-        _write_bytes(staging_folder / TREE_MANIFEST, _format_manifest(final_manifest))
+        (staging_folder / TREE_MANIFEST).write_bytes(_format_manifest(final_manifest))
         os.replace(staging_folder / TREE_MANIFEST, folder / TREE_MANIFEST)  # noqa: PTH105
-
-
-def _write_bytes(path: Path, data: bytes) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    _write_named_file(os.fspath(path), data)
-
-
-def _write_named_file(name: str, data: bytes) -> None:
-    with open(name, "wb") as file:  # noqa: PTH123 - as in `digest_file`
-        file.write(data)
 
 
 def _remove_file(folder: Path, path: str) -> None:
