@@ -113,11 +113,12 @@ def record_signature(checked_project: CheckedProject, prepared: PreparedSignatur
         reason = result.error_text.removeprefix("fatal: ").partition("\n")[0]
         msg = f"git makes no tag `{tag}`: {reason}"
         raise GitError(msg)
+    target, text = checked_project.root / prepared.file, prepared.text.encode()
     try:
-        file_tree.write_file(checked_project.root / prepared.file, prepared.text.encode())
-    except BaseException:  # Ctrl-C is no Exception
-        run_git(prepared.repository.top, "tag", "-d", tag)
-        raise
+        file_tree.write_file(target, text)
+    finally:  # after Ctrl-C, too
+        if not target.is_file() or target.read_bytes() != text:
+            run_git(prepared.repository.top, "tag", "-d", tag)
 
 
 def _refuse_uncommitted(checked_project: CheckedProject, head: str, own_file: str) -> None:
