@@ -176,7 +176,7 @@ def _cut_in_half(path: Path) -> None:
 
 
 _CHANGES: dict[str, Callable[[Path], object]] = {
-    "vanish": lambda path: path.unlink(),
+    "vanish": Path.unlink,
     "link": _replace_with_link,
     "pipe": _replace_with_pipe,
     "folder": _replace_with_folder,

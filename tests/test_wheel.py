@@ -118,11 +118,7 @@ def test_two_builds_make_the_same_bytes(tmp_path: Path) -> None:
     assert sorted(digests[0]) == [f"{NAME}-py3-none-any.whl", f"{NAME}.tar.gz"]
     with zipfile.ZipFile(tmp_path / "one" / "archgen" / "dist" / f"{NAME}-py3-none-any.whl") as wheel:
         assert "archgen/left_over.py" not in wheel.namelist()
-        committed = subprocess.check_output(
-            ["git", "log", "-1", "--format=%cd", "--date=format:%Y"],  # noqa: S607 - as above
-            cwd=ROOT,
-            text=True,
-        )
+        committed = run("git", "log", "-1", "--format=%cd", "--date=format:%Y", cwd=ROOT)
         assert {member.date_time[0] for member in wheel.infolist()} == {int(committed)}
 
 
@@ -191,7 +187,7 @@ def test_it_makes_the_case_study_as_the_checkout_does(installed: Path, ramcip: P
 
 
 def test_it_makes_every_output_as_the_checkout_does(installed: Path, tmp_path: Path) -> None:
-    made: list[dict[str, bytes]] = []
+    made = list[dict[str, bytes]]()
     for python, path in ((installed / "python", ""), (Path(sys.executable), str(ROOT))):
         place = tmp_path / f"{len(made)}"
         settings = {"PYTHONPATH": path, "XDG_CACHE_HOME": str(place / "cache")}

@@ -255,6 +255,7 @@ def digest_manifest(folder: Path, *, just_written: bool = False) -> str | None:
     With `just_written` the caller has just written the folder, and its files are not read again.
     """
     if not just_written:
+        _remove_leftovers(folder)  # nobody may write this folder again
         manifest, own_digests = _read_tree_manifest(folder), dict[str, str]()
         if (
             any(_find_foreign_files(folder, manifest, own_digests))
@@ -265,14 +266,9 @@ def digest_manifest(folder: Path, *, just_written: bool = False) -> str | None:
     return hashlib.sha256(manifest_path.read_bytes()).hexdigest() if manifest_path.is_file() else None
 
 
-def digest_file(path: Path) -> str | None:
-    """Digest a file; None for one that is larger than any of archgen's, which a branch may put in their place."""
-    # By names, here and in what walks a folder: of 5,000 files, paths as objects took half of the time.
-    return digest_named_file(os.fspath(path), path.stat().st_size)
-
-
 def digest_named_file(name: str, size: int) -> str | None:
-    """Digest a file of a size in bytes, by its path as text; None for one that is too large to be archgen's."""
+    """Digest a file of a size in bytes; None for one that is larger than any of archgen's, which a branch may put in their place."""
+    # By its path as text, here and in what walks a folder: of 5,000 files, paths as objects took half of the time.
     if size > _MAX_FILE_BYTES:
         return None
     with open(name, "rb", buffering=0) as stream:  # noqa: PTH123 - see above
@@ -300,10 +296,11 @@ def _replace_files(  # noqa: PLR0913 - what the folder holds, and what it shall 
         for name in changed_folders:
             (staging_folder / name).mkdir(parents=True, exist_ok=True)
         for path in changed:
-            _write_named_file(f"{staging_folder}/{path}", files.files[path])
+            with open(f"{staging_folder}/{path}", "wb") as file:  # noqa: PTH123 - as in `digest_named_file`
+                file.write(files.files[path])
         # From here on each step leaves a folder that the next run can take over: both digests of a changed file are
         # known.
-        _write_bytes(staging_folder / TREE_MANIFEST, _format_manifest(final_manifest | old_manifest))
+        (staging_folder / TREE_MANIFEST).write_bytes(_format_manifest(final_manifest | old_manifest))
         os.replace(staging_folder / TREE_MANIFEST, folder / TREE_MANIFEST)  # noqa: PTH105
         for path in stale:
             _remove_file(folder, path)
@@ -311,18 +308,8 @@ def _replace_files(  # noqa: PLR0913 - what the folder holds, and what it shall 
             (folder / name).mkdir(parents=True, exist_ok=True)
         for path in changed:
             os.replace(f"{staging_folder}/{path}", f"{folder}/{path}")  # noqa: PTH105
-        _write_bytes(staging_folder / TREE_MANIFEST, _format_manifest(final_manifest))
+        (staging_folder / TREE_MANIFEST).write_bytes(_format_manifest(final_manifest))
         os.replace(staging_folder / TREE_MANIFEST, folder / TREE_MANIFEST)  # noqa: PTH105
-
-
-def _write_bytes(path: Path, data: bytes) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    _write_named_file(os.fspath(path), data)
-
-
-def _write_named_file(name: str, data: bytes) -> None:
-    with open(name, "wb") as file:  # noqa: PTH123 - as in `digest_file`
-        file.write(data)
 
 
 def _remove_file(folder: Path, path: str) -> None:

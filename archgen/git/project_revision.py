@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import hashlib
+import os
 from collections.abc import Iterable
 from pathlib import Path
 
 from archgen.git.git_call import run_git
+
+_NO_WAITING = getattr(os, "O_NONBLOCK", 0)
 
 
 def find_revision(root: Path, files: Iterable[str]) -> str:
@@ -66,7 +69,12 @@ def _matches_blob(file: Path, blob: str | None) -> bool:
     """Whether a file has the content of a blob, given by its hash; a file that is not in HEAD has none."""
     if blob is None:
         return False
-    data = file.read_bytes() if file.is_file() else b""
+    try:
+        # One that is a pipe by now is not waited for.
+        with open(file, "rb", opener=lambda name, flags: os.open(name, flags | _NO_WAITING)) as stream:
+            data = stream.read() if file.is_file() else b""
+    except OSError:
+        data = b""
     # A repository with the SHA-256 object format has hashes of 64 digits.
     algorithm = "sha1" if len(blob) == 40 else "sha256"  # noqa: PLR2004 - the length of a SHA-1 in hex
     return blob in {_blob_hash(data, algorithm), _blob_hash(data.replace(b"\r\n", b"\n"), algorithm)}

@@ -19,6 +19,7 @@ from xml.parsers import expat
 from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass
 from archgen.importers.foreign_import import ForeignFileError
+from archgen.syntax.folder_files import open_named_file
 
 MAX_DEPTH = 200
 """Elements nest no deeper than this: models have about 30, and code that walks down a tree has an end."""
@@ -204,7 +205,7 @@ def read_bounded(path: Path, max_bytes: int = MAX_MODEL_BYTES) -> bytes:
         if not path.is_file():
             words = "it is a folder, or no plain file" if path.exists() else "there is no such file"
             raise ForeignFileError(words, Span.of_file(str(path)), "name the file of the model")
-        with path.open("rb") as stream:
+        with open_named_file(path) as stream:
             return _read_part(str(path), stream, max_bytes, max_bytes)
     except OSError as error:
         words = f"it cannot be read ({error.strerror})"
@@ -218,7 +219,7 @@ def read_archive_members(path: Path, endings: tuple[str, ...]) -> Iterator[tuple
     """
     bytes_left = MAX_MODEL_BYTES
     try:
-        with zipfile.ZipFile(path) as archive:
+        with open_named_file(path) as file, zipfile.ZipFile(file) as archive:
             for member in archive.infolist():
                 if member.filename.lower().endswith(endings):
                     with archive.open(member) as stream:

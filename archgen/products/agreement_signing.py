@@ -106,16 +106,19 @@ def prepare_signature(
 def record_signature(checked_project: CheckedProject, prepared: PreparedSignature) -> None:
     """Make the tag, then the file, or neither. Raise `git.GitError`, and `file_tree.OutputError`."""
     tag, revision = prepared.signature.tag or "", prepared.signature.revision or ""
-    result = run_git(prepared.repository.top, "tag", "-a", "--no-sign", "-m", prepared.message, tag, revision)
+    # Not as an argument, which an ASCII locale cannot pass on.
+    message = prepared.message.encode("utf-8", "replace")
+    result = run_git(prepared.repository.top, "tag", "-a", "--no-sign", "-F", "-", tag, revision, stdin=message)
     if result.status:
         reason = result.error_text.removeprefix("fatal: ").partition("\n")[0]
         msg = f"git makes no tag `{tag}`: {reason}"
         raise GitError(msg)
+    target, text = checked_project.root / prepared.file, prepared.text.encode()
     try:
-        file_tree.write_file(checked_project.root / prepared.file, prepared.text.encode())
-    except BaseException:  # Ctrl-C is no Exception
-        run_git(prepared.repository.top, "tag", "-d", tag)
-        raise
+        file_tree.write_file(target, text)
+    finally:  # after Ctrl-C, too
+        if not target.is_file() or target.read_bytes() != text:
+            run_git(prepared.repository.top, "tag", "-d", tag)
 
 
 def _refuse_uncommitted(checked_project: CheckedProject, head: str, own_file: str) -> None:

@@ -203,7 +203,7 @@ def _digest_product(place: Path, *, just_written: bool = False) -> str:
     if place.is_dir() and not place.is_symlink():
         digest = file_tree.digest_manifest(place, just_written=just_written)
     elif not place.is_symlink():
-        digest = file_tree.digest_file(place)
+        digest = file_tree.digest_named_file(str(place), place.stat().st_size)
     if digest is None:
         msg = f"{place} is not as archgen wrote it"
         raise ValueError(msg)

@@ -153,3 +153,16 @@ def test_a_file_that_cannot_be_written_leaves_no_tag(robot: Path, monkeypatch: p
     with pytest.raises(OutputError):
         record_signature(pipeline.check_project(robot), prepared)
     assert git(robot, "tag") == ""
+
+
+def test_an_interrupt_after_all_was_written_leaves_the_tag(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def write(path: Path, data: bytes) -> None:
+        path.parent.mkdir(exist_ok=True)
+        path.write_bytes(data)
+        raise KeyboardInterrupt
+
+    prepared = prepare(robot)
+    monkeypatch.setattr(file_tree, "write_file", write)
+    with pytest.raises(KeyboardInterrupt):
+        record_signature(pipeline.check_project(robot), prepared)
+    assert git(robot, "tag") == "signed/a-b/2026-03-01"

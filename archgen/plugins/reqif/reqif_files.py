@@ -21,6 +21,7 @@ from archgen.plugin.importing import (
     Span,
     explain_encoding,
     explain_syntax,
+    open_named_file,
 )
 from archgen.plugins.reqif.reqif_document import HierarchyEntry, ReqifDocument, ReqifObject, ReqifRelation
 
@@ -32,7 +33,7 @@ _CHUNK = 1 << 18
 def read_reqif_file(path: Path) -> ReqifDocument:
     """Read a .reqif or .reqifz file. Raise ForeignFileError for what is none, and OSError."""
     document = ReqifDocument()
-    with path.open("rb") as stream:
+    with open_named_file(path) as stream:
         is_zip = stream.read(4) == ZIP_BEGINNING
         stream.seek(0)
         if is_zip:
