@@ -524,12 +524,3 @@ def _list_recordings() -> list[bytes]:
         b"average rate: 10.0\n\tmin: 0.1s max: 0.2s std dev: 0.01s window: 10\n",
         *texts,
     ]
-
-
-def make_folder(base: Path) -> Path:
-    """Return an empty folder for an input."""
-    folder = base / "input"
-    if folder.exists():
-        shutil.rmtree(folder)
-    folder.mkdir(parents=True)
-    return folder
