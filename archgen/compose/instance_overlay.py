@@ -119,7 +119,7 @@ class InstanceOverlay:
             and replaced.text != replacing.text
             and not self._may_replace(replaced, replacing, inner_id)
         ):
-            return MappingNode({e.key: e for e in own if e.key != "is"}, own.span)
+            return own.without("is")
         return own
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlNode, list_entries
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, list_entries
 
 _TYPE_KEYS = ("is", "same_as")
 
@@ -16,7 +16,7 @@ def list_type_entries(root: MappingNode) -> dict[str, MappingEntry]:
     for library in list_libraries(root):
         for entry in list_entries(library.value, "component_types"):
             name = f"{library.key}.{entry.key}"
-            entries[name] = MappingEntry(name, entry.key_span, _qualify_types(entry.value, library.key))
+            entries[name] = MappingEntry(name, entry.key_span, _qualify_type(entry, library.key).value)
     return entries
 
 
@@ -33,28 +33,19 @@ def library_of_type(name: str) -> str | None:
     return library if dot else None
 
 
-def _qualify_keys(body: MappingNode, keys: tuple[str, ...], library: str) -> MappingNode:
-    """Return a mapping with the library's id before the types that these keys name."""
-    entries = dict(body.entries)
-    for key in keys:
-        reference = body.get(key)
-        if isinstance(reference, ScalarNode) and reference.value is not None:
-            text = f"{library}.{reference.text.strip()}"
-            entries[key] = entries[key].with_value(ScalarNode(text, text, reference.span))
-    return body.with_entries(entries)
+def _qualify_type(entry: MappingEntry, library: str) -> MappingEntry:
+    """Return a type, or a component in one, in which the types that it names are of the library: it knows nothing else."""
 
+    def qualify(reference: MappingEntry) -> MappingEntry:
+        if not isinstance(reference.value, ScalarNode) or reference.value.value is None:
+            return reference
+        text = f"{library}.{reference.value.text.strip()}"
+        return reference.with_value(ScalarNode(text, text, reference.value.span))
 
-def _qualify_types(body: YamlNode, library: str) -> YamlNode:
-    """Return a type's body in which the types that it names are of the library: nothing else is known there."""
-    if not isinstance(body, MappingNode):
-        return body
-    entries = dict(_qualify_keys(body, _TYPE_KEYS, library).entries)
-    deprecated = body.get("deprecated")
-    if isinstance(deprecated, MappingNode):
-        entries["deprecated"] = entries["deprecated"].with_value(_qualify_keys(deprecated, ("use",), library))
-    components = body.get("components")
-    if isinstance(components, MappingNode):
-        parts = {part.key: part.with_value(_qualify_types(part.value, library)) for part in components}
-        parts_node = components.with_entries(parts)
-        entries["components"] = entries["components"].with_value(parts_node)
-    return body.with_entries(entries)
+    return entry.change_keys(
+        {
+            **dict.fromkeys(_TYPE_KEYS, qualify),
+            "deprecated": lambda deprecated: deprecated.change_keys({"use": qualify}),
+            "components": lambda parts: parts.change_each(lambda part: _qualify_type(part, library)),
+        }
+    )

@@ -24,7 +24,7 @@ from archgen.syntax.yaml_tree import (
 
 MAX_BASES = 60
 """So many types a type may be made from, one of the other."""
-_TYPE_KEYS = frozenset({"generic", "abstract", "title", "owner", "version", "deprecated"})
+_TYPE_KEYS = ("generic", "abstract", "title", "owner", "version", "deprecated")
 """Keys of a type that its instances do not have: they are about the type itself."""
 _NAMING_KEYS = frozenset({"type", "is", "same_as"})
 """Keys whose values name types."""

@@ -73,7 +73,9 @@ class _ChangeLayer:
             below = library_types.entries[type_id]
             laid = MappingEntry(type_id, below.key_span, self._lay_type(below, entry.value))
             filled = MappingNode({**library_types.entries, type_id: laid}, library_types.span)
-            bodies[library_id] = _replace_key(library, "component_types", filled)
+            bodies[library_id] = library.change_keys(
+                {"component_types": lambda section, filled=filled: section.with_value(filled)}  # type: ignore[misc]
+            )
         laid_libraries = MappingNode(bodies, libraries.value.span)
         self._entries["libraries"] = MappingEntry("libraries", libraries.key_span, laid_libraries)
         return section.with_value(MappingNode(own_types, types.span))
@@ -116,7 +118,7 @@ class _ChangeLayer:
         )
 
     def _lay_group(self, base: MappingNode, over: MappingNode, group_id: str) -> MappingNode:
-        rest = MappingNode({e.key: e for e in over if e.key != "components"}, over.span)
+        rest = over.without("components")
         group = _join_lists(lay_mapping(base, rest), base, rest)
         written = over.entries.get("components")
         if written is not None and isinstance(written.value, MappingNode):
@@ -127,15 +129,6 @@ class _ChangeLayer:
             below = base.entries.get("components", written)
             group.entries["components"] = MappingEntry("components", below.key_span, laid)
         return group
-
-
-def _replace_key(entry: MappingEntry, key: str, value: MappingNode) -> MappingEntry:
-    """Return an entry with another value at a key that its mapping has."""
-    mapping = entry.value
-    if not isinstance(mapping, MappingNode):
-        return entry
-    inner = mapping.entries[key].with_value(value)
-    return entry.with_value(MappingNode({**mapping.entries, key: inner}, mapping.span))
 
 
 def _join_lists(laid: MappingNode, base: MappingNode, over: MappingNode) -> MappingNode:

@@ -76,20 +76,22 @@ class FlatReferences:
 
         `own_leaves` are the components that the node implements: it waits for the others of what is around them.
         """
-        start = body.get("start")
-        if not isinstance(start, MappingNode):
-            return body
-        entries = dict(start.entries)
-        for key, has_several in (("after", True), ("by", False)):
-            scalars = mapping_values.get_scalars(start, key)
-            named = {name: each.span for each in scalars for name in self._name_started(each.text, own_leaves)}
+
+        def rename(entry: MappingEntry) -> MappingEntry:
+            scalars = entry.value.items if isinstance(entry.value, SequenceNode) else [entry.value]
+            named = {
+                name: each.span
+                for each in scalars
+                if isinstance(each, ScalarNode) and each.value is not None
+                for name in self._name_started(each.text, own_leaves)
+            }
             items = [ScalarNode(name, name, span) for name, span in named.items()]
-            if items:
-                value = SequenceNode(list(items), entries[key].value.span) if has_several else items[0]
-                entries[key] = entries[key].with_value(value)
-        written = body.entries["start"]
-        rewritten = MappingEntry("start", written.key_span, MappingNode(entries, start.span))
-        return MappingNode({**body.entries, "start": rewritten}, body.span)
+            if not items:
+                return entry
+            return entry.with_value(SequenceNode([*items], entry.value.span) if entry.key == "after" else items[0])
+
+        changes = dict.fromkeys(("after", "by"), rename)
+        return body.change_each(lambda entry: entry.change_keys(changes) if entry.key == "start" else entry)
 
     def _name_started(self, text: str, own_leaves: Collection[str]) -> list[str]:
         """Return what is started where a component is: all leaves inside of a composed one."""
@@ -116,20 +118,18 @@ class FlatReferences:
         return [f"{self.flat_ids[leaf]}.{name}" for leaf, _, name in leaf_ports if leaf in self.flat_ids] or [text]
 
     def _rewrite_elements(self, section: MappingEntry, key: str) -> MappingEntry:
-        entries: dict[str, MappingEntry] = {}
-        for element in mapping_values.get_body(section):
-            body = mapping_values.get_body(element)
-            inner = dict(body.entries)
-            if key in inner:
-                # In a chain a node of a name goes before a component, in a link a host.
-                is_chain = key == "through"
+        # In a chain a node of a name goes before a component, in a link a host.
+        is_chain = key == "through"
+        kinds = _WAYPOINT_KINDS if is_chain else _DEVICE_KINDS
+
+        def rewrite(element: MappingEntry) -> MappingEntry:
+            def rewrite_ends(ends: MappingEntry) -> MappingEntry:
                 worst_leaves = self._list_worst_leaves(element.key) if is_chain else ()
-                kinds = _WAYPOINT_KINDS if is_chain else _DEVICE_KINDS
-                value = self._rewrite_value(inner[key].value, kinds, worst_leaves)
-                inner[key] = inner[key].with_value(value)
-            value_node = MappingNode(inner, body.span) if inner else element.value
-            entries[element.key] = element.with_value(value_node)
-        return section.with_entries(entries)
+                return ends.with_value(self._rewrite_value(ends.value, kinds, worst_leaves))
+
+            return element.change_keys({key: rewrite_ends})
+
+        return section.change_each(rewrite)
 
     def _rewrite_value(self, node: YamlNode, kinds: tuple[str, ...], worst_leaves: tuple[str, ...]) -> YamlNode:
         items = node.items if isinstance(node, SequenceNode) else [node]
@@ -246,13 +246,13 @@ class FlatFrames:
 
     def rewrite_own(self, section: MappingEntry, leaf_id: str) -> MappingEntry:
         """Return the frames of a leaf."""
-        entries: dict[str, MappingEntry] = {}
-        for written in mapping_values.get_body(section):
-            name = self._parameters.fill_in_name(written.key, leaf_id, written.key_span)
-            frame = self._architecture.frames.get(name)
+
+        def rewrite(written: MappingEntry) -> MappingEntry:
+            frame = self._architecture.frames.get(self._parameters.fill_in_name(written.key, leaf_id, written.key_span))
             is_own = frame is not None and frame.component == leaf_id and frame.by_written
-            entries[written.key] = self._rewrite_frame(written, frame) if is_own else written
-        return section.with_entries(entries)
+            return self._rewrite_frame(written, frame) if is_own else written
+
+        return section.change_each(rewrite)
 
     def _rewrite_frame(self, entry: MappingEntry, frame: Frame | None) -> MappingEntry:
         if frame is None or frame.by is None:

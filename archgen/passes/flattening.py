@@ -19,7 +19,7 @@ from archgen.passes.linked_tree import LinkedTree
 from archgen.passes.pass_shape import Pass, PassWork
 from archgen.passes.project_tree import have_same_content, make_node
 from archgen.passes.tree_rebuilding import rebuild_tree
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode, change_at
 
 _HANDED_KEYS = ("owner", "status")
 """What a leaf has of what is around it, unless it says it itself."""
@@ -226,26 +226,23 @@ _DECLARING_KEYS = frozenset({"value", "type", "choices", "from"})
 
 def fill_in_parameters(written: MappingNode, parameters: Mapping[str, Parameter], prefix: str = "") -> MappingNode:
     """Return declarations of parameters without `from` and `$(self.x)`: with the values that these stand for."""
-    entries: dict[str, MappingEntry] = {}
-    for entry in written:
+
+    def fill_in(entry: MappingEntry) -> MappingEntry:
         name = f"{prefix}{entry.key}"
-        value = entry.value
         if name in parameters:
-            value = _fill_in_declaration(value, parameters[name], entry.key_span)
-        elif isinstance(value, MappingNode):
-            value = fill_in_parameters(value, parameters, f"{name}.")
-        entries[entry.key] = entry.with_value(value)
-    return MappingNode(entries, written.span)
+            return entry.with_value(_fill_in_declaration(entry.value, parameters[name], entry.key_span))
+        if isinstance(entry.value, MappingNode):
+            return entry.with_value(fill_in_parameters(entry.value, parameters, f"{name}."))
+        return entry
+
+    return written.change_each(fill_in)
 
 
 def _fill_in_declaration(node: YamlNode, parameter: Parameter, place: Span) -> YamlNode:
     if not isinstance(node, MappingNode) or _DECLARING_KEYS.isdisjoint(node.entries):
         return _fill_in_value(node, parameter)
     if "from" not in node.entries:
-        entries = dict(node.entries)
-        if (written := entries.get("value")) is not None:
-            entries["value"] = MappingEntry("value", written.key_span, _fill_in_value(written.value, parameter))
-        return MappingNode(entries, node.span)
+        return change_at(node, ("value",), lambda value: _fill_in_value(value, parameter))
     entries = {key: each for key, each in node.entries.items() if key != "from"}
     handed: dict[str, object] = {
         "type": parameter.type,

@@ -5,7 +5,7 @@ itself.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import pairwise
 
 from archgen.frozen import dataclass
@@ -116,30 +116,20 @@ def list_default_figures(system: TimingSystem) -> tuple[DefaultFigure, ...]:
     hosts_without_cores = {
         activity.host for activity in working if activity.host and system.cores.get(activity.host) is None
     }
+
+    def list_lacking(lacks: Callable[[Activity], object]) -> tuple[str, ...]:
+        return tuple(activity.id for activity in working if lacks(activity))
+
     figures = (
-        DefaultFigure(
-            "wcet",
-            "0",
-            tuple(activity.id for activity in working if activity.wcet is None and activity.response is None),
-        ),
-        DefaultFigure(
-            "bcet", "0", tuple(activity.id for activity in working if activity.wcet and activity.bcet is None)
-        ),
-        DefaultFigure(
-            "jitter",
-            "none",
-            tuple(activity.id for activity in working if activity.period and "jitter" not in activity.places),
-        ),
+        DefaultFigure("wcet", "0", list_lacking(lambda each: each.wcet is None and each.response is None)),
+        DefaultFigure("bcet", "0", list_lacking(lambda each: each.wcet and each.bcet is None)),
+        DefaultFigure("jitter", "none", list_lacking(lambda each: each.period and "jitter" not in each.places)),
         DefaultFigure(
             "priority",
             "after all that have one",
-            tuple(
-                activity.id
-                for activity in working
-                if activity.host in hosts_with_priorities and activity.priority is None
-            ),
+            list_lacking(lambda each: each.host in hosts_with_priorities and each.priority is None),
         ),
-        DefaultFigure("host", "a core of its own", tuple(activity.id for activity in working if activity.host is None)),
+        DefaultFigure("host", "a core of its own", list_lacking(lambda each: each.host is None)),
         DefaultFigure(
             "scheduling", "fair", tuple(host for host in system.fair_shares if host not in system.host_orders)
         ),
@@ -147,19 +137,11 @@ def list_default_figures(system: TimingSystem) -> tuple[DefaultFigure, ...]:
             "scheduling", "fifo", tuple(each.id for each in system.resources.values() if each.is_order_assumed)
         ),
         DefaultFigure("cores", "1", tuple(sorted(host for host in hosts_without_cores if host))),
-        DefaultFigure(
-            "calls",
-            "1 for each activation",
-            tuple(activity.id for activity in working if _uses_default_calls(system, activity)),
-        ),
+        DefaultFigure("calls", "1 for each activation", list_lacking(lambda each: _uses_default_calls(system, each))),
         DefaultFigure(
             "latency",
             "the best that is written (0 without one), and on a link with a bandwidth the wait for it",
-            tuple(
-                dict.fromkeys(
-                    f"{activity.source} to {activity.target}" for activity in system.arcs if activity.worst is None
-                )
-            ),
+            tuple(dict.fromkeys(f"{arc.source} to {arc.target}" for arc in system.arcs if arc.worst is None)),
         ),
     )
     return tuple(default for default in figures if default.element_ids)

@@ -23,7 +23,7 @@ from archgen.syntax.yaml_tree import EntryChange, MappingEntry, MappingNode, Sca
 _HOLDING_KEYS = frozenset({"from", "node", "components"})
 _TYPE_KEYS = frozenset({"is", "same_as"})
 _USE_KEYS = ("publishes", "subscribes", "serves", "calls")
-_START_REFERENCES = frozenset({"after", "by"})
+_START_REFERENCES = ("after", "by")
 _LEAST_ENDS = 2
 """A link between fewer ends joins nothing."""
 

@@ -183,19 +183,17 @@ class ChangeTargets:
         self.diagnostics: list[Diagnostic] = []
         self._root = root
         self._lost_keys = lost_keys
-        self.sound = changes.with_entries({section.key: self._keep_sound(section) for section in changes})
+        self.sound = changes.change_each(self._keep_sound)
 
     def _keep_sound(self, section: MappingEntry) -> MappingEntry:
-        if not isinstance(section.value, MappingNode):
-            return section
         known = mapping_values.get_mapping(self._root, section.key)
         if section.key == "groups":
-            kept = {e.key: self._keep_group(known, e) for e in section.value if self._is_known_group(known, e)}
-        elif (kind := SECTION_KINDS.get(section.key, "")) in DECLARING_KEYS:
-            kept = {e.key: e for e in section.value if self._is_sound(kind, known, e)}
-        else:
-            return section
-        return section.with_entries(kept)
+            return section.change_each(
+                lambda group: self._keep_group(known, group) if self._is_known_group(known, group) else None
+            )
+        if (kind := SECTION_KINDS.get(section.key, "")) in DECLARING_KEYS:
+            return section.change_each(lambda entry: entry if self._is_sound(kind, known, entry) else None)
+        return section
 
     def _is_sound(self, kind: str, known_body: MappingNode, entry: MappingEntry) -> bool:
         body = mapping_values.get_body(entry)
@@ -230,21 +228,18 @@ class ChangeTargets:
         if "components" not in body.entries or not _INSTANCE_KEYS.isdisjoint({*body.entries, *known_body.entries}):
             return holder
         known = mapping_values.get_mapping(known_body, "components")
-        kept: dict[str, MappingEntry] = {}
-        for part in mapping_values.get_mapping(body, "components"):
+
+        def keep_part(part: MappingEntry) -> MappingEntry | None:
             part_id = f"{holder_id}.{part.key}"
             if part.key in known.entries:
-                kept[part.key] = self._keep_parts(part, mapping_values.get_body(known.entries[part.key]), part_id)
-            elif declares_itself(part.value) or _is_stub(part) or part.key in self._lost_keys:
-                kept[part.key] = part
-            else:
-                names = [f"{holder_id}.{name}" for name in known.entries]
-                help_line = "a new one has a title, a functionality, inputs or outputs"
-                self._report(part, "component", part_id, names, help_line)
-        components = body.entries["components"]
-        parts = MappingNode(kept, components.value.span)
-        entries = {**body.entries, "components": MappingEntry("components", components.key_span, parts)}
-        return holder.with_value(body.with_entries(entries))
+                return self._keep_parts(part, mapping_values.get_body(known.entries[part.key]), part_id)
+            if declares_itself(part.value) or _is_stub(part) or part.key in self._lost_keys:
+                return part
+            names = [f"{holder_id}.{name}" for name in known.entries]
+            self._report(part, "component", part_id, names, "a new one has a title, a functionality, inputs or outputs")
+            return None
+
+        return holder.change_keys({"components": lambda parts: parts.change_each(keep_part)})
 
     def _report(self, entry: MappingEntry, kind: str, name: str, known_names: list[str], new_help: str) -> None:
         self.diagnostics.append(

@@ -20,19 +20,11 @@ from archgen.plugins.aadl.classifier_names import ClassifierNames, fold_property
 from archgen.plugins.aadl.resolved_classifiers import ClassifierResolver, ResolvedClassifier, ResolvedPart
 
 _UNITS = {"ns": "ns", "us": "us", "ms": "ms", "sec": "s", "s": "s", "min": "min", "hr": "h", "h": "h"}
+_SIZES = {"bytes": "B", "kbyte": "kB", "mbyte": "MB", "gbyte": "GB"}
 _BYTES_A_SECOND = {
-    "bytesps": "B/s",
-    "kbytesps": "kB/s",
-    "mbytesps": "MB/s",
-    "gbytesps": "GB/s",
-    "bitsps": "bit/s",
-    "kbitsps": "kbit/s",
-    "mbitsps": "Mbit/s",
-    "gbitsps": "Gbit/s",
-    "bps": "bit/s",
-    "kbps": "kbit/s",
-    "mbps": "Mbit/s",
-    "gbps": "Gbit/s",
+    f"{prefix.lower()}{written}": f"{prefix}{unit}"
+    for prefix in ("", "k", "M", "G")
+    for written, unit in (("bytesps", "B/s"), ("bitsps", "bit/s"), ("bps", "bit/s"))
 }
 _INHERITED = ("period", "priority")
 """What counts for all threads in what it is written of."""
@@ -233,12 +225,15 @@ def read_references(value: AadlValue | None) -> list[Path]:
 
 def read_duration(value: AadlValue | None) -> str | None:
     """Return a time as the language writes it, or None."""
-    if not isinstance(value, AadlNumber) or value.value < 0:
+    if isinstance(value, AadlNumber) and value.unit.lower() == "ps":
+        return write_number(value.value / 1000, "ns") if value.value >= 0 else None
+    return _read_quantity(value, _UNITS)
+
+
+def _read_quantity(value: AadlValue | None, units: dict[str, str]) -> str | None:
+    if not isinstance(value, AadlNumber) or value.value < 0 or value.unit.lower() not in units:
         return None
-    unit = value.unit.lower()
-    if unit == "ps":
-        return write_number(value.value / 1000, "ns")
-    return write_number(value.value, _UNITS[unit]) if unit in _UNITS else None
+    return write_number(value.value, units[value.unit.lower()])
 
 
 def read_time_range(value: AadlValue | None) -> tuple[str | None, str | None]:
@@ -251,18 +246,12 @@ def read_time_range(value: AadlValue | None) -> tuple[str | None, str | None]:
 
 def read_size(value: AadlValue | None) -> str | None:
     """Return a size of data as the language writes it, or None."""
-    units = {"bytes": "B", "kbyte": "kB", "mbyte": "MB", "gbyte": "GB"}
-    if not isinstance(value, AadlNumber) or value.value < 0 or value.unit.lower() not in units:
-        return None
-    return write_number(value.value, units[value.unit.lower()])
+    return _read_quantity(value, _SIZES)
 
 
 def read_bandwidth(value: AadlValue | None) -> str | None:
     """Return data a second as the language writes it, or None."""
-    if not isinstance(value, AadlNumber) or value.value <= 0:
-        return None
-    unit = _BYTES_A_SECOND.get(value.unit.lower())
-    return write_number(value.value, unit) if unit else None
+    return _read_quantity(value, _BYTES_A_SECOND) if isinstance(value, AadlNumber) and value.value > 0 else None
 
 
 def write_number(number: Fraction, unit: str) -> str | None:
