@@ -156,7 +156,14 @@ def _read_import(form: str, *names: str, distro: str = "jazzy") -> Callable[[Seq
 
 
 MODEL_RULES = frozenset(
-    {"circular-fields", "circular-types", "topic-type-conflict", "unknown-message", "wrong-parameter"}
+    {
+        "circular-fields",
+        "circular-types",
+        "incompatible-qos",
+        "topic-type-conflict",
+        "unknown-message",
+        "wrong-parameter",
+    }
 )
 """Errors that an importer hands on: they are in what the model says, and are told as that."""
 

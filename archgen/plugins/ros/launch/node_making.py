@@ -145,12 +145,13 @@ class NodeMaker:
 
     def _add_remap(self, node: LaunchedNode, action: LaunchAction, pair: Sequence[LaunchValue]) -> None:
         own_name, name = (self._run.context.resolve(part) for part in pair)
-        unknown = next((each for each in (own_name, name) if isinstance(each, UnknownValue)), None)
-        if unknown is not None:
+        if isinstance(own_name, UnknownValue) or isinstance(name, UnknownValue):
+            unknown = next(each for each in (own_name, name) if isinstance(each, UnknownValue))
             self._run.tell_computed(action, "a remap", unknown)
             return
-        assert isinstance(own_name, str)  # noqa: S101 - nothing unknown is left
-        assert isinstance(name, str)  # noqa: S101 - as above
+        if not own_name:
+            self._run.add_note(action.word, f"a remap to `{name}` does not say of what", action.span)
+            return
         if self._run.context.is_ros_1:
             own_name, name = clean_name(own_name), clean_name(name)
         self._keep_written(node, f"remaps.{own_name}", pair[1])

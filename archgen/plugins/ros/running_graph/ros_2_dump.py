@@ -236,7 +236,7 @@ class EndpointReader:
         if key == "Node namespace":
             endpoint.namespace = value
         elif key == "Topic type":
-            endpoint.message = value
+            endpoint.message = full_message_name(value) or ""
         elif key == "Endpoint type":
             endpoint.use = _USES.get(value, "")
         elif key == "History":
