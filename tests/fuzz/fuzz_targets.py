@@ -157,12 +157,8 @@ def _read_import(form: str, *names: str, distro: str = "jazzy") -> Callable[[Seq
 
 MODEL_RULES = frozenset(
     {
-        "circular-fields",
-        "circular-types",
-        "incompatible-qos",
-        "topic-type-conflict",
-        "unknown-message",
-        "wrong-parameter",
+        *("circular-fields", "circular-types", "conflicting-message", "incompatible-qos", "invalid-ros-name"),
+        *("too-large", "topic-type-conflict", "type-mismatch", "unknown-message", "wrong-parameter"),
     }
 )
 """Errors that an importer hands on: they are in what the model says, and are told as that."""
