@@ -156,7 +156,10 @@ def _read_import(form: str, *names: str, distro: str = "jazzy") -> Callable[[Seq
 
 
 MODEL_RULES = frozenset(
-    {"circular-fields", "circular-types", "topic-type-conflict", "unknown-message", "wrong-parameter"}
+    {
+        *("circular-fields", "circular-types", "conflicting-message", "incompatible-qos", "invalid-ros-name"),
+        *("too-large", "topic-type-conflict", "type-mismatch", "unknown-message", "wrong-parameter"),
+    }
 )
 """Errors that an importer hands on: they are in what the model says, and are told as that."""
 
@@ -524,12 +527,3 @@ def _list_recordings() -> list[bytes]:
         b"average rate: 10.0\n\tmin: 0.1s max: 0.2s std dev: 0.01s window: 10\n",
         *texts,
     ]
-
-
-def make_folder(base: Path) -> Path:
-    """Return an empty folder for an input."""
-    folder = base / "input"
-    if folder.exists():
-        shutil.rmtree(folder)
-    folder.mkdir(parents=True)
-    return folder

@@ -31,10 +31,13 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import FrameType
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from tests.fuzz.fuzz_mutations import SEPARATOR, list_words, mutate_input
-from tests.fuzz.fuzz_targets import Target, list_targets, make_folder
+
+if TYPE_CHECKING:
+    # What is imported before Atheris has prepared archgen would not be watched: targets are asked for later.
+    from tests.fuzz.fuzz_targets import Target
 
 GUIDING_ROOMS = (
     *(
@@ -62,6 +65,15 @@ MAX_BYTES = 20_000
 
 class TooLongError(BaseException):
     """An input takes longer than any may; no handler of archgen's takes it for an error of its own."""
+
+
+def make_folder(base: Path) -> Path:
+    """Return an empty folder for an input."""
+    folder = base / "input"
+    if folder.exists():
+        shutil.rmtree(folder)
+    folder.mkdir(parents=True)
+    return folder
 
 
 def find_fault(target: Target, data: bytes, base: Path) -> tuple[str, str] | None:
@@ -188,6 +200,8 @@ def minimise(target: Target, data: bytes, base: Path) -> bytes:
 
 def _minimise_files(paths: Sequence[Path]) -> int:
     """Make kept inputs smaller; each is called after its target."""
+    from tests.fuzz.fuzz_targets import list_targets
+
     targets = {target.name: target for target in list_targets()}
     with tempfile.TemporaryDirectory() as base:
         for path in paths:
@@ -307,12 +321,14 @@ def main(words: Sequence[str] | None = None) -> int:
     os.environ["XDG_CACHE_HOME"] = str(work / "cache")
     os.environ["COLUMNS"] = "100"
     warnings.simplefilter("ignore")
+    atheris = None if given.replay else _prepare_atheris()
+    from tests.fuzz.fuzz_targets import list_targets
+
     targets = [target for target in list_targets() if not given.targets or target.name in given.targets]
+    _fork_templates()
     if given.replay:
         return _replay_corpus(targets, work)
-    atheris = _prepare_atheris()
     runs = [FuzzRun(target, work, given.seed) for target in targets]
-    _fork_templates()
     gc.collect()
     gc.freeze()  # what is imported stays: to look through it again and again would cost more than the inputs
     shares = sum(target.share for target in targets)

@@ -20,6 +20,7 @@ from archgen.plugin.importing import (
     read_bounded,
     resolve_scalar,
 )
+from archgen.plugin.model import MAX_NAME_LENGTH
 
 HINT = "orca"
 _TAG = "DefaultComponentTag"
@@ -135,6 +136,9 @@ class _OrcaReader:
             word, *path = each.key.split(".")
             if word not in _SETS or len(path) < 2 or path.pop() != "Default" or not all(map(_WORD.match, path)):  # noqa: PLR2004
                 continue
+            if len(each.key) > MAX_NAME_LENGTH:
+                self._add_note("Config", f"`{each.key[:60]}...` is too long for the name of a parameter", {"": each})
+                continue
             prefix = each.key.removesuffix("Default")
             facts = {
                 key: values[f"{prefix}{key}"] for key in ("Comment", "Type", "External") if f"{prefix}{key}" in values
@@ -145,12 +149,8 @@ class _OrcaReader:
             if is_external:
                 untagged.append(path[0])
             elif [make_camel_name(name) for name in names[:-1]] != path[:-1]:
-                self._add_note(
-                    "Config",
-                    f"the set of `{'.'.join(path)}` is called `{'.'.join(names[:-1])}`",
-                    {"": each},
-                    fate="noted",
-                )
+                words = f"the set of `{'.'.join(path)}` is called `{'.'.join(names[:-1])}`"
+                self._add_note("Config", words, {"": each}, fate="noted")
             parameters[".".join(names)] = self._write_parameter(
                 each, path[-1], names[-1], facts, is_external=is_external
             )

@@ -19,6 +19,7 @@ from archgen.plugins.ros.launch.server_parameters import ServerParameter, read_s
 ActionLoader = Callable[[Path, "LaunchRun"], list[LaunchAction]]
 MAX_NODES = 20_000
 MAX_ACTIONS = 100_000
+_MAX_NESTING = 100
 MAX_INCLUDES = 500
 _MAX_DEPTH = 25
 _SETTERS = frozenset(
@@ -44,7 +45,7 @@ class LaunchRun(ScopeRun):
         self._load_actions = load_actions
         self._maker = NodeMaker(self)
         self._includes = 0
-        self._actions = 0
+        self._actions = self._depth = 0
         self._has_told_nodes = False
         self._handlers |= {
             "ignored": self._run_ignored,
@@ -77,13 +78,18 @@ class LaunchRun(ScopeRun):
 
     def run_actions(self, actions: list[LaunchAction]) -> None:
         """Walk through actions in their order."""
+        self._depth += 1
         for action in actions:
             self._actions += 1
-            if self._actions <= MAX_ACTIONS:
+            if self._actions <= MAX_ACTIONS and self._depth <= _MAX_NESTING:
                 self._run_conditional(action)
-            elif self._actions == MAX_ACTIONS + 1:
-                # Actions that stand in one another twice, level by level, would have no end.
-                self.add_note(action.word, f"more than {MAX_ACTIONS:,} actions are not followed", action.span)
+            elif self._actions <= MAX_ACTIONS + 1:
+                # Actions that stand in one another twice, level by level, or that make themselves, would have no end.
+                many = (
+                    f"more than {MAX_ACTIONS:,} actions" if self._actions > MAX_ACTIONS else "actions in so many others"
+                )
+                self.add_note(action.word, f"{many} are not followed", action.span)
+        self._depth -= 1
 
     def _run_conditional(self, action: LaunchAction) -> None:
         verdicts = tuple(map(self.context.judge_condition, action.conditions))
@@ -103,9 +109,8 @@ class LaunchRun(ScopeRun):
     def _run_action(self, action: LaunchAction) -> None:
         handler = self._handlers.get(action.kind)
         if handler is None:
-            self.add_note(
-                action.word, str(action.get("reason") or "it has no counterpart in the language"), action.span
-            )
+            reason = str(action.get("reason") or "it has no counterpart in the language")
+            self.add_note(action.word, reason, action.span)
             return
         if action.kind not in {"ignored", "description"}:
             self.taken[action.word] += 1

@@ -9,7 +9,7 @@ from typing import Any
 
 from archgen.plugin.importing import find_program_name
 from archgen.plugins.ros.launch.command_words import split_words
-from archgen.plugins.ros.launch.launch_actions import LaunchAction, LaunchedNode, clean_name, join_names
+from archgen.plugins.ros.launch.launch_actions import LaunchAction, LaunchedNode, join_names
 from archgen.plugins.ros.launch.launch_parameter_values import (
     FILE_KIND,
     FileRewrites,
@@ -145,18 +145,12 @@ class NodeMaker:
             self._add_remap(node, action, pair)
 
     def _add_remap(self, node: LaunchedNode, action: LaunchAction, pair: Sequence[LaunchValue]) -> None:
-        own_name, name = (self._run.context.resolve(part) for part in pair)
-        unknown = next((each for each in (own_name, name) if isinstance(each, UnknownValue)), None)
-        if unknown is not None:
-            self._run.tell_computed(action, "a remap", unknown)
+        named = self._run.resolve_remap(action, "a remap", pair)
+        if named is not None:
+            self._keep_written(node, f"remaps.{named[0]}", pair[1])
+            node.remaps.setdefault(*named)
+        elif own_name := self._run.context.resolve(pair[0]):
             node.unclear_remaps.add(own_name if isinstance(own_name, str) else "*")
-            return
-        assert isinstance(own_name, str)  # noqa: S101 - nothing unknown is left
-        assert isinstance(name, str)  # noqa: S101 - as above
-        if self._run.context.is_ros_1:
-            own_name, name = clean_name(own_name), clean_name(name)
-        self._keep_written(node, f"remaps.{own_name}", pair[1])
-        node.remaps.setdefault(own_name, name)
 
     def _set_process(self, node: LaunchedNode, action: LaunchAction) -> None:
         context = self._run.context

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from archgen.plugin.importing import ImportNote, Span
@@ -113,26 +113,31 @@ class ScopeRun:
         self.context.scope.parameters = (*self.context.scope.parameters, file)
 
     def _run_remap(self, action: LaunchAction) -> None:
-        pair = (self.context.resolve(action.get("from")), self.context.resolve(action.get("to")))
-        own_name, name = pair
-        if isinstance(own_name, UnknownValue) or isinstance(name, UnknownValue):
-            self.tell_computed(action, "the name", next(each for each in pair if isinstance(each, UnknownValue)))
-        else:
+        pair = self.resolve_remap(action, "the name", (action.get("from"), action.get("to")))
+        if pair is not None:
             scope = self.context.scope
-            if self.context.is_ros_1:
-                own_name, name = clean_name(own_name), clean_name(name)
             # In ROS 1 a later rule for a name takes the place of an earlier one, in ROS 2 the first one counts.
-            kept = [pair for pair in scope.remaps if not (self.context.is_ros_1 and pair[0] == own_name)]
-            scope.remaps = (*kept, (own_name, name))
+            kept = [each for each in scope.remaps if not (self.context.is_ros_1 and each[0] == pair[0])]
+            scope.remaps = (*kept, pair)
+
+    def resolve_remap(self, action: LaunchAction, what: str, pair: Sequence[LaunchValue]) -> tuple[str, str] | None:
+        """Return the two names of a remap; None, with a note, for what only running the file would tell, or names nothing."""
+        own_name, name = (self.context.resolve(part) for part in pair)
+        if isinstance(own_name, UnknownValue) or isinstance(name, UnknownValue):
+            self.tell_computed(action, what, next(each for each in (own_name, name) if isinstance(each, UnknownValue)))
+        elif not own_name:
+            self.add_note(action.word, f"a remap to `{name}` does not say of what", action.span)
+        else:
+            return (clean_name(own_name), clean_name(name)) if self.context.is_ros_1 else (own_name, name)
+        return None
 
     def _run_environment(self, action: LaunchAction) -> None:
         name, value = self.context.resolve(action.get("name")), self.context.resolve(action.get("value"))
         if isinstance(name, str) and isinstance(value, str):
             self.context.scope.environment = (*self.context.scope.environment, (name, value))
         else:
-            self.tell_computed(
-                action, "the value", value if isinstance(value, UnknownValue) else UnknownValue(str(name))
-            )
+            unknown = value if isinstance(value, UnknownValue) else UnknownValue(str(name))
+            self.tell_computed(action, "the value", unknown)
 
     def _run_host(self, action: LaunchAction) -> None:
         name = self.context.resolve(action.get("name"))

@@ -141,6 +141,8 @@ class RunningGraph:
             return
         if name not in node.uses[use]:
             self.taken[use] += 1
+        if message:
+            self.messages.setdefault(name, message)
         if message or name not in node.uses[use]:
             node.uses[use][name] = message
 

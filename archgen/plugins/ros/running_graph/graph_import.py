@@ -60,7 +60,7 @@ def write_graph(graph: RunningGraph) -> dict[str, dict[str, Any]]:
             graph.add_note("node", f"`{node.full_name}` is no name of ROS: {fault}", node.span)
             graph.taken["node"] -= 1
         elif node.full_name not in _NO_NODES and not name.startswith("_"):
-            maker.add_node(node)
+            maker.add_node(node, namespace, name)
     slices = maker.finish()
     if not slices and any(graph.messages.values()):
         types = {make_type_name(message): {"message": message} for message in graph.messages.values() if message}
@@ -79,9 +79,8 @@ class _SliceMaker:
         self._component_types: dict[str, Any] = {}
         self._loaded: dict[str, str] = {}
 
-    def add_node(self, node: RunningNode) -> None:
-        """Write one node."""
-        namespace, _, name = node.full_name.rpartition("/")
+    def add_node(self, node: RunningNode, namespace: str, name: str) -> None:
+        """Write one node, whose full name is given in its parts, too."""
         if node.is_container or any(each.endswith(_LOADING_SERVICE) for each in node.uses["serves"]):
             self._add_container(node, namespace, name)
             return

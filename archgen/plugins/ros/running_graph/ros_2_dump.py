@@ -157,8 +157,6 @@ class _Ros2DumpReader:
     def _add_use(self, node: RunningNode, name: str, messages: str, line: DumpLine) -> None:
         message = self._choose_message(name, messages, line)
         self._graph.add_use(node, self._use, name, message)
-        if message:
-            self._graph.messages.setdefault(name, message)
 
     def _choose_message(self, name: str, messages: str, line: DumpLine) -> str:
         found = [message.strip() for message in messages.split(",")]
@@ -236,7 +234,7 @@ class EndpointReader:
         if key == "Node namespace":
             endpoint.namespace = value
         elif key == "Topic type":
-            endpoint.message = value
+            endpoint.message = full_message_name(value) or ""
         elif key == "Endpoint type":
             endpoint.use = _USES.get(value, "")
         elif key == "History":
@@ -282,7 +280,6 @@ class EndpointReader:
                 continue
             node = graph.get_node(full_name, endpoint.span)
             graph.add_use(node, endpoint.use, topic, endpoint.message)
-            graph.messages.setdefault(topic, endpoint.message)
             if endpoint.qos:
                 node.qos[endpoint.use, topic] = endpoint.qos
                 graph.taken["QoS profile"] += 1
