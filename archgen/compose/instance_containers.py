@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from archgen.model.derived_names import derive_node_ids
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, list_entries
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, change_at, find_value, list_entries
 
 
 def make_instance_containers(
@@ -37,19 +37,14 @@ def _list_containers(bodies: Mapping[str, MappingEntry]) -> Iterator[tuple[str, 
 
 
 def _name_container(component_id: str, entry: MappingEntry, ids: Mapping[str, str], parents: Mapping[str, str]) -> None:
-    node = entry.value.entries.get("node") if isinstance(entry.value, MappingNode) else None
-    reference = node.value.entries.get("container") if node and isinstance(node.value, MappingNode) else None
-    if node is None or reference is None or not isinstance(reference.value, ScalarNode):
+    reference = find_value(entry.value, "node", "container")
+    if not isinstance(reference, ScalarNode):
         return
     around: str | None = component_id
-    while around is not None and f"{around}.{reference.value.text}" not in ids:
+    while around is not None and f"{around}.{reference.text}" not in ids:
         around = parents.get(around)
-    if around is None or not isinstance(node.value, MappingNode) or not isinstance(entry.value, MappingNode):
+    if around is None:
         return
-    name = ids[f"{around}.{reference.value.text}"]
-    named = MappingEntry("container", reference.key_span, ScalarNode(name, name, reference.value.span))
-    own_node = MappingNode({**node.value.entries, "container": named}, node.value.span)
+    name = ScalarNode(ids[f"{around}.{reference.text}"], ids[f"{around}.{reference.text}"], reference.span)
     # A body of its own: other instances share the type's.
-    entry.value = MappingNode(
-        {**entry.value.entries, "node": MappingEntry("node", node.key_span, own_node)}, entry.value.span
-    )
+    entry.value = change_at(entry.value, ("node", "container"), lambda _: name)

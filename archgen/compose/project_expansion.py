@@ -232,14 +232,10 @@ class _ProjectExpander:
             yield part, Expansion(expansion.written, expansion.body, expansion.origin, {}, 1)
 
     def _flatten_group(self, group: MappingEntry, parts: list[tuple[MappingEntry, Expansion]]) -> MappingEntry:
-        if not isinstance(group.value, MappingNode) or "components" not in group.value.entries:
-            return group
         leaves: dict[str, MappingEntry] = {}
         for part, expansion in parts:
             self._flatten_part(group.key, part, expansion, part.key, None, leaves)
-        components = group.value.entries["components"]
-        components_entry = MappingEntry("components", components.key_span, MappingNode(leaves, components.value.span))
-        return group.with_entries({**group.value.entries, "components": components_entry})
+        return group.change_keys({"components": lambda components: components.with_entries(leaves)})
 
     def _flatten_part(  # noqa: PLR0913, PLR0917 - what the recursion carries
         self,

@@ -12,7 +12,7 @@ from archgen.link import mapping_values
 from archgen.link.slice_merging import merge_documents
 from archgen.model.architecture import Architecture
 from archgen.project.library_reading import LIBRARY_SECTIONS, LoadedLibrary
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlDocument
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, YamlDocument, list_entries
 
 _WORD = re.compile(r"[a-z0-9]+")
 
@@ -33,9 +33,7 @@ def merge_libraries(
             package = _name_package(library)
             body = MappingNode({**package, **entry.value.entries, **content.entries}, entry.value.span)
             bodies[library.id] = entry.with_value(body)
-    section = root.entries["libraries"]
-    filled_section = section.with_entries(bodies)
-    return MappingNode({**root.entries, "libraries": filled_section}, root.span), tuple(diagnostics)
+    return root.change_keys({"libraries": lambda section: section.with_entries(bodies)}), tuple(diagnostics)
 
 
 def _name_package(library: LoadedLibrary) -> dict[str, MappingEntry]:
@@ -56,19 +54,16 @@ def _merge_content(written: MappingNode, library: LoadedLibrary) -> tuple[Mappin
 
 def keep_used_libraries(root: MappingNode, architectures: Sequence[Architecture]) -> MappingNode:
     """Return a merged project whose libraries hold only what it uses, also in its variants, and no paths."""
-    if "libraries" not in root.entries:
-        return root
-    libraries = {
-        library.key: library.with_value(body)
-        for library in list_libraries(root)
-        if (body := _keep_used_types(library, architectures)).entries
-    }
-    section = root.entries["libraries"]
-    kept_section = MappingEntry("libraries", section.key_span, MappingNode(libraries, section.value.span))
-    entries = {**root.entries, "libraries": kept_section}
-    if not libraries:
-        del entries["libraries"]
-    return MappingNode(entries, root.span)
+
+    def keep(library: MappingEntry) -> MappingEntry | None:
+        body = _keep_used_types(library, architectures)
+        return library.with_value(body) if body.entries else None
+
+    def keep_section(section: MappingEntry) -> MappingEntry | None:
+        kept = section.change_each(keep)
+        return kept if list_entries(kept.value) else None
+
+    return root.change_keys({"libraries": keep_section})
 
 
 def _keep_used_types(library: MappingEntry, architectures: Sequence[Architecture]) -> MappingNode:

@@ -19,7 +19,7 @@ from archgen.model.path_resolver import title_from_id
 from archgen.model.port_media import normalise_medium
 from archgen.model.quantity import Quantity
 from archgen.schema.short_forms import fold_type_name
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, node_to_data
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlNode, node_to_data
 
 _ORDERS = frozenset(get_args(SchedulingOrder))
 EMPTY_MAPPING = MappingNode({}, NO_SPAN)
@@ -73,7 +73,11 @@ def get_data(mapping: MappingNode, key: str) -> Mapping[str, object]:
 
 def get_scalars(mapping: MappingNode, key: str) -> tuple[ScalarNode, ...]:
     """Return the scalars of a list; a single scalar counts as a list of one."""
-    node = mapping.get(key)
+    return list_scalars(mapping.get(key))
+
+
+def list_scalars(node: YamlNode | None) -> tuple[ScalarNode, ...]:
+    """Return the scalars of a list, or the only one."""
     if type(node) is SequenceNode:
         return tuple(item for item in node.items if type(item) is ScalarNode and item.value is not None)
     return (node,) if type(node) is ScalarNode and node.value is not None else ()

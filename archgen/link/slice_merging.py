@@ -201,39 +201,25 @@ def _diagnose_undeclared(groups: MappingNode, path: KeyPath, declared_paths: Seq
 
 
 def _remove_paths(groups: MappingNode, removed_paths: frozenset[KeyPath]) -> MappingNode:
-    kept_groups: dict[str, MappingEntry] = {}
-    for group in groups:
+    def keep(group: MappingEntry) -> MappingEntry | None:
         if (group.key,) in removed_paths:
-            continue
-        kept_group = _remove_components((group.key,), group, removed_paths)
+            return None
+        kept = _remove_components((group.key,), group, removed_paths)
         # A group of which nothing is left goes too.
-        if (
-            kept_group is group
-            or "title" in _entries_of(kept_group)
-            or any(list_entries(kept_group.value, "components"))
-        ):
-            kept_groups[group.key] = kept_group
-    return MappingNode(kept_groups, groups.span)
+        is_left = kept is group or _has_path(kept.value, "title") or list_entries(kept.value, "components")
+        return kept if is_left else None
 
-
-def _entries_of(entry: MappingEntry) -> dict[str, MappingEntry]:
-    return entry.value.entries if isinstance(entry.value, MappingNode) else {}
+    return groups.change_each(keep)
 
 
 def _remove_components(path: KeyPath, holder: MappingEntry, removed_paths: frozenset[KeyPath]) -> MappingEntry:
     """Return what holds components without those at some paths: itself if there are none, since documents must not change."""
-    components = list(list_entries(holder.value, "components"))
-    kept = [
-        _remove_components((*path, component.key), component, removed_paths)
-        for component in components
-        if (*path, component.key) not in removed_paths
-    ]
-    if len(kept) == len(components) and all(a is b for a, b in zip(kept, components, strict=True)):
-        return holder
-    entry = _entries_of(holder)["components"]
-    kept_components = MappingNode({component.key: component for component in kept}, entry.value.span)
-    entries = {**_entries_of(holder), "components": entry.with_value(kept_components)}
-    return holder.with_entries(entries)
+
+    def keep(component: MappingEntry) -> MappingEntry | None:
+        inner_path = (*path, component.key)
+        return None if inner_path in removed_paths else _remove_components(inner_path, component, removed_paths)
+
+    return holder.change_keys({"components": lambda parts: parts.change_each(keep)})
 
 
 RULES: tuple[Rule, ...] = (

@@ -146,14 +146,12 @@ class FlatNodes:
     def _keep_internal_names(self, node_id: str, section: MappingEntry) -> MappingEntry:
         """Return the internal topics and services of a node, those named that were called after a component's path."""
         endpoints = [each for each in self._endpoints.get(node_id, ()) if each.internal and each.component]
-        uses: dict[str, MappingEntry] = {}
-        for written in mapping_values.get_body(section):
-            entries = {
-                use.key: self._keep_internal_name(use, _USES.get(written.key, ""), endpoints)
-                for use in mapping_values.get_body(written)
-            }
-            uses[written.key] = written.with_entries(entries)
-        return section.with_entries(uses)
+
+        def keep_names(written: MappingEntry) -> MappingEntry:
+            key = _USES.get(written.key, "")
+            return written.change_each(lambda use: self._keep_internal_name(use, key, endpoints))
+
+        return section.change_each(keep_names)
 
     def _keep_internal_name(self, use: MappingEntry, key: str, endpoints: Sequence[Endpoint]) -> MappingEntry:
         """Return an internal entry; `key` is what names its topic or service."""

@@ -78,20 +78,14 @@ class FlatReferences:
         """
 
         def rename(entry: MappingEntry) -> MappingEntry:
-            scalars = entry.value.items if isinstance(entry.value, SequenceNode) else [entry.value]
-            named = {
-                name: each.span
-                for each in scalars
-                if isinstance(each, ScalarNode) and each.value is not None
-                for name in self._name_started(each.text, own_leaves)
-            }
+            scalars = mapping_values.list_scalars(entry.value)
+            named = {name: each.span for each in scalars for name in self._name_started(each.text, own_leaves)}
             items = [ScalarNode(name, name, span) for name, span in named.items()]
             if not items:
                 return entry
             return entry.with_value(SequenceNode([*items], entry.value.span) if entry.key == "after" else items[0])
 
-        changes = dict.fromkeys(("after", "by"), rename)
-        return body.change_each(lambda entry: entry.change_keys(changes) if entry.key == "start" else entry)
+        return body.change_keys({"start": lambda start: start.change_keys(dict.fromkeys(("after", "by"), rename))})
 
     def _name_started(self, text: str, own_leaves: Collection[str]) -> list[str]:
         """Return what is started where a component is: all leaves inside of a composed one."""

@@ -83,17 +83,12 @@ class _Flattener:
         return MappingNode(sections, root.span)
 
     def _write_group(self, group: MappingEntry) -> MappingEntry:
-        body = mapping_values.get_body(group)
-        if "components" not in body.entries:
-            return group
-        components: dict[str, MappingEntry] = {}
-        written_ids = [f"{group.key}.{name}" for name in mapping_values.get_mapping(body, "components").entries]
-        for component_id in self._list_in_order(written_ids):
-            flat_name = self._flat_ids[component_id].partition(".")[2]
-            components[flat_name] = self._write_component(component_id, flat_name)
-        written = body.entries["components"]
-        section = MappingEntry("components", written.key_span, MappingNode(components, written.value.span))
-        return group.with_value(MappingNode({**body.entries, "components": section}, body.span))
+        def write(section: MappingEntry) -> MappingEntry:
+            written_ids = [f"{group.key}.{name}" for name in mapping_values.get_body(section).entries]
+            flat_names = {each: self._flat_ids[each].partition(".")[2] for each in self._list_in_order(written_ids)}
+            return section.with_entries({name: self._write_component(each, name) for each, name in flat_names.items()})
+
+        return group.change_keys({"components": write})
 
     def _list_in_order(self, component_ids: object) -> list[str]:
         """Return what is left of components, each composed one before what is inside of it."""

@@ -28,8 +28,7 @@ def _resolve_instances(work: PassWork) -> None:
     written_groups = mapping_values.get_mapping(work.tree.root, "groups")
     groups = {group.key: _write_group(group, expansion.parts.get(group.key, [])) for group in written_groups}
     if groups:
-        section = work.tree.root.entries["groups"]
-        sections["groups"] = MappingEntry("groups", section.key_span, MappingNode(groups, written_groups.span))
+        sections["groups"] = sections["groups"].with_entries(groups)
     for name in ("views", "policies"):
         if name in sections:
             sections[name] = rewrite_selectors(sections[name], lambda word: _name_instances(work, word))
@@ -46,18 +45,13 @@ def _name_instances(work: PassWork, word: str) -> list[str] | None:
 
 
 def _write_group(group: MappingEntry, parts: list[tuple[MappingEntry, Expansion]]) -> MappingEntry:
-    body = mapping_values.get_body(group)
-    if "components" not in body.entries:
-        return group
     parts_by_name = {part.key: (part, expansion) for part, expansion in parts}
-    components = _write_components(body.entries["components"], parts_by_name)
-    return group.with_value(MappingNode({**body.entries, "components": components}, body.span))
+    return group.change_keys({"components": lambda written: _write_components(written, parts_by_name)})
 
 
 def _write_components(written: MappingEntry, parts: dict[str, tuple[MappingEntry, Expansion]]) -> MappingEntry:
     """Return `components` with everything in them written out."""
-    entries = {name: _write_component(part, expansion) for name, (part, expansion) in parts.items()}
-    return MappingEntry("components", written.key_span, MappingNode(entries, written.value.span))
+    return written.with_entries({name: _write_component(part, expansion) for name, (part, expansion) in parts.items()})
 
 
 def _write_component(part: MappingEntry, expansion: Expansion) -> MappingEntry:

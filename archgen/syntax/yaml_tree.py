@@ -64,7 +64,7 @@ class MappingEntry:
 
     def change_keys(self, changes: Mapping[str, EntryChange]) -> MappingEntry:
         """Return the key with a mapping in which what stands at some keys is changed."""
-        return self.change_each(lambda entry: changes[entry.key](entry) if entry.key in changes else entry)
+        return self.change_each(lambda entry: changes.get(entry.key, _keep)(entry))
 
     def keep_items(self, is_kept: Callable[[YamlNode], bool]) -> MappingEntry | None:
         """Return the key with what stays of its list, or of its only item; None where nothing does."""
@@ -77,6 +77,10 @@ class MappingEntry:
 
 EntryChange = Callable[[MappingEntry], MappingEntry | None]
 """Makes of an entry another; of one that goes, None."""
+
+
+def _keep(entry: MappingEntry) -> MappingEntry:
+    return entry
 
 
 @dataclass(slots=True)
@@ -106,6 +110,10 @@ class MappingNode:
         kept = {entry.key: new for entry in self if (new := change(entry)) is not None}
         is_same = len(kept) == len(self.entries) and all(kept[entry.key] is entry for entry in self)
         return self if is_same else self.with_entries(kept)
+
+    def change_keys(self, changes: Mapping[str, EntryChange]) -> MappingNode:
+        """Return the mapping with what stands at some keys changed."""
+        return self.change_each(lambda entry: changes.get(entry.key, _keep)(entry))
 
     def __iter__(self) -> Iterator[MappingEntry]:
         """Iterate over the entries (not the keys), in order."""

@@ -15,7 +15,6 @@ from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, Sequ
 if TYPE_CHECKING:
     from archgen.diagnostics.source_span import Span
     from archgen.link.reference_resolution import ReferenceResolver
-    from archgen.syntax.yaml_tree import YamlNode
 
 _NOT_INHERITED = frozenset({"ready", "once"})
 """What a composed component says of itself, and not of each node inside."""
@@ -82,35 +81,18 @@ def resolve_start(body: MappingNode, resolver: ReferenceResolver, component_id: 
 
     What cannot be resolved is reported and left out.
     """
-    start = body.get("start")
-    if not isinstance(start, MappingNode) or {"after", "by"}.isdisjoint(start.entries):
-        return body
-    entries = dict(start.entries)
-    for key in ("after", "by"):
-        if key in entries:
-            scalars = tuple(_complete_targets(start, key, resolver, component_id))
-            span = entries[key].value.span
-            value: YamlNode = SequenceNode(list(scalars), span)
-            if key == "by":
-                if not scalars:
-                    continue
-                value = scalars[0]
-            elif not scalars:
-                del entries[key]
-                continue
-            entries[key] = entries[key].with_value(value)
-    entry = body.entries["start"]
-    completed = MappingEntry("start", entry.key_span, MappingNode(entries, start.span))
-    return MappingNode({**body.entries, "start": completed}, body.span)
 
+    def complete(entry: MappingEntry) -> MappingEntry | None:
+        targets = [
+            ScalarNode(target.id, target.id, scalar.span)
+            for scalar in mapping_values.list_scalars(entry.value)
+            if (target := _resolve_target(scalar, resolver, component_id, component_id))
+        ]
+        if entry.key == "by":
+            return entry.with_value(targets[0]) if targets else entry
+        return entry.with_value(SequenceNode([*targets], entry.value.span)) if targets else None
 
-def _complete_targets(
-    start: MappingNode, key: str, resolver: ReferenceResolver, component_id: str
-) -> Iterator[ScalarNode]:
-    for scalar in mapping_values.get_scalars(start, key):
-        target = _resolve_target(scalar, resolver, component_id, component_id)
-        if target:
-            yield ScalarNode(target.id, target.id, scalar.span)
+    return body.change_keys({"start": lambda start: start.change_keys(dict.fromkeys(("after", "by"), complete))})
 
 
 def diagnose_idle_start(node_body: MappingNode, component_id: str) -> Iterator[Diagnostic]:

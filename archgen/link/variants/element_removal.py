@@ -88,9 +88,7 @@ class ElementRemover:
             ),
             "links": lambda link: self._prune_link(link, hosts),
         }
-        return root.change_each(
-            lambda section: section.change_each(changes[section.key]) if section.key in changes else section
-        )
+        return root.change_keys(dict.fromkeys(changes, lambda section: section.change_each(changes[section.key])))
 
     def _prune_group(self, group: MappingEntry) -> MappingEntry | None:
         if group.key in self.removed.groups:
@@ -112,13 +110,12 @@ class ElementRemover:
         def prune_sources(entry: MappingEntry) -> MappingEntry | None:
             return self._prune_sources(entry, component_id, self._find_source)
 
+        def prune_given(entry: MappingEntry) -> MappingEntry | None:
+            return self._prune_sources(entry, component_id, self._find_given)
+
         changes: dict[str, EntryChange] = {
             "inputs": lambda ports: ports.change_each(lambda port: port.change_keys({"from": prune_sources})),
-            "outputs": lambda ports: ports.change_each(
-                lambda port: port.change_keys(
-                    {"from": lambda entry: self._prune_sources(entry, component_id, self._find_given)}
-                )
-            ),
+            "outputs": lambda ports: ports.change_each(lambda port: port.change_keys({"from": prune_given})),
             "from": prune_sources,
             "node": lambda node: self._prune_start(node, component_id),
         }

@@ -77,13 +77,11 @@ def _find_span(selector: ScalarNode, start: int, end: int) -> Span:
 
 def prune_selectors(root: MappingNode, removed: RemovedElements, evaluator: SelectorEvaluator) -> MappingNode:
     """Return a merged project whose views and policies name nothing that is gone; those that named nothing else go too."""
-    return root.change_each(
-        lambda section: (
-            section.change_each(lambda holder: _prune_holder(holder, removed, evaluator))
-            if section.key in _SELECTOR_SECTIONS
-            else section
-        )
-    )
+
+    def prune(section: MappingEntry) -> MappingEntry:
+        return section.change_each(lambda holder: _prune_holder(holder, removed, evaluator))
+
+    return root.change_keys(dict.fromkeys(_SELECTOR_SECTIONS, prune))
 
 
 def _prune_holder(entry: MappingEntry, removed: RemovedElements, evaluator: SelectorEvaluator) -> MappingEntry | None:

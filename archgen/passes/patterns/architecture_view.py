@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from archgen.link.mapping_values import list_scalars
 from archgen.model.generic_names import read_generic_name
 from archgen.passes.patterns.matching import IndexToken
 from archgen.passes.patterns.pattern_shapes import ComponentBody, PortReference, ViewValue
@@ -21,7 +22,7 @@ from archgen.passes.patterns.view_elements import (
 )
 from archgen.passes.patterns.view_values import read_view_value
 from archgen.passes.project_tree import ProjectTree
-from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, YamlNode, find_value, list_entries
+from archgen.syntax.yaml_tree import MappingNode, ScalarNode, YamlNode, find_value, list_entries
 
 _PORT_KEYS = ("inputs", "outputs")
 
@@ -212,14 +213,14 @@ class ArchitectureView:
     def _resolve_sources(self, key: str) -> None:
         """Resolve what the ports of a component name in its own place: what its type writes is resolved there."""
         own = self.list_layers(key)[0].node
-        for item in _list_items(own.get("from")):
+        for item in list_scalars(own.get("from")):
             self._resolve_item(item, key, is_output=False)
         for port_key in _PORT_KEYS:
             for port in list_entries(own, port_key):
                 body = port.value if isinstance(port.value, MappingNode) else MappingNode({}, port.key_span)
-                for item in _list_items(body.get("from")):
+                for item in list_scalars(body.get("from")):
                     self._resolve_item(item, key, is_output=port_key == "outputs")
-                for item in _list_items(body.get("to")):
+                for item in list_scalars(body.get("to")):
                     self._resolve_target(item, key)
 
     def _resolve_item(self, node: ScalarNode, key: str, *, is_output: bool) -> None:
@@ -258,11 +259,6 @@ class ArchitectureView:
         while parent is not None and parent in self.elements:
             self._mark_stale(parent)
             parent = self.elements[parent].parent
-
-
-def _list_items(node: YamlNode | None) -> list[ScalarNode]:
-    items = node.items if isinstance(node, SequenceNode) else [node]
-    return [item for item in items if isinstance(item, ScalarNode) and item.value is not None]
 
 
 def find_instance(view: ArchitectureView, key: str) -> bool:

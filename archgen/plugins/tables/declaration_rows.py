@@ -138,37 +138,39 @@ def import_timing(project: ImportedProject, row: TableRecord, component: Importe
     timing = cell_values.read_timing(project, cell, unit)
     if timing is None:
         return
-    if component.values.setdefault("timing", timing) == timing:
-        project.take_cell(cell, next(iter(timing)), component, next(iter(timing.values())))
-        return
     message = f"`{component.name}` has another rate already: `{cell.quotation}` was not taken"
     help_line = "a component has one rate; slower outputs are written by hand"
-    project.reject_cell("conflicting-values", message, cell, help_line)
+    if project.set_once(component.values, "timing", timing, cell, message, help_line):
+        project.take_cell(cell, next(iter(timing)), component, next(iter(timing.values())))
 
 
 def _set_key(
     project: ImportedProject, component: ImportedComponent, key: str, value: str | tuple[str, ...], cell: TableCell
 ) -> None:
     """Set a key; a different value from an earlier row stays."""
-    if component.values.setdefault(key, value) == value:
+    message = f"another row says something else on {key} of `{component.name}`: this was not taken"
+    if project.set_once(component.values, key, value, cell, message):
+        path = ("groups", component.group) if key == "owner" else component.path
         for words in (value,) if isinstance(value, str) else value:
-            project.ledger.take_cell(
-                cell, key, ("groups", component.group) if key == "owner" else component.path, words
-            )
-    else:
-        message = f"another row says something else on {key} of `{component.name}`: this was not taken"
-        project.reject_cell("conflicting-values", message, cell, "say it once")
+            project.ledger.take_cell(cell, key, path, words)
 
 
 def _import_role(project: ImportedProject, component: ImportedComponent, cell: TableCell | None) -> None:
-    if cell is None:
-        return
-    role = _ROLE_BY_WORD.get(cell.one_line.casefold())
-    if role:
+    if cell and (role := _read_word(project, cell, "role")):
         _set_key(project, component, "role", role, cell)
-    else:
-        message = f"`{cell.quotation}` is no role and was not taken"
-        project.reject_cell("wrong-value", message, cell, "write source, filter, sink or reactive")
+
+
+def _read_word(project: ImportedProject, cell: TableCell, key: str) -> str | None:
+    """Return what a word means that people write for a role or a status; a word that means neither is reported."""
+    meanings, words = (
+        (_ROLE_BY_WORD, "source, filter, sink or reactive")
+        if key == "role"
+        else (_STATUS_BY_WORD, "planned, adapted or existing")
+    )
+    meaning = meanings.get(cell.one_line.casefold())
+    if meaning is None:
+        project.reject_cell("wrong-value", f"`{cell.quotation}` is no {key} and was not taken", cell, f"write {words}")
+    return meaning
 
 
 def _read_owners(
@@ -213,22 +215,17 @@ def import_node_row(project: ImportedProject, row: TableRecord) -> None:
     if cell and (package := cell_values.read_package(project, cell)):
         _set_node_key(project, name, "package", package, cell)
     status = row.cell_below("status")
-    if status and (word := _STATUS_BY_WORD.get(status.one_line.casefold())):
+    if status and (word := _read_word(project, status, "status")):
         _set_node_key(project, name, "status", word, status)
-    elif status:
-        message = f"`{status.quotation}` is no status and was not taken"
-        project.reject_cell("wrong-value", message, status, "write planned, adapted or existing")
     if row.cell_below("topic"):
         _import_topics(project, row, row.component, name)
 
 
 def _set_node_key(project: ImportedProject, name: str, key: str, value: str, cell: TableCell) -> None:
     """Set a node's key; a different value from an earlier row stays."""
-    if project.nodes[name].setdefault(key, value) == value:
-        project.ledger.take_cell(cell, key, ("nodes", name), value)
-        return
     message = f"the node `{name}` has another {key} already: `{cell.quotation}` was not taken"
-    project.reject_cell("conflicting-values", message, cell, "say it once")
+    if project.set_once(project.nodes[name], key, value, cell, message):
+        project.ledger.take_cell(cell, key, ("nodes", name), value)
 
 
 def _import_listed_node(project: ImportedProject, row: TableRecord) -> None:
@@ -299,11 +296,9 @@ def _set_topic(
     topics = project.nodes[node].setdefault(section, {})
     if not isinstance(topics, dict):
         return
-    if topics.setdefault(output, topic) == topic:
+    message = f"`{output}` stands on the topic `{topics.get(output)}` already: `{cell.quotation}` was not taken"
+    if project.set_once(topics, output, topic, cell, message):
         project.ledger.take_cell(cell, "topic", ("nodes", node), topic)
-    else:
-        message = f"`{output}` stands on the topic `{topics[output]}` already: `{cell.quotation}` was not taken"
-        project.reject_cell("conflicting-values", message, cell, "say it once")
 
 
 def _import_message(project: ImportedProject, row: TableRecord) -> None:

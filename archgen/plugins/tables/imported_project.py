@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
+from typing import Any
 
 from archgen.plugin.findings import Diagnostic, Label, Severity
 from archgen.plugin.importing import Span, find_closest, make_id, make_unique_id
@@ -97,6 +98,21 @@ class ImportedProject:
         self.ledger.reject_cell(cell, message)
         self.add_warning(rule, message, cell.span, help_line)
 
+    def set_once(  # noqa: PLR0913, PLR0917 - what is set, from where, and what is said of another value
+        self,
+        values: dict[str, Any],
+        key: str,
+        value: object,
+        cell: TableCell,
+        message: str,
+        help_line: str = "say it once",
+    ) -> bool:
+        """Set a key and return True; where an earlier row gave another value, that stays, and the cell is not taken."""
+        if values.setdefault(key, value) == value:
+            return True
+        self.reject_cell("conflicting-values", message, cell, help_line)
+        return False
+
     def take_cell(self, cell: TableCell, key: str, component: ImportedComponent, words: str = "") -> None:
         """Note that a cell was taken for a key of a component."""
         self.ledger.take_cell(cell, key, component.path, words)
@@ -121,14 +137,7 @@ class ImportedProject:
 
     def get_named_group(self, name: str, span: Span) -> ImportedGroup:
         """Return the group of a name, a new one where there is none."""
-        group = next(
-            (
-                self.groups[group_id]
-                for group_id in (self._id_by_name.get(f"group {fold_name(name)}"), name)
-                if group_id in self.groups
-            ),
-            None,
-        )
+        group = self._find_group(name)
         if group is None:
             group = ImportedGroup(self._make_free_id("group", name, span, self.groups.keys()), name, span)
             self.groups[group.id] = group
@@ -139,15 +148,19 @@ class ImportedProject:
         """Return a group's component of a name, a new one where there is none. `wanted_id` is the id that a row gives
         it.
         """
-        component = next(
-            (candidate for candidate in self.find_components(name) if candidate.group == group.id), None
-        ) or group.components.get(name)
+        component = self._find_in_group(group, name) or group.components.get(name)
         if component is None:
             new_id = self._make_free_id("component", wanted_id or name, span, group.components.keys())
             component = group.components[new_id] = ImportedComponent(group.id, new_id, name, span, wanted_id)
             self._components_by_name.setdefault(fold_name(name), []).append(component)
             self._components_by_id.setdefault(new_id, []).append(component)
         return component
+
+    def _find_group(self, name: str) -> ImportedGroup | None:
+        return self.groups.get(self._id_by_name.get(f"group {fold_name(name)}", name))
+
+    def _find_in_group(self, group: ImportedGroup, name: str) -> ImportedComponent | None:
+        return next((each for each in self.find_components(name) if each.group == group.id), None)
 
     def find_components(self, name: str) -> list[ImportedComponent]:
         """Return all components of a name, or else of an id."""
@@ -180,15 +193,9 @@ class ImportedProject:
         """Resolve `group.component`, `Group / Component` or `component.output` to a component and a port's name."""
         words = [word for word in _PATH_SEPARATOR.split(text) if word]
         for first in range(len(words)):
-            group = self.groups.get(self._id_by_name.get(f"group {fold_name(words[first])}", words[first]))
-            inner_words = words[first + 1 :]
-            if group and inner_words:
-                component = next(
-                    (candidate for candidate in self.find_components(inner_words[0]) if candidate.group == group.id),
-                    None,
-                )
-                if component:
-                    return component, " ".join(inner_words[1:])
+            group, inner_words = self._find_group(words[first]), words[first + 1 :]
+            if group and inner_words and (component := self._find_in_group(group, inner_words[0])):
+                return component, " ".join(inner_words[1:])
             namesakes = self.find_components(words[first])
             # Only the first word may stand for a component without its group: `robot.arm` is not the component `arm`.
             if len(namesakes) == 1 and first == 0:
