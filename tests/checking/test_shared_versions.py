@@ -5,16 +5,17 @@ from __future__ import annotations
 import random
 import re
 import shutil
+from importlib import import_module
 from pathlib import Path
 
 import pytest
 
 from archgen import pipeline
 from archgen.pipeline import CheckedProject, VersionCache
-from benchmarks.generate import generate
 from tests.link.test_variant_exactness import write_robot
 from tests.property_sizes import list_seeds
 
+_BENCHMARK = import_module("benchmarks.generate")
 _EXAMPLE = Path(__file__).resolve().parents[2] / "example_ramcip"
 _WORDS = (
     (r"^(\s+)title: .*$", r"\1title: Another title"),
@@ -85,7 +86,7 @@ def test_versions_of_the_example_that_share_a_cache_are_judged_as_if_alone(tmp_p
 
 
 def test_what_two_versions_share_is_linked_once(tmp_path: Path) -> None:
-    generate(60, tmp_path)
+    _BENCHMARK.generate(60, tmp_path)
     cache = VersionCache()
     before = pipeline.check_project(tmp_path, cache).architecture
     file = tmp_path / "groups" / "g5.yaml"
