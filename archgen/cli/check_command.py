@@ -85,13 +85,11 @@ def command(  # noqa: PLR0913 - one for each option
     from archgen.products import check_findings
 
     # A single check is the quicker for what need not be kept for another one.
-    version_cache = None if changed_since is None else VersionCache()
-    checked_project = command_support.check_or_exit(project, version_cache)
+    version_cache = VersionCache()
+    checked_project = command_support.check_or_exit(project, None if changed_since is None else version_cache)
     if variant is not None:
         checked_project = _keep_variants(checked_project, variant)
-    earlier_project = None
-    if changed_since is not None and version_cache is not None:
-        earlier_project = _check_at_revision(project, changed_since, version_cache)
+    earlier_project = None if changed_since is None else _check_at_revision(project, changed_since, version_cache)
 
     reported = check_findings.report_findings(checked_project, baseline, earlier_project)
     lowest_severity = "warning" if strict else "error"
