@@ -48,7 +48,8 @@ def run_every_output(
     done = subprocess.run(  # noqa: S603 - our own program
         [*map(str, words), str(processors)],
         cwd=project,
-        env={**os.environ, **environment},
+        # A width that somebody set (a CI does) would be one of the settings.
+        env={**os.environ, "COLUMNS": "", **environment},
         capture_output=True,
         check=False,
         timeout=1800,

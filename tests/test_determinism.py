@@ -223,7 +223,6 @@ def test_twenty_settings_make_the_same_bytes_of_every_output(
         "TZ": ZONES[number % len(ZONES)],
         "PYTHONUTF8": str(number // 3 % 2),
         "PYTHONCOERCECLOCALE": "0",
-        "COLUMNS": "",
         # Each third has a cache of its own, which is empty.
         **({} if number % 3 else {"XDG_CACHE_HOME": str(tmp_path / "cache")}),
     }

@@ -176,7 +176,7 @@ class WorkspaceFiles:
         items: list[str] = []
         if path.suffix == ".cfg":
             _, _, rest = text.partition("console_scripts")
-            items = re.split(r"\n\s*\[", rest)[0].split("\n")
+            items = re.split(r"\n[^\S\n]*\[", rest)[0].split("\n")
         else:
             try:
                 tree = parse_python(text)
