@@ -23,6 +23,7 @@ from typing import IO, Literal
 from archgen.emit.own_file_marks import explain_refusal
 from archgen.emit.safe_names import is_safe_path
 from archgen.frozen import dataclass
+from archgen.regular_files import read_named_file
 
 with contextlib.suppress(ImportError):  # Windows has none
     import fcntl
@@ -378,9 +379,11 @@ def _read_tree_manifest(folder: Path) -> set[tuple[str, str]]:
     """Read the (digest, path) pairs of a manifest. Lines that are none are skipped: what they claim is then foreign."""
     manifest_path = folder / TREE_MANIFEST
     # One that is too large is none of archgen's.
-    if manifest_path.is_symlink() or not manifest_path.is_file() or manifest_path.stat().st_size > _MAX_MANIFEST_BYTES:
+    try:
+        data = b"" if manifest_path.is_symlink() else read_named_file(manifest_path, _MAX_MANIFEST_BYTES)
+    except OSError:
         return set()
-    lines = manifest_path.read_text("utf-8", "replace").splitlines()
+    lines = data.decode("utf-8", "replace").splitlines()
     pairs = (line.partition("  ") for line in lines if not line.startswith("#"))
     # A manifest can be edited: a path such as `../x` would let the next run remove files outside of the folder.
     return {(digest, path) for digest, _, path in pairs if path and is_safe_path(path)}

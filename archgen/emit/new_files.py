@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from archgen.emit.file_tree import OutputError, open_staging_folder
+from archgen.regular_files import holds_bytes
 
 MARKER = "archgen.yaml"
 """The file that makes a folder a project."""
@@ -53,7 +54,7 @@ def _place_loose_files(members: Mapping[Path, bytes], staged_file: Path, top: Pa
     """Put files into folders that exist."""
     for path, data in members.items():
         _refuse_outside(path.parent, top)
-        if path.is_file() and not path.is_symlink() and path.read_bytes() == data:
+        if not path.is_symlink() and holds_bytes(path, data):
             continue  # left by a run that was killed
         staged_file.write_bytes(data)
         _place_file(staged_file, path)

@@ -13,6 +13,8 @@ import struct
 from pathlib import Path
 from typing import BinaryIO
 
+from archgen.regular_files import open_named_file
+
 PACKED_HEADER = "# Packed by archgen from the files of a project: change those, and pack again.\n"
 """The first line of a packed file, which would otherwise look as a project that somebody wrote."""
 MEASURED_HEADER = (
@@ -68,7 +70,7 @@ def explain_refusal(path: Path, new_content: bytes) -> str:
 
     Formats without a mark, such as what a backend of one's own exports, may replace any text of that kind.
     """
-    with path.open("rb") as stream:
+    with open_named_file(path) as stream:
         # So a file that somebody touched, or that a full disk left, is no obstacle.
         if not stream.read(1):
             return ""

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import hashlib
-import os
 from collections.abc import Iterable
 from pathlib import Path
 
 from archgen.git.git_call import run_git
-
-_NO_WAITING = getattr(os, "O_NONBLOCK", 0)
+from archgen.regular_files import open_named_file
 
 
 def find_revision(root: Path, files: Iterable[str]) -> str:
@@ -70,9 +68,8 @@ def _matches_blob(file: Path, blob: str | None) -> bool:
     if blob is None:
         return False
     try:
-        # One that is a pipe by now is not waited for.
-        with open(file, "rb", opener=lambda name, flags: os.open(name, flags | _NO_WAITING)) as stream:
-            data = stream.read() if file.is_file() else b""
+        with open_named_file(file) as stream:
+            data = stream.read()
     except OSError:
         data = b""
     # A repository with the SHA-256 object format has hashes of 64 digits.

@@ -19,7 +19,7 @@ from xml.parsers import expat
 from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass
 from archgen.importers.foreign_import import ForeignFileError
-from archgen.syntax.folder_files import open_named_file
+from archgen.regular_files import open_named_file
 
 MAX_DEPTH = 200
 """Elements nest no deeper than this: models have about 30, and code that walks down a tree has an end."""

@@ -29,7 +29,7 @@ from archgen.model.element_ids import MAX_ID_LENGTH, is_id, make_id, make_unique
 from archgen.model.path_resolver import title_from_id
 from archgen.pipeline import link_slices
 from archgen.project.library_reading import find_program_name, load_shipped_component_types
-from archgen.syntax.folder_files import open_named_file
+from archgen.regular_files import open_named_file
 from archgen.syntax.project_files import MAX_BYTES
 from archgen.syntax.yaml_parser import parse_yaml
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, YamlNode, node_to_data, resolve_scalar

@@ -15,6 +15,7 @@ from archgen.model.agreed_terms import RULES, Agreement, Signature, find_agreeme
 from archgen.pipeline import CheckedProject
 from archgen.project import find_tracked_project
 from archgen.project.project_tracking import load_at_commit
+from archgen.regular_files import holds_bytes
 from archgen.syntax import yaml_parser
 from archgen.syntax.yaml_tree import MappingNode
 from archgen.views.agreement.interface_record import InterfaceRecord
@@ -117,7 +118,7 @@ def record_signature(checked_project: CheckedProject, prepared: PreparedSignatur
     try:
         file_tree.write_file(target, text)
     finally:  # after Ctrl-C, too
-        if not target.is_file() or target.read_bytes() != text:
+        if not holds_bytes(target, text):
             run_git(prepared.repository.top, "tag", "-d", tag)
 
 

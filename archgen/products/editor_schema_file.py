@@ -14,6 +14,7 @@ from archgen.findings.rule_pages import summarise_rule
 from archgen.pipeline import CheckedProject, index_all_rules
 from archgen.products import editor_schema_marks
 from archgen.products.product_writing import write_product_file
+from archgen.regular_files import holds_bytes
 from archgen.views.offered_names import OfferedNames
 
 _LANGUAGE_ID = '"$id": "urn:archgen:schema:1"'
@@ -51,7 +52,7 @@ def write_schema(checked_project: CheckedProject, target: Path | None = None) ->
     if head is not None and not head.startswith(editor_schema_marks.MARK) and _LANGUAGE_ID not in head:
         msg = f"{path} is no schema that archgen wrote"
         raise file_tree.OutputError(msg, "remove it, or give another file with `-o`")
-    if head is not None and path.read_bytes() == content:
+    if head is not None and holds_bytes(path, content):
         return path, False
     write_product_file(checked_project, path, content)
     return path, True

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from archgen import resources
+from archgen.regular_files import open_named_file
 
 if TYPE_CHECKING:
     from archgen.pipeline import CheckedProject
@@ -77,7 +78,7 @@ def read_head(path: Path) -> str | None:
     if not os.path.lexists(path):
         return None
     try:
-        with path.open("rb") as stream:
+        with open_named_file(path) as stream:
             return stream.read(_HEAD_LENGTH).decode("utf-8", "replace")
     except OSError:
         return ""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from archgen.emit import file_tree
 from archgen.products import report_cache
 from archgen.products.product_inputs import FinishProduct, MadeProduct, Product, ProductInputs
-from archgen.syntax.folder_files import read_named_file
+from archgen.regular_files import read_named_file
 
 if TYPE_CHECKING:
     from archgen.emit.picture import Picture

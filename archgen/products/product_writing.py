@@ -16,6 +16,7 @@ from archgen.pipeline import CheckedProject
 from archgen.products import report_cache
 from archgen.products.output_options import DrawingProgress, OutputOptions
 from archgen.products.product_inputs import FinishProduct, MadeProduct, Product, ProductInputs
+from archgen.regular_files import holds_bytes
 from archgen.views.picture_shapes import Drawing
 
 if TYPE_CHECKING:
@@ -175,7 +176,7 @@ def write_product(inputs: ProductInputs, product: Product, target: Path) -> Made
 def write_product_file(checked_project: CheckedProject, target: Path, content: bytes) -> None:
     """Write a single file, unless the project reads another one in its place."""
     refuse_leaving_links(checked_project, target)
-    if target.is_file() and _is_read_by_project(checked_project, target) and target.read_bytes() != content:
+    if target.is_file() and _is_read_by_project(checked_project, target) and not holds_bytes(target, content):
         msg = f"{target} is a file of the project itself"
         raise file_tree.OutputError(msg, "give the name of another file with `-o`")
     file_tree.write_file(target, content)

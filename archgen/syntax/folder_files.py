@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import errno
 import os
 import posixpath
 import stat
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import BinaryIO
 
 from archgen.frozen import dataclass
+from archgen.regular_files import NoRegularFileError, describe_file_kind, open_named_file
 from archgen.syntax.project_files import (
     MAX_BYTES,
     NO_SUCH_FOLDER,
@@ -19,14 +17,6 @@ from archgen.syntax.project_files import (
     FileRefusal,
     find_path_refusal,
     find_place_refusal,
-)
-
-_FILE_KINDS = (
-    (stat.S_ISDIR, "a folder"),
-    (stat.S_ISFIFO, "a named pipe"),
-    (stat.S_ISSOCK, "a socket"),
-    (stat.S_ISCHR, "a device"),
-    (stat.S_ISBLK, "a device"),
 )
 
 
@@ -71,6 +61,8 @@ class FolderFiles:
         try:
             # It leads to no link now: one that is there later was put there since.
             return _read_regular_file(real_path, flags=getattr(os, "O_NOFOLLOW", 0))
+        except NoRegularFileError as error:
+            return FileRefusal(str(error.strerror))
         except OSError as error:
             return FileRefusal(_describe_read_error(full_path, error))
 
@@ -120,51 +112,10 @@ def _list_folder(folder: Path) -> tuple[list[str], list[str], set[str]]:
     return folders, file_names, links
 
 
-def read_named_file(path: Path, max_bytes: int = MAX_BYTES) -> bytes:
-    """Return the bytes of a file that a user names on the command line, wherever it lies.
-
-    Raise OSError for what is no regular file (a device or pipe would never end) and for what is too large.
-    """
-    data = _read_regular_file(path, max_bytes)
-    if isinstance(data, FileRefusal):
-        message = data.message if data is not TOO_LARGE else f"it has more than {max_bytes:,} bytes"
-        raise OSError(errno.EINVAL, message, str(path))
-    return data
-
-
-@contextmanager
-def open_named_file(path: Path) -> Iterator[BinaryIO]:
-    """Open a file that a user names on the command line, to be read in parts.
-
-    Raise OSError for what is no regular file.
-    """
-    with _open_without_waiting(path) as stream:
-        mode = os.fstat(stream.fileno()).st_mode
-        if not stat.S_ISREG(mode):
-            raise OSError(errno.EINVAL, _describe_file_kind(mode), str(path))
-        yield stream
-
-
-def _open_without_waiting(path: Path, flags: int = 0) -> BinaryIO:
-    # Opened first, then examined by its descriptor: a path checked before it is opened could be swapped in between.
-    # O_NONBLOCK keeps the call from waiting for a pipe's writer; O_BINARY exists on Windows only.
-    descriptor = os.open(path, flags | os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
-    return os.fdopen(descriptor, "rb")
-
-
-def _read_regular_file(path: Path, max_bytes: int = MAX_BYTES, flags: int = 0) -> bytes | FileRefusal:
-    with _open_without_waiting(path, flags) as stream:
-        mode = os.fstat(stream.fileno()).st_mode
-        if not stat.S_ISREG(mode):
-            return FileRefusal(_describe_file_kind(mode))
-        # One byte more than allowed tells "too large" without trusting st_size, which may grow while it is read.
-        data = stream.read(max_bytes + 1)
-        return data if len(data) <= max_bytes else TOO_LARGE
-
-
-def _describe_file_kind(mode: int) -> str:
-    kind = next((name for test, name in _FILE_KINDS if test(mode)), "no regular file")
-    return f"this is {kind}, not a file"
+def _read_regular_file(path: Path, flags: int) -> bytes | FileRefusal:
+    with open_named_file(path, flags) as stream:
+        data = stream.read(MAX_BYTES + 1)
+        return data if len(data) <= MAX_BYTES else TOO_LARGE
 
 
 def _describe_read_error(path: Path, error: OSError) -> str:
@@ -175,7 +126,7 @@ def _describe_read_error(path: Path, error: OSError) -> str:
     if stat.S_ISLNK(mode) and not path.exists():
         return "this is a broken link: what it points to does not exist"
     if not (stat.S_ISREG(mode) or stat.S_ISLNK(mode)):
-        return _describe_file_kind(mode)
+        return describe_file_kind(mode)
     return f"the file cannot be read: {_format_os_error(error)}"
 
 

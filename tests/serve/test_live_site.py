@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import BinaryIO
 
@@ -16,9 +17,9 @@ from archgen.products.comparison_documents import compare_since
 from archgen.products.output_options import OutputOptions
 from archgen.products.project_views import select_elements
 from archgen.project import ProjectNotFoundError
+from archgen.regular_files import open_named_file
 from archgen.serve.live_site import LiveSite
 from archgen.serve.project_state import SelectionError
-from archgen.syntax import folder_files
 from tests.repositories import commit, git
 from tests.serve.conftest import PIXEL, ROBOT
 
@@ -261,16 +262,16 @@ def test_files_that_change_while_they_are_read_are_read_again(
     live_site: LiveSite, robot: Path, change: Callable[[Path], object], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """At each file that a refresh opens; the next refresh shows what is there then."""
-    real, opened = folder_files._open_without_waiting, list[Path]()  # noqa: SLF001 - the one place where files are opened
+    opened = list[Path]()
     harmed_step = -1
 
-    def open_late(path: Path, *flags: int) -> BinaryIO:
+    def open_late(path: Path, *flags: int) -> AbstractContextManager[BinaryIO]:
         opened.append(path)
         if len(opened) == harmed_step:
             change(path)
-        return real(path, *flags)
+        return open_named_file(path, *flags)
 
-    monkeypatch.setattr(folder_files, "_open_without_waiting", open_late)
+    monkeypatch.setattr("archgen.syntax.folder_files.open_named_file", open_late)
     files = {file: file.read_bytes() for file in robot.rglob("*") if file.is_file()}
     live_site.refresh()
     page = without_live_parts(read_text(live_site, "groups/g.html"))

@@ -16,6 +16,7 @@ from pathlib import Path
 from archgen.emit.file_tree import OutputError, lock_folder
 from archgen.emit.workspace.run_record import RECORD_FOLDER, RunRecord, write_run_record
 from archgen.emit.workspace.workspace_plan import WorkspacePlan
+from archgen.regular_files import holds_bytes
 
 
 @contextlib.contextmanager
@@ -108,7 +109,7 @@ def _put_record(record: RunRecord, workspace: Path, staging: Path) -> None:
         path.unlink(missing_ok=True)
         return
     data = write_run_record(record)
-    if path.is_file() and path.read_bytes() == data:
+    if holds_bytes(path, data):
         return
     staging.mkdir(exist_ok=True)
     (staging / "record").write_bytes(data)
