@@ -75,7 +75,9 @@ CASES = {
     "generate again": Case("generate start -o ws", {"archgen.yaml": OLDER}, ("generate start -o ws",), PLAIN),
     "diff": Case("diff HEAD~1 HEAD --format html -o diff.html", PLAIN, is_repository=True),
     "review": Case("review --base HEAD~1 -o archgen-out/review", PLAIN, is_repository=True),
-    "sign": Case("sign a b --by a Ada --by b Ben --date 2026-03-01 -o signed.md", PLAIN, is_repository=True),
+    "sign": Case(
+        "sign a b --by a Ada --by b Ben --date 2026-03-01 -o signed.md", PLAIN, is_repository=True, refuses_again=True
+    ),
     "new": Case("new component sense.nose", PLAIN, refuses_again=True),
     "propose": Case("timing --propose --apply", {"archgen.yaml": "archgen: 1\n"}),
     "adopt": Case(
