@@ -13,6 +13,7 @@ from archgen.frozen import dataclass, field
 from archgen.merge.renamed_keys import KeyRename
 from archgen.merge.slice_reading import TreeReader, convert_lines, find_line_end
 from archgen.merge.tree_merge import ItemSet, merge_values, read_merged_value
+from archgen.syntax.yaml_parser import list_comments
 from archgen.syntax.yaml_tree import (
     MappingEntry,
     MappingNode,
@@ -233,9 +234,14 @@ class _TextEdits:
         self._delete_range(self.target.entry_range(entry), lines)
 
     def _delete_range(self, value_range: tuple[int, int], lines: tuple[int, int] | None) -> None:
-        """Delete whole lines, else a part of a line with a comma beside it."""
+        """Delete whole lines, but for comments that the base does not have, else a part of a line with a comma beside it."""
         if lines is not None:
-            self.replacements.append((*lines, ""))
+            deleted = self.target.text[slice(*lines)]
+            comments = [each for each in list_comments(deleted) if each not in self.base.text]
+            indent = " " * _count_blanks(deleted)
+            self.replacements.append(
+                (*lines, self._adopt_lines("".join(f"{indent}{comment}\n" for comment in comments)))
+            )
             return
         start, end = value_range
         comma = _COMMA_BEHIND.match(self.target.text, end)
