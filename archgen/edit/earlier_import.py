@@ -15,13 +15,14 @@ from typing import Any
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.frozen import NamedTuple, dataclass
 from archgen.merge.slice_merge import SliceVersions, merge_slices
+from archgen.merge.slice_reading import to_texts
 from archgen.project.slice_parsing import parse_slice
 from archgen.syntax.file_patterns import YAML_ENDINGS
 from archgen.syntax.folder_files import FolderFiles
 from archgen.syntax.project_files import read_text_file
 from archgen.syntax.yaml_parser import list_comments
-from archgen.syntax.yaml_tree import MappingEntry, MappingNode, ScalarNode, SequenceNode, YamlDocument, YamlNode
-from archgen.syntax.yaml_writer import FlowMapping, PlainText
+from archgen.syntax.yaml_tree import MappingEntry, YamlDocument
+from archgen.syntax.yaml_writer import FlowMapping
 
 _BY = " by `archgen import "
 _TOOLS = {"xmi": "uml"}
@@ -97,17 +98,6 @@ def read_slice_content(file: str, text: str) -> SliceContent:
     if document is None or any(each.severity in {None, Severity.ERROR} for each in diagnostics):
         return SliceContent({}, diagnostics)
     return SliceContent({entry.key: to_texts(entry.value) for entry in document.root}, (), tuple(document.root))
-
-
-def to_texts(node: YamlNode) -> Any:  # noqa: ANN401 - any value of the language
-    """Return a value as it is written: `1.10` is not 1.1."""
-    if isinstance(node, MappingNode):
-        return {entry.key: to_texts(entry.value) for entry in node}
-    if isinstance(node, SequenceNode):
-        return [to_texts(item) for item in node.items]
-    if not isinstance(node, ScalarNode) or node.value is None:
-        return None
-    return node.text if isinstance(node.value, str) else PlainText(node.text)
 
 
 @dataclass(frozen=True, slots=True)

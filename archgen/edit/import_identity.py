@@ -22,7 +22,7 @@ Comments = Mapping[tuple[str | int, ...], str]
 _PLACE_KEYS = frozenset({"from", "implements", "connects"})
 """Keys whose values name components by their groups."""
 _NODE_SECTIONS = ("nodes", "containers")
-_USES = ("publishes", "subscribes", "serves", "calls")
+USES = ("publishes", "subscribes", "serves", "calls")
 _PROGRAM_KEYS = ("package", "executable", "plugin")
 _SAME_SHARE = 0.8
 """Nodes with so large a share of their endpoints in common are one node under two names."""
@@ -40,6 +40,8 @@ class KeptIdentities:
     """By the kept id of each node or container (`nodes.lidar`) that has another full name by now: that one."""
     moves: dict[str, str] = field(default_factory=dict)
     """Where components stand, by the places that the source has them in by now."""
+    node_ids: dict[str, str] = field(default_factory=dict)
+    """The ids of nodes, by those that the source has for them by now."""
 
 
 def keep_identities(
@@ -56,7 +58,11 @@ def keep_identities(
     # That a component is called as its node is no news beside that.
     told_moves = {place: old for place, old in moves.items() if place.partition(".")[0] != old.partition(".")[0]}
     return KeptIdentities(
-        renamed, {renaming.rename_path(path): text for path, text in (comments or {}).items()}, told, told_moves
+        renamed,
+        {renaming.rename_path(path): text for path, text in (comments or {}).items()},
+        told,
+        told_moves,
+        ids["nodes"].ids,
     )
 
 
@@ -106,9 +112,9 @@ class _Elements:
     """The nodes, or containers, of an import, and those that are known."""
 
     def __init__(self, section: str, slices: Slices, known: Slices, others: Mapping[str, Any]) -> None:
-        self._new = _read_section(slices, section)
-        self._old = _read_section(known, section)
-        self._others = {key: body for key, body in _read_section({"": others}, section).items() if key not in self._old}
+        self._new = read_section(slices, section)
+        self._old = read_section(known, section)
+        self._others = {key: body for key, body in read_section({"": others}, section).items() if key not in self._old}
 
     def keep_ids(self) -> _KeptIds:
         kept = _KeptIds()
@@ -159,7 +165,8 @@ class _Elements:
                 yield new_id, old_id
 
 
-def _read_section(slices: Slices, section: str) -> dict[str, Mapping[str, Any]]:
+def read_section(slices: Slices, section: str) -> dict[str, Mapping[str, Any]]:
+    """Return the elements of a section over all slices, by their ids."""
     return {
         element_id: read_mapping(body)
         for data in slices.values()
@@ -195,7 +202,7 @@ def _index_programs(elements: Mapping[str, Mapping[str, Any]]) -> dict[tuple[str
 
 
 def _list_endpoints(body: Mapping[str, Any]) -> frozenset[str]:
-    return frozenset(f"{use} {key}" for use in _USES for key in read_mapping(body.get(use)))
+    return frozenset(f"{use} {key}" for use in USES for key in read_mapping(body.get(use)))
 
 
 def _list_moves(slices: Slices, known: Slices, tool: str, node_ids: Mapping[str, str]) -> dict[str, str]:
@@ -205,11 +212,11 @@ def _list_moves(slices: Slices, known: Slices, tool: str, node_ids: Mapping[str,
     """
     new_places, old_places = list_tool_places(slices, tool), list_tool_places(known, tool)
     moves = {place: old_places[key] for key, place in new_places.items() if key in old_places}
-    old_nodes = _read_section(known, "nodes")
-    for new_id, body in _read_section(slices, "nodes").items():
-        place, node_id = _find_place(body), node_ids[new_id]
+    old_nodes = read_section(known, "nodes")
+    for new_id, body in read_section(slices, "nodes").items():
+        place, node_id = find_place(body), node_ids[new_id]
         if place and node_id in old_nodes:
-            moves[place] = _find_place(old_nodes[node_id]) or place
+            moves[place] = find_place(old_nodes[node_id]) or place
         elif place.rpartition(".")[2] == new_id:
             moves[place] = f"{place.rpartition('.')[0]}.{node_id}"
     moves = {place: old for place, old in moves.items() if place != old}
@@ -221,8 +228,8 @@ def _list_moves(slices: Slices, known: Slices, tool: str, node_ids: Mapping[str,
     return moves
 
 
-def _find_place(body: Mapping[str, Any]) -> str:
-    """Return the component that a node implements; empty where it is none, or several."""
+def find_place(body: Mapping[str, Any]) -> str:
+    """Return the place of the component that a node implements; empty where it is none, or several."""
     places = body.get("implements")
     places = places if isinstance(places, list) else [places]
     return places[0] if len(places) == 1 and isinstance(places[0], str) and places[0].count(".") == 1 else ""
@@ -231,9 +238,16 @@ def _find_place(body: Mapping[str, Any]) -> str:
 class _Renaming:
     """Other ids of nodes and containers, and other places of components, wherever slices say them."""
 
-    def __init__(self, slices: Slices, ids: Mapping[str, Mapping[str, str]], moves: Mapping[str, str]) -> None:
+    def __init__(
+        self,
+        slices: Slices,
+        ids: Mapping[str, Mapping[str, str]],
+        moves: Mapping[str, str],
+        ports: Mapping[str, Mapping[str, str]] | None = None,
+    ) -> None:
         self._ids = ids
         self._moves = moves
+        self._ports = ports or {}
         self._places = {f"{group}.{name}" for data in slices.values() for group, name, _ in list_components(data)}
 
     def rename_id(self, section: str, element_id: str) -> str:
@@ -245,6 +259,8 @@ class _Renaming:
             case ("nodes" | "containers" as section, str(element_id), *rest):
                 return section, self.rename_id(section, element_id), *rest
             case ("groups", str(group), "components", str(name), *rest):
+                ports = self._ports.get(f"{group}.{name}", {})
+                rest = [ports.get(str(each), each) if number == 1 else each for number, each in enumerate(rest)]
                 group, _, name = self._moves.get(f"{group}.{name}", f"{group}.{name}").partition(".")
                 return "groups", group, "components", name, *rest
         return path
@@ -281,8 +297,22 @@ class _Renaming:
             for name, component in body["components"].items():
                 new_group, _, new_name = self._moves.get(f"{group}.{name}", f"{group}.{name}").partition(".")
                 target = moved.setdefault(new_group, {}).setdefault("components", {})
-                target[new_name] = self._rename_value(component, "component", group, new_group)
+                renamed = self._rename_value(component, "component", group, new_group)
+                target[new_name] = self._rename_ports(renamed, self._ports.get(f"{group}.{name}", {}))
         return moved
+
+    def _rename_ports(self, component: Any, ports: Mapping[str, str]) -> Any:  # noqa: ANN401 - plain data
+        if not ports:
+            return component
+        return copy_mapping(
+            component,
+            {
+                side: copy_mapping(value, {ports.get(port, port): each for port, each in value.items()})
+                if side in {"inputs", "outputs"}
+                else value
+                for side, value in component.items()
+            },
+        )
 
     def _rename_value(self, value: Any, key: str, group: str, new_group: str = "") -> Any:  # noqa: ANN401 - plain data
         """Return plain data in which what names components names them where they stand. `key` is what it stands at."""
@@ -308,14 +338,24 @@ class _Renaming:
     def _rename_place(self, text: str, group: str, new_group: str) -> str:
         """Return the name of a component or port, with its group or as seen from its group."""
         words = text.split(".")
-        place = ".".join(words[:2])
-        if place in self._places or not group:
-            return ".".join((self._moves[place], *words[2:])) if place in self._moves else text
-        place = f"{group}.{words[0]}"
+        place, is_absolute = ".".join(words[:2]), True
+        if place not in self._places and group:
+            place, is_absolute = f"{group}.{words[0]}", False
         if place not in self._places:
             return text
+        rest = words[2:] if is_absolute else words[1:]
+        rest[:1] = [self._ports.get(place, {}).get(port, port) for port in rest[:1]]
         target_group, _, name = self._moves.get(place, place).partition(".")
-        return ".".join((*([target_group] if target_group != new_group else []), name, *words[1:]))
+        return ".".join((*([target_group] if is_absolute or target_group != new_group else []), name, *rest))
+
+
+def rename_ports(
+    slices: Slices, ports: Mapping[str, Mapping[str, str]], comments: Comments
+) -> tuple[dict[str, dict[str, Any]], dict[tuple[str | int, ...], str]]:
+    """Return slices and comments with other ids of ports, by the places of their components."""
+    renaming = _Renaming(slices, {}, {}, ports)
+    renamed = {name: renaming.rename(data) for name, data in slices.items()}
+    return renamed, {renaming.rename_path(path): text for path, text in comments.items()}
 
 
 def list_known_ids(slices: Slices, tool: str) -> dict[str, str]:

@@ -14,11 +14,11 @@ from archgen.edit.earlier_import import (
     UpdatedText,
     copy_mapping,
     read_slice_content,
-    to_texts,
     update_slice_text,
 )
 from archgen.frozen import NamedTuple, dataclass, field
 from archgen.merge.slice_merge import SliceVersions, merge_slices
+from archgen.merge.slice_reading import to_texts
 from archgen.merge.tree_merge import (
     FIELD_ORDER,
     FIELD_PATHS,
@@ -77,6 +77,8 @@ class SliceMerge:
     changes: list[ImportChange] = field(default_factory=list)
     theirs: list[tuple[KeyPath, object]] = field(default_factory=list)
     """What the source would have to say at some paths, in their order, so that no conflict is left."""
+    emptied: list[KeyPath] = field(default_factory=list)
+    """What goes with its source, and people had only taken something out of."""
 
     def merge_nodes(self, nodes: _Nodes, path: KeyPath = ()) -> object:
         """Return what stands at a path then, as texts, or nothing (`_ABSENT`)."""
@@ -107,10 +109,13 @@ class SliceMerge:
             self._settle("conflict" if nodes.mine is None else "kept", path, nodes)
             return _to_value(nodes.mine)
         # Only what people wrote into a mapping stays of it, and it is told as one.
-        told = len(self.changes)
+        told, settled = len(self.changes), len(self.theirs)
         self.theirs.append((path, {}))
         data = self._merge_entries(nodes, path, [])
         del self.changes[told:]
+        if not data:
+            del self.theirs[settled:]
+            self.emptied.append(path)
         self._tell("kept" if data else "removed", path, nodes)
         return data or _ABSENT
 
@@ -220,7 +225,12 @@ def _write_merged(
     for path, value in merge.theirs:
         their_data = _lay_value(their_data, now, path, value)
     theirs = sides.header + write_yaml(their_data, sides.comments) if merge.theirs else sides.now
-    merged = merge_slices(SliceVersions(sides.base, ours=sides.mine, theirs=theirs))
+    # No merge of texts takes away what one side took away and the other one changed.
+    our_data = mine
+    for path in merge.emptied:
+        our_data = _lay_value(our_data, mine, path, _ABSENT)
+    ours = update_slice_text(sides.mine, write_yaml(mine), write_yaml(our_data)).text
+    merged = merge_slices(SliceVersions(sides.base, ours, theirs))
     if isinstance(merged, str) and _read_meaning(merged) == wanted:
         return UpdatedText(merged)
     return update_slice_text(sides.mine, write_yaml(mine), write_yaml(merge.data))

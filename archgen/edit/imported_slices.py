@@ -14,10 +14,19 @@ from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.edit import earlier_import
 from archgen.edit.earlier_import import ImportOrigin, KeyPath, SaidValue, read_earlier_import
 from archgen.edit.edit_proof import list_new_errors
-from archgen.edit.import_identity import KeptIdentities, keep_files, keep_identities, list_known_ids
+from archgen.edit.import_identity import (
+    KeptIdentities,
+    keep_files,
+    keep_identities,
+    list_known_ids,
+    read_section,
+    rename_ports,
+)
 from archgen.edit.import_merge import ImportChange, ImportSides, merge_import
+from archgen.edit.said_endpoints import join_endpoints
 from archgen.frozen import dataclass, field
 from archgen.importers.foreign_import import ForeignImport
+from archgen.merge.record_merge import ELSEWHERE_FOLDER, RECORD_FOLDER
 from archgen.model import element_ids
 from archgen.pipeline import CheckedProject
 from archgen.project import PROJECT_FILE
@@ -27,10 +36,6 @@ from archgen.syntax.folder_files import FolderFiles
 from archgen.syntax.project_files import MAX_BYTES, OverlaidFiles, read_text_file
 from archgen.syntax.yaml_writer import write_yaml
 
-RECORD_FOLDER = ".archgen/imported"
-"""What the last import said, below the project's folder, a file for each slice: base of the merge with what the next one says."""
-_ELSEWHERE_FOLDER = ".archgen/said_elsewhere"
-"""What it said and other files of the project say, too, so that a slice leaves it out: each difference is told once."""
 _Slices = dict[str, dict[str, Any]]
 
 
@@ -105,7 +110,8 @@ def plan_import(imported: ForeignImport, origin: ImportOrigin, folder: Path, *, 
         planning.before = pipeline.judge_project(load_from_files(files, PROJECT_FILE))
     comments = {path: text for each in imported.comments.values() for path, text in each.items()}
     now = planning.join_sides(slices, mine, comments)
-    planned_slices = [planning.plan_slice(name, now.slices.get(name, {})) for name in {**now.slices, **mine}]
+    written = [name for name in {**now.slices, **mine} if now.slices.get(name) or name in mine]
+    planned_slices = [planning.plan_slice(name, now.slices.get(name, {})) for name in written]
     for planned in planned_slices:
         # Told as renames.
         planned.changes = [
@@ -161,8 +167,19 @@ class _Planning:
         }
         known = {**{f"{name} ": data for name, data in mine.items()}, **kept_base}
         now = keep_identities(slices, known, others, self._origin.tool, comments)
+        if (
+            self._origin.has_dated_files
+            and mine
+            and not set(now.node_ids.values()) & read_section(mine, "nodes").keys()
+        ):
+            msg = "none of its nodes is in the slices here: it is another robot; nothing was written; `-o` names another folder"
+            raise ImportRefusedError(msg)
         now_slices = keep_files(now.slices, mine)
         self._comments = now.comments
+        if "nodes" in others and self.before is not None:
+            project = self._judge_others(frozenset({*slices, *mine}))
+            joined = join_endpoints(now_slices, project.architecture, project.loaded_project.documents, now.node_ids)
+            now_slices, self._comments = rename_ports(joined.slices, joined.ports, now.comments)
         now.slices = {name: self._leave_out_said(name, data, said) for name, data in now_slices.items()}
         return now
 
@@ -170,6 +187,15 @@ class _Planning:
         if self.before is None:
             return {}
         return earlier_import.list_said_values(self.before.loaded_project.documents, own_files)
+
+    def _judge_others(self, own_files: frozenset[str]) -> CheckedProject:
+        """Return the project without the import's own slices."""
+        assert self.before is not None  # noqa: S101 - asked for before
+        own = {name: b"{}\n" for name in own_files if self._files is not None and self._files.has_path(name)}
+        if not own:
+            return self.before
+        root = self.before.loaded_project.root
+        return pipeline.judge_project(load_from_files(OverlaidFiles(root, own, self._files), PROJECT_FILE))
 
     def _leave_out_said(
         self, name: str, data: Mapping[str, Any], said: Mapping[KeyPath, SaidValue]
@@ -220,6 +246,9 @@ class _Planning:
             raise ImportRefusedError(msg)
         old_text = self._read_mine(file)
         base_text = self._base_texts.get(file)
+        if base_text and base_text.partition("\n")[2] == new_text.partition("\n")[2]:
+            # A recording of another day that says the same is no news.
+            new_text = records[record_path(file)] = base_text
         sides = ImportSides(base_text or "", old_text, new_text, data, comments, origin.header)
         merge, updated = merge_import(file, sides)
         return PlannedSlice(
@@ -289,7 +318,7 @@ def record_path(file: str) -> str:
 
 
 def _elsewhere_path(file: str) -> str:
-    return f"{_ELSEWHERE_FOLDER}/{file}"
+    return f"{ELSEWHERE_FOLDER}/{file}"
 
 
 def _make_project_data(imported: ForeignImport, root: Path, slices: list[PlannedSlice]) -> dict[str, Any]:

@@ -190,7 +190,19 @@ class _TextEdits:
             head, _, lines = text.partition("\n")
             indented = textwrap.indent(textwrap.dedent(lines), " " * self._inner_indent(target))
             return self._adopt_lines(f"{head}\n{indented}")
-        return text if "\n" not in text or self.changed.is_flow(changed) else None
+        if "\n" not in text or self.changed.is_flow(changed):
+            return text
+        return self._write_block_list(changed, target)
+
+    def _write_block_list(self, changed: YamlNode, target: YamlNode) -> str | None:
+        """Return a list that is written line by line, as the target writes its own one; None for anything else."""
+        if not (isinstance(changed, SequenceNode) and isinstance(target, SequenceNode)):
+            return None
+        if self.target.is_flow(target):
+            return format_flow(node_to_data(changed))
+        start, end = self.changed.value_range(changed)
+        block_text = textwrap.dedent(self.changed.text[self.changed.line_start(start) : end])
+        return self._adopt_lines(textwrap.indent(block_text, " " * (target.span.column - 1)).lstrip(" "))
 
     def _inner_indent(self, target: YamlNode) -> int:
         """Return by how much further lines of a text are indented: as they are, else two more than its key."""

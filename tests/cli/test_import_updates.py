@@ -87,6 +87,39 @@ def test_a_record_behind_a_link_is_not_read(run: Run) -> None:
     assert "removed" not in bring_in(run, "")
 
 
+def test_check_ends_with_1_where_slices_are_older_than_their_source(run: Run) -> None:
+    bring_in(run, FIRST)
+    files = {path: path.read_bytes() for path in Path("robot").rglob("*.yaml")}
+    done = run("import", "launch", "r.launch.py", "-o", "robot", "--check")
+    assert (done.status, "r_launch.yaml: as before" in done.out) == (0, True)
+    Path("r.launch.py").write_text(LAUNCH.replace("SAYS", ""), encoding="utf-8")
+    done = run("import", "launch", "r.launch.py", "-o", "robot", "--check")
+    assert (done.status, "  removed: nodes.a.namespace: `/front`" in done.out) == (1, True)
+    assert {path: path.read_bytes() for path in Path("robot").rglob("*.yaml")} == files
+    # A conflict that nobody was told yet changes no slice, and is news all the same.
+    SLICE.write_text(
+        SLICE.read_text(encoding="utf-8").replace("namespace: /front", "namespace: /bow"), encoding="utf-8"
+    )
+    Path("r.launch.py").write_text(LAUNCH.replace("SAYS", FIRST.replace("front", "stern")), encoding="utf-8")
+    done = run("import", "launch", "r.launch.py", "-o", "robot", "--check")
+    assert (done.status, "conflict: nodes.a.namespace: it was `/front` and is `/stern` now; `/bow`" in done.out) == (
+        1,
+        True,
+    )
+    bring_in(run, FIRST.replace("front", "stern"))
+    assert run("import", "launch", "r.launch.py", "-o", "robot", "--check").status == 0
+
+
+def test_a_node_that_is_called_otherwise_keeps_its_id(run: Run) -> None:
+    bring_in(run, "")
+    Path("robot/own.yaml").write_text("nodes: {a: {description: Known as a.}}\n", encoding="utf-8")
+    Path("r.launch.py").write_text(LAUNCH.replace("name='a'SAYS", "name='z'"), encoding="utf-8")
+    done = run("import", "launch", "r.launch.py", "-o", "robot", "--merge")
+    assert (done.status, "renamed: nodes.a is /z by now; its id stays" in done.out) == (0, True)
+    assert "nodes:\n  a:\n    name: z\n    package: p\n" in SLICE.read_text(encoding="utf-8")
+    assert "added" not in done.out
+
+
 def test_a_dry_run_tells_and_writes_nothing(run: Run) -> None:
     bring_in(run, FIRST)
     before = SLICE.read_bytes()
@@ -138,3 +171,35 @@ def test_the_launch_and_the_running_robot_are_one_project(run: Run, rate: str, t
     again = run("import", "ros2", "dump.txt", "-o", "robot", "--merge")
     assert again.status == 0, again.err
     assert "conflicting-values" not in run("check", "robot").err
+
+
+def test_recordings_of_two_days_are_one_robot_and_another_robot_is_refused(run: Run) -> None:
+    Path("monday.txt").write_text(GRAPH, encoding="utf-8")
+    Path("tuesday.txt").write_text(GRAPH.replace("/front/scan:", "/front/scan_raw:"), encoding="utf-8")
+    assert run("import", "ros2", "monday.txt", "-o", "robot").status == 0
+    done = run("import", "ros2", "tuesday.txt", "-o", "robot", "--merge")
+    assert done.status == 0, done.err
+    assert "  removed: nodes.driver.publishes.scan\n" in done.out
+    assert "  added: nodes.driver.publishes.scan_raw\n" in done.out
+    text = Path("robot/running_nodes.yaml").read_text(encoding="utf-8")
+    assert text.startswith("# From tuesday.txt by `archgen import ros2`")
+    Path("wednesday.txt").write_text(Path("tuesday.txt").read_text(encoding="utf-8"), encoding="utf-8")
+    files = {path: path.read_bytes() for path in Path("robot").rglob("*.yaml")}
+    assert run("import", "ros2", "wednesday.txt", "-o", "robot", "--merge").status == 0
+    assert {path: path.read_bytes() for path in Path("robot").rglob("*.yaml")} == files
+    Path("other.txt").write_text(GRAPH.replace("driver", "pilot"), encoding="utf-8")
+    done = run("import", "ros2", "other.txt", "-o", "robot", "--merge")
+    assert (done.status, "none of its nodes is in the slices here: it is another robot" in done.err) == (2, True)
+
+
+def test_what_other_files_say_otherwise_is_told_once(run: Run) -> None:
+    bring_in(run, "")
+    Path("robot/own.yaml").write_text("nodes: {a: {namespace: /mine}}\n", encoding="utf-8")
+    told = "said otherwise by another file, which stays as it is: nodes.a.namespace: `/mine` in own.yaml, `/front` here"
+    assert told in bring_in(run, FIRST)
+    assert "said otherwise" not in bring_in(run, FIRST)
+    assert told.replace("front", "bow") in bring_in(run, FIRST.replace("front", "bow"))
+    # It was never struck out: where nobody else says it any more, the slice does.
+    Path("robot/own.yaml").unlink()
+    bring_in(run, FIRST.replace("front", "bow"))
+    assert "namespace: /bow" in SLICE.read_text(encoding="utf-8")
