@@ -291,14 +291,15 @@ class _Renaming:
             if not isinstance(read_mapping(body).get("components"), Mapping):
                 moved[group] = body
                 continue
-            own = {key: value for key, value in body.items() if key != "components"}
-            if own:
-                moved.setdefault(group, {}).update(own)
-            for name, component in body["components"].items():
-                new_group, _, new_name = self._moves.get(f"{group}.{name}", f"{group}.{name}").partition(".")
-                target = moved.setdefault(new_group, {}).setdefault("components", {})
-                renamed = self._rename_value(component, "component", group, new_group)
-                target[new_name] = self._rename_ports(renamed, self._ports.get(f"{group}.{name}", {}))
+            for key, value in body.items():
+                if key != "components":
+                    moved.setdefault(group, {})[key] = value
+                    continue
+                for name, component in value.items():
+                    new_group, _, new_name = self._moves.get(f"{group}.{name}", f"{group}.{name}").partition(".")
+                    target = moved.setdefault(new_group, {}).setdefault("components", {})
+                    renamed = self._rename_value(component, "component", group, new_group)
+                    target[new_name] = self._rename_ports(renamed, self._ports.get(f"{group}.{name}", {}))
         return moved
 
     def _rename_ports(self, component: Any, ports: Mapping[str, str]) -> Any:  # noqa: ANN401 - plain data

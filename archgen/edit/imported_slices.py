@@ -5,7 +5,7 @@ An update is a merge of three sides (`import_merge`): what the last import said,
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -177,7 +177,7 @@ class _Planning:
         now_slices = keep_files(now.slices, mine)
         self._comments = now.comments
         if "nodes" in others and self.before is not None:
-            project = self._judge_others(frozenset({*slices, *mine}))
+            project = self._judge_others((*slices, *mine))
             joined = join_endpoints(now_slices, project.architecture, project.loaded_project.documents, now.node_ids)
             now_slices, self._comments = rename_ports(joined.slices, joined.ports, now.comments)
         now.slices = {name: self._leave_out_said(name, data, said) for name, data in now_slices.items()}
@@ -188,7 +188,7 @@ class _Planning:
             return {}
         return earlier_import.list_said_values(self.before.loaded_project.documents, own_files)
 
-    def _judge_others(self, own_files: frozenset[str]) -> CheckedProject:
+    def _judge_others(self, own_files: Iterable[str]) -> CheckedProject:
         """Return the project without the import's own slices."""
         assert self.before is not None  # noqa: S101 - asked for before
         own = {name: b"{}\n" for name in own_files if self._files is not None and self._files.has_path(name)}
