@@ -57,7 +57,7 @@ class _ImportCommand(click.Command):
     "launch_files",
     metavar="PACKAGE/FILE",
     multiple=True,
-    help="The launch file that starts the robot (workspace); several where several are started.",
+    help="The launch file that starts the robot (workspace). What only some of several start stands in variants; `none`: each program.",
 )
 @click.option(
     "--env", "variables", metavar="NAME=VALUE", multiple=True, help="A variable of the environment of launch files."
