@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
+from archgen.diagnostics.source_span import NO_SPAN
 from archgen.frozen import NamedTuple, dataclass
 from archgen.merge.slice_merge import SliceVersions, merge_slices
 from archgen.merge.slice_reading import to_texts
@@ -21,7 +22,7 @@ from archgen.syntax.file_patterns import YAML_ENDINGS
 from archgen.syntax.folder_files import FolderFiles
 from archgen.syntax.project_files import read_text_file
 from archgen.syntax.yaml_parser import list_comments
-from archgen.syntax.yaml_tree import MappingEntry, YamlDocument
+from archgen.syntax.yaml_tree import MappingEntry, MappingNode, YamlDocument
 from archgen.syntax.yaml_writer import FlowMapping
 
 _BY = " by `archgen import "
@@ -86,6 +87,11 @@ class SliceContent:
     diagnostics: tuple[Diagnostic, ...] = ()
     entries: tuple[MappingEntry, ...] = ()
     """Its sections as they are written."""
+
+    @property
+    def root(self) -> MappingNode:
+        """Return all of it as a mapping."""
+        return MappingNode({entry.key: entry for entry in self.entries}, NO_SPAN)
 
 
 def read_slice_content(file: str, text: str) -> SliceContent:

@@ -206,9 +206,8 @@ class ImportSides:
 def merge_import(file: str, sides: ImportSides) -> tuple[SliceMerge, UpdatedText]:
     """Return what a slice says once its source is merged into it, and its text. `file` is its name."""
     contents = [read_slice_content(file, text) for text in (sides.base, sides.mine, sides.now)]
-    roots = [MappingNode({each.key: each for each in content.entries}, Span.of_file(file)) for content in contents]
     merge = SliceMerge()
-    data = merge.merge_nodes(_Nodes(*roots))
+    data = merge.merge_nodes(_Nodes(*(content.root for content in contents)))
     merge.data = data if isinstance(data, dict) else {}
     return merge, _write_merged(sides, merge, contents[1].data, contents[2].data)
 
@@ -237,8 +236,7 @@ def _write_merged(
 
 
 def _read_meaning(text: str) -> MergedValue:
-    content = read_slice_content("slice", text)
-    return read_merged_value(MappingNode({each.key: each for each in content.entries}, Span.of_file("slice")))
+    return read_merged_value(read_slice_content("slice", text).root)
 
 
 def _lay_value(data: Mapping[str, Any], normal: Mapping[str, Any], path: KeyPath, value: object) -> Mapping[str, Any]:

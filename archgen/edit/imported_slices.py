@@ -156,7 +156,8 @@ class _Planning:
         others: dict[str, Any] = {}
         for path, value in said.items():
             earlier_import.put_value(others, path, value.value)
-        texts = {name: self._read_record(record_path(name)) for name in mine}
+        # Also of slices that people gave another name.
+        texts = {name: self._read_record(record_path(name)) for name in {**slices, **mine}} if self._is_merge else {}
         base = {
             name: earlier_import.read_slice_content(name, text).data for name, text in texts.items() if text is not None
         }
@@ -233,15 +234,10 @@ class _Planning:
             del records[_elsewhere_path(file)]
         if files is None or not files.has_path(file):
             return PlannedSlice(file, new_text, records=records)
-        if (
-            not self._is_merge
-            and not files.has_path(record_path(file))
-            and read_text_file(files, file).text == new_text
-        ):
-            return PlannedSlice(
-                file, new_text, records=records
-            )  # left by an import that was killed: its record comes last
         if not self._is_merge:
+            if not files.has_path(record_path(file)) and read_text_file(files, file).text == new_text:
+                # Left by an import that was killed: its record comes last.
+                return PlannedSlice(file, new_text, records=records)
             msg = f"{file} is there already; nothing was written; `--merge` brings it up to date, `-o` names another folder"
             raise ImportRefusedError(msg)
         old_text = self._read_mine(file)

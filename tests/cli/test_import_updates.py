@@ -120,6 +120,17 @@ def test_a_node_that_is_called_otherwise_keeps_its_id(run: Run) -> None:
     assert "added" not in done.out
 
 
+def test_a_slice_with_another_name_is_brought_up_to_date_and_a_deleted_one_comes_anew(run: Run) -> None:
+    bring_in(run, FIRST)
+    SLICE.rename("robot/mine.yaml")
+    out = bring_in(run, "")
+    assert "mine.yaml: brought up to date\n  removed: nodes.a.namespace: `/front`" in out
+    assert not SLICE.exists()
+    Path("robot/mine.yaml").unlink()
+    bring_in(run, "")
+    assert "executable: a" in SLICE.read_text(encoding="utf-8")
+
+
 def test_a_dry_run_tells_and_writes_nothing(run: Run) -> None:
     bring_in(run, FIRST)
     before = SLICE.read_bytes()
