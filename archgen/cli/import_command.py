@@ -7,7 +7,7 @@ import re
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
@@ -17,10 +17,12 @@ from archgen.importers.foreign_import import ForeignFileError
 from archgen.importers.import_formats import ImportFormat, guess_format, list_import_formats
 
 if TYPE_CHECKING:
+    from archgen.edit.import_merge import ImportChange
     from archgen.edit.imported_slices import ImportPlan
     from archgen.importers.foreign_import import ForeignImport, ImportNote
 
 _NAME_WIDTH = 9
+_Mode = Literal["write", "dry-run", "check"]
 _LAUNCH_ARGUMENT = re.compile(r"([A-Za-z_][^\s:=]*):=(.*)", re.DOTALL)
 
 
@@ -55,13 +57,19 @@ class _ImportCommand(click.Command):
     "launch_files",
     metavar="PACKAGE/FILE",
     multiple=True,
-    help="The launch file that starts the robot (workspace); several where several are started.",
+    help="The launch file that starts the robot (workspace). What only some of several start stands in variants; `none`: each program.",
 )
 @click.option(
     "--env", "variables", metavar="NAME=VALUE", multiple=True, help="A variable of the environment of launch files."
 )
 @click.option("--distro", metavar="NAME", default="", help="The distribution of ROS (workspace).")
 @click.option("--dry-run", is_flag=True, help="Say what would be taken, and write nothing.")
+@click.option(
+    "--check",
+    "checks",
+    is_flag=True,
+    help="Like --merge --dry-run, and end with 1 where slices are older than their source.",
+)
 @click.option(
     "--format", "form", type=click.Choice(["text", "json"]), default="text", help="How to say what was taken."
 )
@@ -78,6 +86,7 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     *,
     merge: bool,
     dry_run: bool,
+    checks: bool,
 ) -> None:
     """Take over a model of another tool: what it says becomes slices, and what is not taken is listed with its place.
 
@@ -101,7 +110,9 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     if import_format.has_requirements:
         from archgen.cli.requirement_import import import_requirements
 
-        _refuse_options(import_format, {"--output": output, "--merge": merge, "--format": form != "text"})
+        _refuse_options(
+            import_format, {"--output": output, "--merge": merge, "--check": checks, "--format": form != "text"}
+        )
         if len(files) != 1:
             msg = "one file of requirements is taken at a time"
             raise click.UsageError(msg)
@@ -110,7 +121,8 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     _refuse_options(import_format, {"--into": into})
     target = _find_target(output, project)
     words = (*(f"{name}:={value}" for name, value in arguments.items()), *launch_files, *variables)
-    _import_slices(import_format, files, given, words, target, form, merge=merge, dry_run=dry_run)
+    mode: _Mode = "check" if checks else "dry-run" if dry_run else "write"
+    _import_slices(import_format, files, given, words, target, form, merge=merge or checks, mode=mode)
 
 
 def _read_variables(words: Sequence[str]) -> dict[str, str]:
@@ -206,12 +218,13 @@ def _import_slices(  # noqa: PLR0913, PLR0917 - what, where and how
     form: str,
     *,
     merge: bool,
-    dry_run: bool,
+    mode: _Mode,
 ) -> None:
     from archgen.edit.earlier_import import ImportOrigin
     from archgen.edit.imported_slices import ImportRefusedError, find_known_ids, plan_import
 
-    origin = ImportOrigin(import_format.name, tuple(file.resolve().name for file in files), shown_arguments)
+    names = tuple(file.resolve().name for file in files)
+    origin = ImportOrigin(import_format.name, names, shown_arguments, import_format.has_dated_files)
     known_ids = find_known_ids(origin, target) if merge and import_format.keeps_ids else {}
     imported = _read_model(import_format, files, given, known_ids)
     if not imported.slices:
@@ -225,10 +238,10 @@ def _import_slices(  # noqa: PLR0913, PLR0917 - what, where and how
             _print_problem(str(diagnostic.span), diagnostic.message, diagnostic.help or "")
         raise click.ClickException(make_visible(refusal.message)) from None
     _print_account(imported, plan, form)
-    if not dry_run:
+    if mode == "write":
         _write_plan(plan, quiet=form == "json")
     _print_outcome(plan)
-    if plan.errors:
+    if plan.errors or (mode == "check" and plan.is_out_of_date):
         raise click.exceptions.Exit(1)
 
 
@@ -275,14 +288,19 @@ def _make_record(imported: ForeignImport, plan: ImportPlan | None) -> dict[str, 
                 "file": planned.file,
                 "new": planned.is_new,
                 "changed": planned.is_changed,
-                "kept": planned.kept,
-                "replaced": planned.replaced,
-                "removed": planned.removed,
+                "changes": [_make_change_record(change) for change in planned.changes],
             }
             for planned in (plan.slices if plan else ())
         ],
+        "renamed": dict(plan.renames) if plan else {},
         "differences": list(plan.differences) if plan else [],
     }
+
+
+def _make_change_record(change: ImportChange) -> dict[str, Any]:
+    words = {"before": change.before, "now": change.now, "mine": change.mine}
+    place = {"line": change.span.line, "column": change.span.column} if change.span else {}
+    return {"kind": change.kind, "path": ".".join(change.path), **words, **place}
 
 
 def _make_note_record(note: ImportNote) -> dict[str, Any]:
@@ -302,20 +320,20 @@ def _summarise_slices(plan: ImportPlan) -> Iterator[str]:
     for planned in plan.slices:
         if not planned.is_new:
             yield f"{planned.file}: {'brought up to date' if planned.is_changed else 'as before'}"
-            yield from (f"  not in the model, kept: {path}" for path in planned.kept)
-            yield from (f"  replaced: {change}" for change in planned.replaced)
-            yield from (f"  not in the model any more, removed: {change}" for change in planned.removed)
+            yield from (f"  {change.describe()}" for change in planned.changes)
+            if not planned.has_record:
+                yield "  what the last import said is not known: nothing is taken away, and what stands there stays"
+            if planned.is_left:
+                yield "  nothing of it is in the model any more: take it out if it is gone"
         if planned.is_rewritten:
             yield "  written anew: comments could not stay in their places, and stand at the beginning"
+    yield from (f"renamed: {place} is {name} by now; its id stays" for place, name in plan.renames.items())
     yield from (f"said otherwise by another file, which stays as it is: {each}" for each in plan.differences)
-    for file in plan.left_files:
-        yield f"{file}: as before; nothing of it is in the model any more: take it out if it is gone"
     for place, old_place in plan.moves.items():
         yield f"the model has {old_place} as {place} by now: it stays where it is"
 
 
 def _write_plan(plan: ImportPlan, *, quiet: bool) -> None:
-    from archgen.edit.imported_slices import record_path
     from archgen.emit import new_files
     from archgen.emit.file_tree import replace_file
 
@@ -326,11 +344,12 @@ def _write_plan(plan: ImportPlan, *, quiet: bool) -> None:
         for planned in changed:
             replace_file(plan.root / planned.file, planned.text.encode())
         # Last: where something fails before, the next import knows what the one before it said.
-        for planned in plan.slices:
-            if planned.record:
-                record = plan.root / record_path(planned.file)
-                record.parent.mkdir(parents=True, exist_ok=True)
-                replace_file(record, planned.record.encode())
+        for path, text in (
+            (plan.root / path, text) for planned in plan.slices for path, text in planned.records.items()
+        ):
+            if not path.is_file() or path.read_text(encoding="utf-8", errors="replace") != text:
+                path.parent.mkdir(parents=True, exist_ok=True)
+                replace_file(path, text.encode())
     for path in () if quiet else (*new, *(plan.root / planned.file for planned in changed)):
         command_support.print_written(path)
 

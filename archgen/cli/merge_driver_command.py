@@ -31,7 +31,7 @@ def command(base: Path, ours: Path, theirs: Path, name: str, marker_size: int) -
 
     with command_support.explain_write_errors():
         try:
-            merged = merge_contents(base.read_bytes(), ours.read_bytes(), theirs.read_bytes(), marker_size)
+            merged = merge_contents(base.read_bytes(), ours.read_bytes(), theirs.read_bytes(), marker_size, name)
         except (GitError, OSError) as error:
             click.echo(make_visible(f"archgen: {name or ours}: {error}"), err=True)
             sys.exit(2)

@@ -14,6 +14,7 @@ from archgen.edit import earlier_import
 from archgen.edit.edit_proof import list_new_errors, load_with_text
 from archgen.frozen import dataclass, field
 from archgen.link import mapping_values
+from archgen.merge.slice_reading import to_texts
 from archgen.pipeline import CheckedProject
 from archgen.project.slice_parsing import parse_slice
 from archgen.syntax.project_files import read_text_file
@@ -126,7 +127,7 @@ def _merge_section(
             if key == "hints":
                 _lay_hints(new_body, value, mapping_values.get_mapping(other_body, key))
             elif key in other_body.entries and key not in new_body:
-                if earlier_import.to_texts(other_body.entries[key].value) != value:
+                if to_texts(other_body.entries[key].value) != value:
                     result.written_elsewhere.append(f"{key} of {name}")
             else:
                 new_body[key] = value

@@ -43,6 +43,8 @@ class ImportFormat:
     """Whether the function takes `launch_files` and `distro`, too: which of a workspace's launch files start the robot, and its ROS."""
     keeps_ids: bool = False
     """Whether the function takes `known_ids`, too: ids that elements have since an earlier import, by the other tool's."""
+    has_dated_files: bool = False
+    """Whether the names of its files say nothing: each is the same robot at another time."""
     has_requirements: bool = False
     """Whether the function takes one file and the project's requirements, and returns ImportedRequirements: they go into a
     slice of a project that is there.
@@ -51,7 +53,14 @@ class ImportFormat:
     """Who brings it where it does not ship: package and version."""
 
 
-_SWITCHES = ("takes_arguments", "takes_environment", "takes_launch_files", "keeps_ids", "has_requirements")
+_SWITCHES = (
+    "takes_arguments",
+    "takes_environment",
+    "takes_launch_files",
+    "keeps_ids",
+    "has_dated_files",
+    "has_requirements",
+)
 _FACTS = frozenset({"api", "summary", "endings", "reader", "rank", *_SWITCHES})
 _NEEDED_FACTS = frozenset({"summary", "endings", "reader"})
 

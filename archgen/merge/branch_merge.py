@@ -258,7 +258,7 @@ class BranchMerger:
         if old_content is None or our_content is None or their_content is None:
             return b"", "it cannot be read, or is too large"
         try:
-            merged = merge_contents(old_content, our_content, their_content)
+            merged = merge_contents(old_content, our_content, their_content, path=conflict.path)
         except GitError as error:
             return b"", str(error)
         if merged.conflict_path:

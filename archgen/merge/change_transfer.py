@@ -13,6 +13,7 @@ from archgen.frozen import dataclass, field
 from archgen.merge.renamed_keys import KeyRename
 from archgen.merge.slice_reading import TreeReader, convert_lines, find_line_end
 from archgen.merge.tree_merge import ItemSet, merge_values, read_merged_value
+from archgen.syntax.yaml_parser import list_comments
 from archgen.syntax.yaml_tree import (
     MappingEntry,
     MappingNode,
@@ -189,7 +190,19 @@ class _TextEdits:
             head, _, lines = text.partition("\n")
             indented = textwrap.indent(textwrap.dedent(lines), " " * self._inner_indent(target))
             return self._adopt_lines(f"{head}\n{indented}")
-        return text if "\n" not in text or self.changed.is_flow(changed) else None
+        if "\n" not in text or self.changed.is_flow(changed):
+            return text
+        return self._write_block_list(changed, target)
+
+    def _write_block_list(self, changed: YamlNode, target: YamlNode) -> str | None:
+        """Return a list that is written line by line, as the target writes its own one; None for anything else."""
+        if not (isinstance(changed, SequenceNode) and isinstance(target, SequenceNode)):
+            return None
+        if self.target.is_flow(target):
+            return format_flow(node_to_data(changed))
+        start, end = self.changed.value_range(changed)
+        block_text = textwrap.dedent(self.changed.text[self.changed.line_start(start) : end])
+        return self._adopt_lines(textwrap.indent(block_text, " " * (target.span.column - 1)).lstrip(" "))
 
     def _inner_indent(self, target: YamlNode) -> int:
         """Return by how much further lines of a text are indented: as they are, else two more than its key."""
@@ -233,9 +246,14 @@ class _TextEdits:
         self._delete_range(self.target.entry_range(entry), lines)
 
     def _delete_range(self, value_range: tuple[int, int], lines: tuple[int, int] | None) -> None:
-        """Delete whole lines, else a part of a line with a comma beside it."""
+        """Delete whole lines, but for comments that the base does not have, else a part of a line with a comma beside it."""
         if lines is not None:
-            self.replacements.append((*lines, ""))
+            deleted = self.target.text[slice(*lines)]
+            comments = [each for each in list_comments(deleted) if each not in self.base.text]
+            indent = " " * _count_blanks(deleted)
+            self.replacements.append(
+                (*lines, self._adopt_lines("".join(f"{indent}{comment}\n" for comment in comments)))
+            )
             return
         start, end = value_range
         comma = _COMMA_BEHIND.match(self.target.text, end)

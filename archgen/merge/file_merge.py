@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from archgen.frozen import dataclass
 from archgen.git.text_merge import merge_lines
+from archgen.merge.record_merge import is_record, merge_records
 from archgen.merge.slice_merge import SliceVersions, UnmergedSlice, merge_slices
 from archgen.merge.slice_reading import read_tree
 from archgen.merge.tree_merge import FIELD_ORDER
@@ -20,10 +21,11 @@ class FileMerge:
     conflict_path: tuple[str, ...] = ()
 
 
-def merge_contents(base: bytes, ours: bytes, theirs: bytes, marker_size: int = 7) -> FileMerge:
-    """Merge three contents of a file. Raise `git.GitError` for binary files."""
+def merge_contents(base: bytes, ours: bytes, theirs: bytes, marker_size: int = 7, path: str = "") -> FileMerge:
+    """Merge three contents of a file, whose path says whether it is a record of an import. Raise `git.GitError` for binary files."""
     try:
-        merged_slice = merge_slices(SliceVersions(base.decode(), ours.decode(), theirs.decode()))
+        versions = SliceVersions(base.decode(), ours.decode(), theirs.decode())
+        merged_slice = merge_records(versions) if is_record(path) else merge_slices(versions)
     except UnicodeDecodeError:
         merged_slice = UnmergedSlice()
     if isinstance(merged_slice, str):

@@ -1,13 +1,15 @@
-"""Read the text of a slice as a whole: as it is written, or in normal form, without short forms; and its line ends."""
+"""Read the text of a slice as a whole: as it is written, or in normal form, without short forms; as plain data; and its line ends."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache
+from typing import Any
 
 from archgen import schema
 from archgen.syntax import yaml_parser
-from archgen.syntax.yaml_tree import MappingNode
+from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, YamlNode
+from archgen.syntax.yaml_writer import PlainText
 
 TreeReader = Callable[[str], MappingNode | None]
 """Reads a text as a whole; None where that cannot be done."""
@@ -42,3 +44,14 @@ def convert_lines(text: str, line_end: str) -> str:
 def find_line_end(text: str) -> str:
     """Return how the lines of a text end."""
     return "\r\n" if "\r\n" in text else "\n"
+
+
+def to_texts(node: YamlNode) -> Any:  # noqa: ANN401 - any value of the language
+    """Return a value as it is written: `1.10` is not 1.1."""
+    if isinstance(node, MappingNode):
+        return {entry.key: to_texts(entry.value) for entry in node}
+    if isinstance(node, SequenceNode):
+        return [to_texts(item) for item in node.items]
+    if not isinstance(node, ScalarNode) or node.value is None:
+        return None
+    return node.text if isinstance(node.value, str) else PlainText(node.text)

@@ -16,7 +16,7 @@ from archgen.syntax.yaml_tree import MappingNode, ScalarNode, YamlNode
 
 _MAX_COMPARED = 2_000
 """Items of a list that is compared item by item: that takes time that grows with the square at worst."""
-_FIELD_PATHS = frozenset({("fields",), ("request",), ("response",), ("feedback",)})
+FIELD_PATHS = frozenset({("fields",), ("request",), ("response",), ("feedback",)})
 """Keys of a type below which order counts: fields stand in a message as they are written."""
 FIELD_ORDER = "(order)"
 """The key under which the order of fields is merged; no field has such a name."""
@@ -71,7 +71,7 @@ def read_merged_value(node: YamlNode, path: tuple[str, ...] = ()) -> MergedValue
         return ScalarValue(type(node.value).__name__, node.value if isinstance(node.value, str) else node.text)
     if isinstance(node, MappingNode):
         items = [(entry.key, read_merged_value(entry.value, (*path, entry.key))) for entry in node]
-        if path[:1] == ("types",) and path[2:] in _FIELD_PATHS:
+        if path[:1] == ("types",) and path[2:] in FIELD_PATHS:
             items.append((FIELD_ORDER, ItemList(tuple(ScalarValue("str", entry.key) for entry in node))))
         return MappingValue(tuple(sorted(items, key=lambda item: item[0])))
     list_items = tuple(read_merged_value(item, path) for item in node.items)

@@ -91,15 +91,18 @@ def test_a_second_import_overwrites_nothing_and_an_update_keeps_what_people_wrot
     assert "toys.yaml is there already; nothing was written; `--merge` brings it up to date" in done.err
     assert path.read_text() == edited
     done = run("import", write_model("arm=Lifts.", "head"), "-o", "robot", "--merge")
-    assert done.status == 0
-    assert "toys.yaml: brought up to date\n  not in the model, kept: toys.leg" in done.out
+    assert (done.status, "no file declares the component `toys.leg`" in done.err) == (1, True)
+    leg = "groups.toys.components.leg"
+    assert f"  not said any more, but people wrote there, which stays: {leg} (toys" in done.out
+    conflict = "groups.toys.components.arm.functionality: it was `Does something.` and is `Lifts.` now"
+    assert f"  conflict: {conflict}; `Was changed.` of the slice stays" in done.out
     updated = path.read_text()
-    assert "functionality: Lifts." in updated
+    assert "functionality: Was changed.  # by hand" in updated
     assert "owner: us  # since May" in updated
     assert "head:" in updated
     assert "partners: {us: {title: We}}" in updated
     done = run("import", "robot.toy", "-o", "robot", "--merge")
-    assert done.status == 0
+    assert "as before" in done.out
     assert path.read_text() == updated
 
 

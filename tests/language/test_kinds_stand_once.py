@@ -17,7 +17,6 @@ LEAST = 6
 REASONS = {
     "cli/list_command.py": "kinds of which a selector names some",
     "compare/kinds/__init__.py": "the order in which kinds are recognised under other ids",
-    "edit/imported_slices.py": "the mappings by id that models of other tools bring",
     "plugins/xmi/xmi_import.py": "the files that a model becomes",
     "link/declare/element_declaration.py": "the class of each kind",
     "link/variants/element_removal.py": "how what is gone is taken out of each section",

@@ -213,6 +213,26 @@ def test_a_change_of_a_few_lines_is_carried_into_a_text_indented_anew(
     assert merge(LISTED, *sides) == edited.replace("    ", "      ")
 
 
+def test_a_list_whose_order_counts_is_carried_into_a_text_where_lines_conflict() -> None:
+    base = "nodes:\n  a:\n    arguments:\n      - x\n  b: {package: p}\n"
+    theirs = base.replace("- x", "- x\n      - z").replace("  b: {package: p}\n", "  c: {package: q}\n")
+    ours = base.replace("      - x", "    - x").replace("  b: {package: p}\n", "  d: {package: r}\n")
+    merged = merge(base, ours, theirs)
+    assert isinstance(merged, str)
+    assert "    arguments:\n    - x\n    - z\n" in merged
+    in_brackets = merge(base, ours.replace("arguments:\n    - x", "arguments: [x]"), theirs)
+    assert isinstance(in_brackets, str)
+    assert "    arguments: [x, z]\n" in in_brackets
+
+
+def test_a_comment_of_what_the_other_side_took_out_stays() -> None:
+    base = "nodes:\n  a:\n    host: pc\n  b: {package: p}\n"
+    merged = merge(
+        base, base.replace("host: pc", "host: pc  # the small one"), base.replace("    host: pc\n", "    package: q\n")
+    )
+    assert merged == "nodes:\n  a:\n    # the small one\n    package: q\n  b: {package: p}\n"
+
+
 def test_an_item_is_added_to_a_list_that_now_stands_in_brackets() -> None:
     base = "sources:\n  - R-1\n  - R-2\n"
     ours, theirs = 'sources: [R-1, R-2, "a b"]\n', base + "  - R-3\n"

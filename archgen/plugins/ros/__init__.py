@@ -41,12 +41,14 @@ PLUGIN = {
             "summary": "a running robot, from what `ros2 node info` and its like print",
             "endings": (),
             "reader": "archgen.plugins.ros.running_graph.graph_import:read_ros_2_graph",
+            "has_dated_files": True,
         },
         "ros1": {
             "rank": 8,
             "summary": "a running robot, from what `rosnode info` and its like print",
             "endings": (),
             "reader": "archgen.plugins.ros.running_graph.graph_import:read_ros_1_graph",
+            "has_dated_files": True,
         },
     },
 }

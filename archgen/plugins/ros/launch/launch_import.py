@@ -12,6 +12,7 @@ from archgen.plugin import dataclass
 from archgen.plugin.importing import (
     ForeignFileError,
     ForeignImport,
+    ImportNote,
     Span,
     make_id,
     make_unique_id,
@@ -73,16 +74,21 @@ def run_launch_files(
         # What is given by name must be readable; what lies in a folder or is included is only noted.
         load_actions(path, LaunchRun(launch_files, load_included))
     launched: dict[Path, tuple[list[LaunchedNode], Counter[str]]] = {}
+    notes: dict[Path, list[ImportNote]] = {}
     for path in dict.fromkeys(entries):
         run.nodes, run.taken = [], Counter()
         run.run_file(path)
         launched[path] = (run.nodes, run.taken)
+        notes[path] = run.take_notes()
     run.arguments.refuse_unknown(run.context.asked, launch_files.show_path(entries[0]))
     for root, count in launch_files.cut_roots.items():
         words = f"only the first {count:,} folders in it were looked through: packages that lie in others are not found"
         run.add_note("folder", words, Span.of_file(root.name or "/"), "give folders that hold less", fate="noted")
     if not given:
         launched = {path: each for path, each in launched.items() if path not in run.included} or launched
+    # What another file includes was run alone, too, without the arguments that it gets there.
+    for note in (each for path in launched for each in notes[path]):
+        run.add_note(note.kind, note.message, note.span, note.help_line, note.fate)
     return LaunchedFiles(run, launched)
 
 

@@ -182,6 +182,12 @@ class ScopeRun:
             self._seen_notes.add(key)
             self.notes.append(ImportNote(kind, message, span, help_line, fate))
 
+    def take_notes(self) -> list[ImportNote]:
+        """Return the notes up to here, and forget them."""
+        notes, self.notes = self.notes, []
+        self._seen_notes.clear()
+        return notes
+
     def tell_computed(self, action: LaunchAction | LaunchedNode, what: str, value: UnknownValue) -> None:
         """Note what only running the file would tell of an action, or of what it starts."""
         place = Span(value.file or action.span.file, value.line, 1, value.line, 2) if value.line else action.span

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from archgen.plugin.importing import (
@@ -18,6 +19,7 @@ from archgen.plugin.importing import (
 )
 from archgen.plugin.ros import find_name_fault, find_node_name_fault
 from archgen.plugins.ros.launch.launch_actions import LaunchedNode
+from archgen.plugins.ros.launch.launch_import import find_stem
 from archgen.plugins.ros.launch.launch_slices import nest_parameters
 from archgen.plugins.ros.ros_package.import_account import ImportAccount
 from archgen.plugins.ros.sources.walk_values import (
@@ -39,6 +41,9 @@ _SHARED = frozenset({"/tf", "/tf_static", "/clock", "/diagnostics", "/rosout", "
 _POOR_WORDS = frozenset(
     {"pose", "state", "global", "local", "data", "raw", "status", "image", "command", "cmd", "info"}
 )
+_MANAGER = "lifecycle_manager"
+_MANAGER_PARAMETERS = ("node_names", "autostart")
+"""By these a manager of Nav2 says whom it activates."""
 _USUAL_QOS = {"depth": 10}
 """What ROS takes where nothing else is said."""
 _HINT = "launch"
@@ -53,6 +58,8 @@ class NodeKnowledge:
     node: LaunchedNode
     program: ReadProgram | None
     library_type: str
+    launch_files: tuple[str, ...] = ()
+    """Which of several launch files start it, where some do not."""
 
 
 @dataclass(slots=True, eq=False)
@@ -63,16 +70,19 @@ class WrittenNode:
     group: str
     data: dict[str, Any]
     component: dict[str, Any]
-    conditions: tuple[str, ...] = ()
-    """The conditions by which it runs, where it does not by the defaults."""
+    variants: Mapping[str, str] = field(default_factory=dict)
+    """By their names the titles of the variants in which it runs; none for what always runs."""
     comments: dict[tuple[str, ...], str] = field(default_factory=dict)
 
-    @property
-    def variant(self) -> str:
-        """What a variant is called in which it runs; empty for what always runs."""
-        words = re.findall(r"\w+", self.conditions[-1].replace("unless", "no")) if self.conditions else []
-        words = [word for word in words if word not in _CONDITION_SIGNS]
-        return make_id("_".join(words), "variant") if words else ""
+
+def _list_variants(known: NodeKnowledge) -> dict[str, str]:
+    """Return the variants in which a node runs that the defaults do not start, or only one of several launch files."""
+    if known.node.is_on:
+        return {make_id(find_stem(Path(file)), "variant"): f"Launched by {file}" for file in known.launch_files}
+    conditions = tuple(dict.fromkeys(known.node.conditions))
+    words = re.findall(r"\w+", conditions[-1].replace("unless", "no")) if conditions else []
+    words = [word for word in words if word not in _CONDITION_SIGNS]
+    return {make_id("_".join(words), "variant"): f"Launched {' and '.join(conditions)}"} if words else {}
 
 
 class NodeWriter:
@@ -90,8 +100,8 @@ class NodeWriter:
         if kept[_HINT]:
             body["hints"] = kept
         self._leave_out_filed(body, known)
-        conditions = () if known.node.is_on else tuple(dict.fromkeys(known.node.conditions))
-        written = WrittenNode(node_id, group, {"implements": f"{group}.{node_id}", **body}, {}, conditions)
+        data = {"implements": f"{group}.{node_id}", **body}
+        written = WrittenNode(node_id, group, data, {}, _list_variants(known))
         self._account.count("node")
         if known.library_type:
             written.component["is"] = f"{LIBRARY}.{known.library_type}"
@@ -113,17 +123,18 @@ class NodeWriter:
         shared = ("namespace", "status", "remaps", "arguments", "parameters")
         data: dict[str, Any] = {key: first.data[key] for key in ("implements", *shared) if key in first.data}
         data["implements"] = f"{first.group}.{node_id}"
-        written = WrittenNode(node_id, first.group, data, {}, first.conditions)
+        written = WrittenNode(node_id, first.group, data, {}, first.variants)
         written.comments[()] = f"in the process of {first.id}"
         self._account.count("node")
         self._write_found(written, found, known, is_first=False)
         return written
 
     def _leave_out_filed(self, data: dict[str, Any], known: NodeKnowledge) -> None:
-        """Leave out the parameters that stand in a file that the node reads, but those that name its topics."""
+        """Leave out the parameters that stand in a file that the node reads, but those that name topics, or nodes to activate."""
         if known.program is not None and known.program.is_ros_1:
             return
         kept = _list_naming_parameters(known.library_type, self._distro) if known.library_type else []
+        kept += _MANAGER_PARAMETERS if _MANAGER in known.node.executable else ()
         for found in known.program.nodes if known.program else ():
             kept += [re.escape(each.name.name) for each in found.endpoints if isinstance(each.name, ParameterValue)]
         naming = re.compile("|".join(kept) or "(?!)")

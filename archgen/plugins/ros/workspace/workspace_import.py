@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -16,7 +17,9 @@ from archgen.plugin.importing import (
     title_from_id,
 )
 from archgen.plugins.ros.launch.launch_actions import LaunchedNode
-from archgen.plugins.ros.launch.launch_import import LaunchedFiles, find_stem, run_launch_files
+from archgen.plugins.ros.launch.launch_files import LaunchFiles
+from archgen.plugins.ros.launch.launch_import import LaunchedFiles, find_stem, load_included, run_launch_files
+from archgen.plugins.ros.launch.launch_run import LaunchRun
 from archgen.plugins.ros.launch.launch_slices import SliceMaker
 from archgen.plugins.ros.ros_package.import_account import ImportAccount
 from archgen.plugins.ros.workspace.node_components import NodeKnowledge
@@ -28,6 +31,7 @@ from archgen.plugins.ros.workspace.workspace_slices import make_slices
 _MAX_SHOWN = 12
 _FOLDER_HELP = "give the folder in which the packages lie, `src` as a rule"
 _ASSUMED_DISTRO = "jazzy"
+_NO_LAUNCH = "none"
 _GENERATED_NAMES = ("bringup", "robot")
 
 
@@ -42,7 +46,7 @@ def read_workspace(
     """Read a workspace. Raise ForeignFileError.
 
     `files` are folders with packages. `launch_files` are those that start the robot, as `PACKAGE/FILE` or as paths, and may be left
-    out where one alone is included by no other.
+    out where one alone is included by no other. What only some of several start stands in variants; `none` takes each program.
     """
     account = ImportAccount()
     for path in files:
@@ -53,15 +57,22 @@ def read_workspace(
     if not workspace.packages:
         words = "there is no package.xml in it"
         raise ForeignFileError(words, Span.of_file(str(files[0])), _FOLDER_HELP)
-    entries = [_find_entry(workspace, files, text) for text in launch_files]
-    launched = run_launch_files([*entries, *files] if entries else files, arguments, environment)
-    if not entries:
-        launched = _choose_entry(launched)
+    is_without_launch = tuple(launch_files) == (_NO_LAUNCH,)
+    if is_without_launch:
+        launched = _start_programs(workspace, files)
+    else:
+        entries = [_find_entry(workspace, files, text) for text in launch_files]
+        launched = run_launch_files([*entries, *files] if entries else files, arguments, environment)
+        launched = launched if entries else _choose_entry(launched)
     nodes = launched.choose_nodes()
     is_ros_1 = all(package.manifest.is_ros_1 for package in workspace.packages.values())
     known_distro = distro or ("noetic" if is_ros_1 else _ASSUMED_DISTRO)
     reader = ProgramReader(workspace, account, launched.run)
-    knowledge = [_read_knowledge(node, reader, known_distro) for node in nodes]
+    starters = _list_starters(launched)
+    knowledge = [_read_knowledge(node, reader, known_distro, starters[_identify(node)]) for node in nodes]
+    if is_without_launch:
+        # Programs that are no nodes.
+        knowledge = [each for each in knowledge if each.program or each.library_type]
     reader.tell_unread()
     uses_library = any(each.library_type for each in knowledge)
     slices, comments = make_slices(SliceMaker(launched.run), knowledge, workspace, account, known_distro)
@@ -78,10 +89,39 @@ def read_workspace(
     return ForeignImport(slices, taken, notes, title, known_distro, comments, uses_shipped_library=uses_library)
 
 
-def _read_knowledge(node: LaunchedNode, reader: ProgramReader, distro: str) -> NodeKnowledge:
+def _start_programs(workspace: WorkspaceFiles, folders: Sequence[Path]) -> LaunchedFiles:
+    """Return each program of a workspace as if something started it once, without a name, remaps and parameters."""
+    nodes = [
+        LaunchedNode("node", "program", Span.of_file(package.manifest_name), "", package=name, executable=program)
+        for name, package in workspace.packages.items()
+        for program in package.programs
+    ]
+    run = LaunchRun(LaunchFiles(folders), load_included)
+    return LaunchedFiles(run, {folders[0].resolve(): (nodes, Counter())})
+
+
+def _identify(node: LaunchedNode) -> tuple[str, ...]:
+    """Return what a node is known by in several launch files: its name, else its program."""
+    name = node.known_name
+    return (name,) if name else (node.namespace, node.package, node.executable, node.plugin, *node.command)
+
+
+def _list_starters(launched: LaunchedFiles) -> dict[tuple[str, ...], tuple[str, ...]]:
+    """Return by what nodes are known by which launch files start them, nothing for what all start."""
+    starters: dict[tuple[str, ...], dict[str, None]] = defaultdict(dict)
+    for path, (nodes, _) in launched.by_file.items():
+        for node in nodes:
+            starters[_identify(node)][launched.run.files.show_path(path)] = None
+    count = len(launched.by_file)
+    return {key: () if len(files) == count else tuple(files) for key, files in starters.items()}
+
+
+def _read_knowledge(
+    node: LaunchedNode, reader: ProgramReader, distro: str, launch_files: tuple[str, ...]
+) -> NodeKnowledge:
     program = reader.read_node(node) if node.form in {"node", "loaded"} and (node.executable or node.plugin) else None
     library_type = "" if program is not None else _find_library_type(node, distro)
-    return NodeKnowledge(node, program, library_type)
+    return NodeKnowledge(node, program, library_type, launch_files)
 
 
 def _find_library_type(node: LaunchedNode, distro: str) -> str:

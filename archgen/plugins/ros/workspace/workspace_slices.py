@@ -44,7 +44,7 @@ def make_slices(
     if any(each.library_type for each in knowledge):
         project["libraries"] = {LIBRARY: "builtin"}
     wiring = _Wiring(link_slices({**project, **sections, **_write_sections(written)}), written)
-    usual = [each for each in written if not each.variant]
+    usual = [each for each in written if not each.variants]
     inputs = wiring.wire(usual)
     account.count("connection", wiring.count)
     slices: dict[str, Mapping[str, Any]] = {}
@@ -116,16 +116,16 @@ def _place_comments(nodes: Iterable[WrittenNode], launch_comments: Comments, abo
 def _make_variants(
     written: Sequence[WrittenNode], usual_inputs: Mapping[str, Any], wiring: _Wiring
 ) -> tuple[dict[str, Any], Comments]:
-    """Return the variants in which nodes run that are off by default: one for each condition."""
-    usual = [each for each in written if not each.variant]
+    """Return the variants in which nodes run that are off by default, or that one of several launch files starts."""
+    usual = [each for each in written if not each.variants]
     variants: dict[str, Any] = {}
     comments: Comments = {}
-    by_conditions: dict[tuple[str, ...], list[WrittenNode]] = defaultdict(list)
+    by_variant: dict[tuple[str, str], list[WrittenNode]] = defaultdict(list)
     for each in written:
-        if each.variant:
-            by_conditions[each.conditions].append(each)
-    for conditions, added in by_conditions.items():
-        name = make_unique_id(added[0].variant, variants.keys())
+        for variant in each.variants.items():
+            by_variant[variant].append(each)
+    for (wanted, title), added in by_variant.items():
+        name = make_unique_id(wanted, variants.keys())
         inputs = wiring.wire([*usual, *added])
         changes = _write_sections(added, inputs)
         for node in usual:
@@ -133,7 +133,7 @@ def _make_variants(
             if changed:
                 group = changes["groups"].setdefault(node.group, {"components": {}})
                 group["components"][node.id] = {"inputs": changed}
-        variants[name] = {"title": f"Launched {' and '.join(conditions)}", "changes": changes}
+        variants[name] = {"title": title, "changes": changes}
         comments |= _place_comments(added, {}, ("variants", name, "changes"))
     return variants, comments
 

@@ -672,3 +672,14 @@ def test_a_substitution_without_its_words_is_left_out_with_its_line(tmp_path: Pa
     imported = read_launch([file])
     assert "three" in nodes_of(imported)
     assert any(note.span.line in {2, 3} for note in imported.notes), messages_of(imported)
+
+
+def test_what_a_file_lacks_only_where_it_runs_alone_is_not_told(tmp_path: Path) -> None:
+    inner = '<launch><arg name="part"/><include file="$(dirname)/$(var part).launch.xml"/><node pkg="p" exec="a" name="a" args="$(eval x)"/></launch>'
+    outer = '<launch><include file="$(dirname)/inner.launch.xml"><arg name="part" value="other"/></include></launch>'
+    node = '<launch><node pkg="p" exec="b" name="b"/></launch>'
+    write_files(tmp_path, outer__launch__xml=outer, inner__launch__xml=inner, other__launch__xml=node)
+    alone = messages_of(read_launch([tmp_path / "inner.launch.xml"]))
+    assert [each.split(":")[1] for each in alone] == [" arg", " include", " node"]
+    whole = read_launch([tmp_path])
+    assert (list(nodes_of(whole)), messages_of(whole)) == (["b", "a"], alone[2:])

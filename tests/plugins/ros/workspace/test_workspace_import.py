@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from textwrap import dedent
 
@@ -215,6 +216,63 @@ def test_several_launch_files_are_other_robots(workspace: Path, run: Run) -> Non
     assert "ROS name:       /driver" in run("show", "-C", "robot", "driver").out
     done = run("import", "workspace", "src", "--launch", "my_driver/none.launch.xml", "-o", "robot")
     assert "there is no such launch file in the workspace" in done.err
+
+
+def test_what_one_of_several_launch_files_starts_is_a_variant(workspace: Path, run: Run) -> None:
+    """What all start is the project itself; each launch file is a variant with what it adds."""
+    launch = workspace / "src/my_driver/launch/lab.launch.xml"
+    launch.parent.mkdir()
+    launch.write_text(
+        '<launch><node pkg="robot_localization" exec="ekf_node" name="ekf"/><node pkg="my_driver" exec="viewer" name="eye"/></launch>'
+    )
+    files = ("my_bringup/robot.launch.py", "my_driver/lab.launch.xml")
+    options = [word for file in files for word in ("--launch", file)]
+    done = run("import", "workspace", "src", *options, "--distro", "humble", "-o", "robot")
+    assert done.status == 0, done.err
+    assert [line.split()[0] for line in run("list", "-C", "robot", "--of", "nodes").out.splitlines()[1:2]] == ["ekf"]
+    assert "eye" in run("list", "-C", "robot", "--variant", "lab", "--of", "nodes").out
+    assert "front_driver" in run("list", "-C", "robot", "--variant", "robot", "--of", "nodes").out
+    titles = re.findall(r"title: (.*)", Path("robot/robot.yaml").read_text(encoding="utf-8"))
+    assert [title.rpartition("/")[2] for title in titles] == [
+        "robot.launch.py",
+        "Launched if $(var rviz)",
+        "lab.launch.xml",
+    ]
+    assert run("check", "robot").status == 0
+
+
+@pytest.mark.usefixtures("workspace")
+def test_without_a_launch_file_each_program_is_taken_once(run: Run) -> None:
+    done = run("import", "workspace", "src", "--launch", "none", "--distro", "humble", "-o", "robot")
+    assert done.status == 0, done.err
+    assert "ROS name:       /driver" in run("show", "-C", "robot", "driver").out
+    text = Path("robot/robot.yaml").read_text(encoding="utf-8")
+    assert (
+        "    package: my_driver\n    executable: driver\n    status: existing\n    publishes: {scan: scan, odom: odom, bump: {}}"
+        in text
+    )
+    assert "remaps" not in text
+
+
+def test_the_list_of_a_lifecycle_manager_is_taken_from_its_file(workspace: Path, run: Run) -> None:
+    package = workspace / "src/my_bringup"
+    (package / "config/nav.yaml").write_text(
+        "manager: {ros__parameters: {autostart: true, node_names: [map_server], bond_timeout: 4.0}}\n"
+    )
+    launch = package / "launch/nav.launch.xml"
+    file = '<param from="$(find-pkg-share my_bringup)/config/nav.yaml"/>'
+    launch.write_text(
+        f'<launch><node pkg="nav2_lifecycle_manager" exec="lifecycle_manager" name="manager">{file}</node>'
+        '<node pkg="nav2_map_server" exec="map_server" name="map_server"/></launch>'
+    )
+    done = run(
+        "import", "workspace", "src", "--launch", "my_bringup/nav.launch.xml", "--distro", "humble", "-o", "robot"
+    )
+    assert done.status == 0, done.err
+    text = Path("robot/robot.yaml").read_text(encoding="utf-8")
+    assert "    parameters:\n      autostart: true\n      node_names:\n        - map_server\n" in text
+    assert "bond_timeout" not in text
+    assert "silent-node" not in run("check", "robot").out
 
 
 @pytest.mark.usefixtures("workspace")
