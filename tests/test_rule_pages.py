@@ -8,10 +8,13 @@ from pathlib import Path
 import pytest
 
 from archgen import resources
+from archgen.conformance.robot_comparison import ComparedPart
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.findings import rule_pages
 from archgen.findings.rule_table import COMPARISON_RULES, FAILED_RULE, index_rules
+from archgen.importers.robot_observation import ObservationOptions, observe_robot
 from archgen.pipeline import SHIPPED_RULES, check_project, check_text
+from archgen.products.robot_conformance import hold_against_robots
 from archgen.views.generation.architecture_needs import GENERATION_RULES
 from tests.repositories import repository
 
@@ -19,7 +22,10 @@ _LOUD = {Severity.ERROR, Severity.WARNING}
 
 
 def _judge(example: str, folder: Path) -> tuple[Diagnostic, ...]:
-    """Judge an example: one file, or several that begin with a line `# file: NAME`, or one of a commit of some day."""
+    """Judge an example: one file, or several that begin with a line `# file: NAME`, or one of a commit of some day.
+
+    With a graph among them, the project is held against that robot, too.
+    """
     if example.startswith("# committed on "):
         day = example.partition("\n")[0].removeprefix("# committed on ")
         repository(folder, {"archgen.yaml": example}, day=day)
@@ -30,7 +36,10 @@ def _judge(example: str, folder: Path) -> tuple[Diagnostic, ...]:
     for name, text in zip(parts[1::2], parts[2::2], strict=True):
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(text, encoding="utf-8")
-    return check_project(folder).findings
+    checked = check_project(folder)
+    graph = folder / "graph.txt"
+    robots = [observe_robot(graph, folder, ObservationOptions())] if graph.exists() else []
+    return (*checked.findings, *hold_against_robots(checked, robots, ComparedPart()).reported.findings)
 
 
 def _shown(diagnostics: tuple[Diagnostic, ...]) -> list[str]:

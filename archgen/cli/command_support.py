@@ -307,6 +307,20 @@ def make_progress_printer(label: str = "drawing") -> Callable[[int, int], None] 
     return show_progress
 
 
+def split_words(words: Iterable[str], joint: str, what: str, example: str) -> dict[str, str]:
+    """Return words such as `NAME=VALUE` by their names. Raise UsageError for one that is none, with an example."""
+    from archgen.diagnostics.safe_text import make_visible
+
+    pairs = {}
+    for word in words:
+        name, found, value = word.partition(joint)
+        if not name or not found:
+            msg = f"`{word}` is no {what}: write `{example}`"
+            raise click.UsageError(make_visible(msg))
+        pairs[name] = value
+    return pairs
+
+
 def require_host(architecture: Architecture, host: str) -> None:
     """Raise UsageError where a project has no host of this id."""
     from archgen.diagnostics.safe_text import make_visible

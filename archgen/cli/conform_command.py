@@ -1,0 +1,182 @@
+"""`archgen conform`: hold the project against a robot that exists."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from archgen.cli import command_support, finding_documents, shared_options
+from archgen.diagnostics.diagnostic import Severity
+from archgen.diagnostics.safe_text import make_visible
+from archgen.frozen import replace
+
+if TYPE_CHECKING:
+    from archgen.conformance.observed_robot import ObservedRobot
+    from archgen.conformance.robot_comparison import RobotComparison
+    from archgen.importers.robot_observation import ObservationOptions
+    from archgen.pipeline import CheckedProject
+
+_MAX_UNREAD = 10
+"""So many lines for what could not be read of a robot; the rest is counted."""
+
+
+@click.command("conform")
+@shared_options.project_argument
+@click.option(
+    "--against",
+    "paths",
+    metavar="PATH",
+    type=click.Path(path_type=Path),
+    multiple=True,
+    required=True,
+    help="What says how the robot is: a workspace, or a dump of its running graph. Several may be given.",
+)
+@shared_options.variant_option
+@click.option(
+    "--host", "hosts", metavar="HOST", multiple=True, help="Expect only the nodes of this host; may be repeated."
+)
+@click.option("--only", "rules", metavar="RULE", multiple=True, help="Show only what this rule finds; may be repeated.")
+@click.option(
+    "--launch",
+    "launch_files",
+    metavar="PACKAGE/FILE",
+    multiple=True,
+    help="The launch file of a workspace that starts the robot; several where several are started.",
+)
+@click.option(
+    "--argument",
+    "arguments",
+    metavar="NAME:=VALUE",
+    multiple=True,
+    help="An argument of the launch files of a workspace.",
+)
+@click.option(
+    "--env", "variables", metavar="NAME=VALUE", multiple=True, help="A variable of the environment of launch files."
+)
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(["text", *finding_documents.DOCUMENT_FORMATS]),
+    default="text",
+    show_default=True,
+)
+@shared_options.strict_option
+@click.option(
+    "--baseline",
+    metavar="FILE",
+    type=click.Path(path_type=Path, exists=True, dir_okay=False),
+    help="Keep the findings that FILE knows quiet.",
+)
+def command(  # noqa: PLR0913 - one for each option
+    *,
+    project: Path | None,
+    paths: tuple[Path, ...],
+    hosts: tuple[str, ...],
+    rules: tuple[str, ...],
+    launch_files: tuple[str, ...],
+    arguments: tuple[str, ...],
+    variables: tuple[str, ...],
+    form: str,
+    strict: bool,
+    baseline: Path | None,
+) -> None:
+    """Hold PROJECT against the robot that exists, and show where both differ.
+
+    Nodes, what they publish, subscribe to, serve and call, types, quality of service and parameters are compared. What
+    is planned, what the variant takes away, optional inputs and what nobody can see there are no differences. The first
+    line for each --against says what was looked at. The exit status is 0 where both agree, 1 with errors (with --strict
+    also with warnings), 2 for wrong usage, such as a file that says nothing of a robot.
+    """
+    from archgen.conformance.robot_comparison import ComparedPart
+    from archgen.products import robot_conformance
+
+    _refuse_unknown_rules(rules)
+    checked_project = command_support.check_or_exit(project)
+    for host in hosts:
+        command_support.require_host(checked_project.architecture, host)
+    options = _read_options(checked_project, launch_files, arguments, variables)
+    robots = [_observe_or_exit(path, checked_project, options) for path in paths]
+    command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
+    report = robot_conformance.hold_against_robots(checked_project, robots, ComparedPart(hosts), baseline)
+    findings = [each for each in report.reported.findings if not rules or each.rule in rules]
+    for comparison in report.comparisons:
+        for line in _describe_comparison(comparison):
+            click.echo(make_visible(line), err=form != "text")
+    if form != "text":
+        reported = replace(report.reported, findings=tuple(findings))
+        document = finding_documents.render_findings(form, reported, checked_project, strict=strict)
+        click.echo(document.encode(), nl=False)
+    elif findings:
+        command_support.print_findings(findings, checked_project, sys.stdout)
+    else:
+        click.echo("no differences")
+    if report.reported.known_findings:
+        count = command_support.summarise_counts(report.reported.known_findings)
+        click.echo(make_visible(f"not shown: {count} that {baseline} knows"), err=True)
+    sys.exit(max(command_support.exit_status(findings, strict=strict), int(checked_project.has_errors)))
+
+
+def _refuse_unknown_rules(names: Sequence[str]) -> None:
+    from archgen.conformance.conformance_rules import RULE_NAMES
+    from archgen.diagnostics.suggestions import did_you_mean
+
+    for name in names:
+        if name not in RULE_NAMES:
+            guess = did_you_mean(name, RULE_NAMES) or f"rules are {', '.join(sorted(RULE_NAMES))}"
+            msg = f"no rule of a comparison is called `{name}`; {guess}"
+            raise click.UsageError(make_visible(msg))
+
+
+def _read_options(
+    checked_project: CheckedProject,
+    launch_files: tuple[str, ...],
+    arguments: tuple[str, ...],
+    variables: tuple[str, ...],
+) -> ObservationOptions:
+    from archgen.importers.robot_observation import ObservationOptions
+
+    return ObservationOptions(
+        command_support.split_words(arguments, ":=", "argument", "--argument NAME:=VALUE"),
+        command_support.split_words(variables, "=", "variable of the environment", "--env NAME=VALUE"),
+        launch_files,
+        checked_project.architecture.distro or "",
+    )
+
+
+def _observe_or_exit(path: Path, checked_project: CheckedProject, options: ObservationOptions) -> ObservedRobot:
+    """Read what says how the robot is. What cannot be read is wrong usage: nothing was compared then."""
+    from archgen.importers.foreign_import import ForeignFileError
+    from archgen.importers.robot_observation import observe_robot
+
+    if not path.exists():
+        msg = f"there is no {path}"
+        raise click.UsageError(make_visible(msg))
+    try:
+        with command_support.explain_write_errors():
+            return observe_robot(path, checked_project.root, options)
+    except ForeignFileError as error:
+        place = error.span.file if error.span.file != "." else str(path)
+        msg = f"{place}: {error.message}; {error.help_line}"
+        raise click.UsageError(make_visible(msg)) from None
+
+
+def _describe_comparison(comparison: RobotComparison) -> Iterator[str]:
+    """Yield what was looked at, and what could not be."""
+    robot = comparison.robot
+    parts = [
+        f"{comparison.seen_nodes} of {comparison.nodes} nodes, {comparison.seen_endpoints} of {comparison.endpoints} endpoints seen"
+    ]
+    parts += [f"{comparison.untold} cannot be told"] if comparison.untold else []
+    parts += [f"{comparison.unknown} of its names unknown"]
+    parts += [f"{comparison.compared_parameters} parameters compared"] if comparison.compared_parameters else []
+    yield f"{robot.origin} ({robot.kind}): {'; '.join(parts)}"
+    if comparison.early_nodes:
+        yield f"  planned, and running already: {', '.join(comparison.early_nodes)}"
+    for line in robot.unread[:_MAX_UNREAD]:
+        yield f"  not read: {line}"
+    if len(robot.unread) > _MAX_UNREAD:
+        yield f"  not read: {len(robot.unread) - _MAX_UNREAD} more"

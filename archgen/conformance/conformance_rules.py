@@ -1,0 +1,31 @@
+"""The rules about a robot that exists and its design. No project breaks them by itself: `archgen conform` reports them."""
+
+from __future__ import annotations
+
+from archgen.diagnostics.diagnostic import Rule, Severity
+
+RULES = (
+    Rule(
+        "other-type", Severity.ERROR, "A topic, service or action of the robot has another type than the design says."
+    ),
+    Rule(
+        "other-qos",
+        Severity.ERROR,
+        "The quality of service of the robot is not what the design writes, or no longer fits the other end.",
+    ),
+    Rule(
+        "other-name",
+        Severity.ERROR,
+        "A node of the robot, or what it uses, is there under another name than the design says.",
+    ),
+    Rule(
+        "not-running",
+        Severity.ERROR,
+        "The design has a node, or something that a node uses, which the robot has not.",
+    ),
+    Rule("not-in-model", Severity.WARNING, "The robot has a node, or a node uses something, that the design has not."),
+    Rule("runs-twice", Severity.ERROR, "Two nodes of the robot have the same full name."),
+    Rule("other-parameter", Severity.WARNING, "A parameter of the robot has another value than the design gives it."),
+)
+RULE_NAMES = frozenset(rule.name for rule in RULES)
+"""The names of these rules: a comment that silences one of them silences nothing in a check."""
