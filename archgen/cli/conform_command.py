@@ -32,8 +32,8 @@ _MAX_UNREAD = 10
     metavar="PATH",
     type=click.Path(path_type=Path),
     multiple=True,
-    required=True,
-    help="What says how the robot is: a workspace, or a dump of its running graph. Several may be given.",
+    help="What says how the robot is: a workspace, or a dump of its running graph; several may be given.  "
+    "[default: `conform.against` in the project]",
 )
 @shared_options.variant_option
 @click.option(
@@ -99,13 +99,14 @@ def command(  # noqa: PLR0913 - one for each option
     for host in hosts:
         command_support.require_host(checked_project.architecture, host)
     options = _read_options(checked_project, launch_files, arguments, variables)
-    robots = [_observe_or_exit(path, checked_project, options) for path in paths]
+    robots = [_observe_or_exit(path, checked_project, options) for path in paths or _list_named_paths(checked_project)]
     command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
     report = robot_conformance.hold_against_robots(checked_project, robots, ComparedPart(hosts), baseline)
     findings = [each for each in report.reported.findings if not rules or each.rule in rules]
-    for comparison in report.comparisons:
-        for line in _describe_comparison(comparison):
-            click.echo(make_visible(line), err=form != "text")
+    lines = [line for comparison in report.comparisons for line in _describe_comparison(comparison)]
+    lines += [f"accepted differences: {report.accepted_count}"] if report.accepted_count else []
+    for line in lines:
+        click.echo(make_visible(line), err=form != "text")
     if form != "text":
         reported = replace(report.reported, findings=tuple(findings))
         document = finding_documents.render_findings(form, reported, checked_project, strict=strict)
@@ -131,6 +132,20 @@ def _refuse_unknown_rules(names: Sequence[str]) -> None:
             raise click.UsageError(make_visible(msg))
 
 
+def _list_named_paths(checked_project: CheckedProject) -> list[Path]:
+    """Return the paths that the project names. They lie in its repository: what others wrote is read, and shown in findings."""
+    repository = command_support.find_repository_folder(checked_project.root)
+    paths = [checked_project.root / text for text in checked_project.architecture.conform.against]
+    for path in paths:
+        if not path.resolve().is_relative_to(repository):
+            msg = f"`conform.against` names {path}, which is not in the repository: give it with --against"
+            raise click.UsageError(make_visible(msg))
+    if not paths:
+        msg = "against what? Name a workspace or a dump of a running graph: `--against src`, or `conform: {against: [../src]}`"
+        raise click.UsageError(msg)
+    return [command_support.shorten_path(path) for path in paths]
+
+
 def _read_options(
     checked_project: CheckedProject,
     launch_files: tuple[str, ...],
@@ -142,7 +157,7 @@ def _read_options(
     return ObservationOptions(
         command_support.split_words(arguments, ":=", "argument", "--argument NAME:=VALUE"),
         command_support.split_words(variables, "=", "variable of the environment", "--env NAME=VALUE"),
-        launch_files,
+        launch_files or checked_project.architecture.conform.launch,
         checked_project.architecture.distro or "",
     )
 

@@ -26,6 +26,11 @@ RULES = (
     Rule("not-in-model", Severity.WARNING, "The robot has a node, or a node uses something, that the design has not."),
     Rule("runs-twice", Severity.ERROR, "Two nodes of the robot have the same full name."),
     Rule("other-parameter", Severity.WARNING, "A parameter of the robot has another value than the design gives it."),
+    Rule(
+        "stale-acceptance",
+        Severity.WARNING,
+        "An accepted difference between robot and design is gone, is accepted for longer than was said, or names no rule.",
+    ),
 )
 RULE_NAMES = frozenset(rule.name for rule in RULES)
 """The names of these rules: a comment that silences one of them silences nothing in a check."""

@@ -58,6 +58,8 @@ class RobotComparison:
     unknown: int = 0
     """Ends of the robot whose names only running the program tells."""
     compared_parameters: int = 0
+    accepted: int = 0
+    """How many differences the project accepts."""
     early_nodes: list[str] = field(default_factory=list)
     """Nodes that are planned, and that the robot has already."""
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from pathlib import Path
 
 from archgen.checking.all_rules import index_all_rules
+from archgen.conformance.accepted_differences import apply_acceptances
 from archgen.conformance.conformance_rules import RULE_NAMES
 from archgen.conformance.observed_robot import ObservedRobot
 from archgen.conformance.robot_comparison import ComparedPart, RobotComparison, compare_robot
@@ -13,6 +15,8 @@ from archgen.diagnostics.common_wording import join_words
 from archgen.diagnostics.diagnostic import Diagnostic, settle_diagnostics
 from archgen.findings import ignore_comments
 from archgen.frozen import dataclass, replace
+from archgen.git.tag_list import has_tag
+from archgen.model.architecture import Architecture
 from archgen.pipeline import CheckedProject
 from archgen.products import check_findings
 from archgen.products.check_findings import ReportedFindings
@@ -25,6 +29,8 @@ class ConformanceReport:
     """What was compared, robot by robot, and what is reported of it."""
 
     comparisons: tuple[RobotComparison, ...]
+    accepted_count: int
+    """How many differences the project accepts."""
     reported: ReportedFindings
 
 
@@ -37,10 +43,15 @@ def hold_against_robots(
     """Compare a project with each robot; comments, settings and a baseline silence findings as in a check."""
     variants = (each.architecture for each in checked_project.variants.values())
     part = replace(part, other_nodes=frozenset(node.full_name for each in variants for node in each.nodes.values()))
-    comparisons = tuple(compare_robot(checked_project.architecture, robot, part) for robot in robots)
-    raw_findings = _place_in_project(
-        (finding for comparison in comparisons for finding in comparison.findings), checked_project
+    architecture = checked_project.architecture
+    part = replace(part, ignored=(*part.ignored, *architecture.conform.ignore))
+    comparisons = tuple(compare_robot(architecture, robot, part) for robot in robots)
+    all_findings = [finding for comparison in comparisons for finding in comparison.findings]
+    was_compared = _list_compared(architecture, robots)
+    kept_findings, accepted_count = apply_acceptances(
+        all_findings, architecture.conform.accepted, was_compared, partial(has_tag, checked_project.root)
     )
+    raw_findings = _place_in_project(kept_findings, checked_project)
     loaded_project = checked_project.loaded_project
     ignores = [ignore for file_ignores in loaded_project.ignores.values() for ignore in file_ignores]
     if ignores:
@@ -51,8 +62,20 @@ def hold_against_robots(
     findings = settle_diagnostics(raw_findings, index_all_rules(), loaded_project.rule_settings)
     _quote_robots(findings, checked_project)
     return ConformanceReport(
-        comparisons, check_findings.report_findings(replace(checked_project, findings=findings), baseline_file)
+        comparisons,
+        accepted_count,
+        check_findings.report_findings(replace(checked_project, findings=findings), baseline_file),
     )
+
+
+def _list_compared(architecture: Architecture, robots: Sequence[ObservedRobot]) -> Callable[[str], bool]:
+    """Return what says of an element whether something was seen of it: of its node, or of one that implements it."""
+    seen = {node.full_name for robot in robots for node in robot.nodes if node.has_known_uses}
+    compared = set(seen)
+    for node in architecture.nodes.values():
+        if node.full_name in seen:
+            compared |= {node.id, *node.implements}
+    return lambda element: element in compared or element.rpartition(".")[0] in compared
 
 
 def _place_in_project(findings: Iterable[Diagnostic], checked_project: CheckedProject) -> list[Diagnostic]:

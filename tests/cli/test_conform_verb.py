@@ -93,7 +93,7 @@ def test_wrong_usage_says_what_to_do(run: Run) -> None:
         ("--against", "folder"): "it is nothing that says how a robot is",
         ("--against", "empty.txt", "--host", "bas"): "did you mean `base`?",
         ("--against", "empty.txt", "--only", "other-typ"): "did you mean `other-type`?",
-        (): "Missing option '--against'",
+        (): "against what? Name a workspace",
     }.items():
         done = run("conform", "rover", *words)
         assert done.status == 2
