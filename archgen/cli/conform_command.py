@@ -32,7 +32,7 @@ _MAX_UNREAD = 10
     metavar="PATH",
     type=click.Path(path_type=Path),
     multiple=True,
-    help="What says how the robot is: a workspace, or a dump of its running graph; several may be given.  "
+    help="What says how the robot is: a workspace, a dump of its running graph, a recording; several may be given.  "
     "[default: `conform.against` in the project]",
 )
 @shared_options.variant_option
@@ -86,7 +86,8 @@ def command(  # noqa: PLR0913 - one for each option
 ) -> None:
     """Hold PROJECT against the robot that exists, and show where both differ.
 
-    Nodes, what they publish, subscribe to, serve and call, types, quality of service and parameters are compared. What
+    Nodes, what they publish, subscribe to, serve and call, types, quality of service and parameters are compared; of
+    recordings types, what was offered, and what outputs promise. What
     is planned, what the variant takes away, optional inputs and what nobody can see there are no differences. The first
     line for each --against says what was looked at. The exit status is 0 where both agree, 1 with errors (with --strict
     also with warnings), 2 for wrong usage, such as a file that says nothing of a robot.
@@ -141,7 +142,7 @@ def _list_named_paths(checked_project: CheckedProject) -> list[Path]:
             msg = f"`conform.against` names {path}, which is not in the repository: give it with --against"
             raise click.UsageError(make_visible(msg))
     if not paths:
-        msg = "against what? Name a workspace or a dump of a running graph: `--against src`, or `conform: {against: [../src]}`"
+        msg = "against what? Name a workspace, a dump of a running graph or a recording: `--against src`, or `conform: {against: [../src]}`"
         raise click.UsageError(msg)
     return [command_support.shorten_path(path) for path in paths]
 
@@ -182,6 +183,12 @@ def _observe_or_exit(path: Path, checked_project: CheckedProject, options: Obser
 def _describe_comparison(comparison: RobotComparison) -> Iterator[str]:
     """Yield what was looked at, and what could not be."""
     robot = comparison.robot
+    if robot.kind == "recording":
+        count = sum(topic.count for topic in robot.topics)
+        topics = f"{comparison.seen_endpoints} of {comparison.endpoints} topics of the design"
+        yield f"{robot.origin} (recording): {topics}; {count:,} messages of {len(robot.topics)} topics"
+        yield from _list_unread(robot)
+        return
     parts = [
         f"{comparison.seen_nodes} of {comparison.nodes} nodes, {comparison.seen_endpoints} of {comparison.endpoints} endpoints seen"
     ]
@@ -191,6 +198,10 @@ def _describe_comparison(comparison: RobotComparison) -> Iterator[str]:
     yield f"{robot.origin} ({robot.kind}): {'; '.join(parts)}"
     if comparison.early_nodes:
         yield f"  planned, and running already: {', '.join(comparison.early_nodes)}"
+    yield from _list_unread(robot)
+
+
+def _list_unread(robot: ObservedRobot) -> Iterator[str]:
     for line in robot.unread[:_MAX_UNREAD]:
         yield f"  not read: {line}"
     if len(robot.unread) > _MAX_UNREAD:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from archgen.diagnostics.diagnostic import Rule, Severity
+from archgen.diagnostics.rule_options import RuleOption
 
 RULES = (
     Rule(
@@ -25,6 +26,38 @@ RULES = (
     ),
     Rule("not-in-model", Severity.WARNING, "The robot has a node, or a node uses something, that the design has not."),
     Rule("runs-twice", Severity.ERROR, "Two nodes of the robot have the same full name."),
+    Rule(
+        "not-latched",
+        Severity.ERROR,
+        "A publisher keeps nothing for those who come late, although the design says so (`durability: transient_local`).",
+    ),
+    Rule(
+        "rate-below-promise",
+        Severity.ERROR,
+        "Messages were recorded at a lower rate than the output promises.",
+        options=(RuleOption("margin", 10, 0, 90, "The share by which the measured rate may be lower."),),
+    ),
+    Rule(
+        "gap-above-promise",
+        Severity.ERROR,
+        "Between two recorded messages lay more time than the output promises.",
+        options=(RuleOption("margin", 10, 0, 900, "The share by which the measured gap may be longer."),),
+    ),
+    Rule(
+        "late-first-message",
+        Severity.WARNING,
+        "The first message came later after the beginning of the recording than the longest gap that the output promises.",
+        options=(RuleOption("margin", 10, 0, 900, "The share by which that time may be longer."),),
+    ),
+    Rule(
+        "larger-than-modelled",
+        Severity.WARNING,
+        "A recorded message is larger than the size of its type in the model.",
+        options=(RuleOption("margin", 10, 0, 900, "The share by which a message may be larger."),),
+    ),
+    Rule(
+        "other-frame", Severity.ERROR, "Recorded messages are given in another coordinate frame than the design says."
+    ),
     Rule("other-parameter", Severity.WARNING, "A parameter of the robot has another value than the design gives it."),
     Rule(
         "stale-acceptance",

@@ -92,7 +92,7 @@ class EndpointComparer:
         unnamed = [each for each in designed if each.name is None]
         comparison.findings += (self._report_strange(nodes[0], seen, unnamed) for seen in strange)
         for pair in comparison.pairs:
-            comparison.findings += _compare_types(nodes[0], pair, self._robot.where)
+            comparison.findings += compare_types(nodes[0], pair, self._robot.where)
         return comparison
 
     def _match(
@@ -200,7 +200,9 @@ class EndpointComparer:
         help_line = f"write `qos: {{{policy}: {observed.strip('`')}}}`, or change the program"
         labels = (Label(seen.at, f"it {_VERBS_OF_ONE[endpoint.use]} it like this"),)
         place = first_written_span(endpoint.qos.at, endpoint.at)
-        return Diagnostic("other-qos", message, place, None, labels, help_line, endpoint.port or endpoint.node)
+        is_latched = (policy, endpoint.use, endpoint.qos.durability) == ("durability", "publishes", "transient_local")
+        rule = "not-latched" if is_latched else "other-qos"
+        return Diagnostic(rule, message, place, None, labels, help_line, endpoint.port or endpoint.node)
 
     def _report_misfits(self, pair: EndpointPair, others: Iterable[EndpointPair]) -> Iterator[Diagnostic]:
         """Yield where an end of which the design writes nothing no longer fits another one of its topic."""
@@ -278,7 +280,8 @@ def _write_name(seen: ObservedEndpoint) -> str:
     return f"{'topic' if seen.flow == 'topic' else 'name'}: {seen.name}"
 
 
-def _compare_types(node: Node, pair: EndpointPair, where: str) -> Iterator[Diagnostic]:
+def compare_types(node: Node, pair: EndpointPair, where: str) -> Iterator[Diagnostic]:
+    """Yield where both sides know a type and have not the same."""
     endpoint, seen = pair
     if None in {endpoint.message, seen.message} or endpoint.message == seen.message:
         return

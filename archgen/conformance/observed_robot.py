@@ -47,6 +47,28 @@ class ObservedNode:
 
 
 @dataclass(frozen=True, slots=True)
+class RecordedTopic:
+    """The messages of one topic. Times are in ns and sizes in bytes; what only the messages themselves tell may be None."""
+
+    name: str
+    message: str | None
+    count: int
+    duration: int
+    """From its first message to its last; where only the whole recording is known, its duration."""
+    is_own_duration: bool
+    """Whether `duration` is that of the topic itself."""
+    delay: int | None = None
+    """From the beginning of the recording to its first message."""
+    longest_gap: int | None = None
+    largest_size: int | None = None
+    frames: tuple[str, ...] | None = None
+    """The `frame_id`s of its headers; None where its messages have none in front, or nobody looked."""
+    qos: Mapping[str, Any] = field(default_factory=dict)
+    """What its publishers offered: policies that are the same for all of them."""
+    at: Span = field(default=NO_SPAN, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
 class ObservedRobot:
     """All that one workspace, graph or recording says. `origin` is what people call it: its path as it was given."""
 
@@ -54,6 +76,7 @@ class ObservedRobot:
     kind: ObservationKind
     nodes: tuple[ObservedNode, ...] = ()
     endpoints: tuple[ObservedEndpoint, ...] = ()
+    topics: tuple[RecordedTopic, ...] = ()
     unseen_uses: frozenset[UseKind] = frozenset()
     """What it cannot tell of any node: the master of ROS 1 knows no clients of services."""
     has_all_parameters: bool = False

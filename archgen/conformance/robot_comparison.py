@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from types import MappingProxyType
 
 from archgen.conformance.endpoint_comparison import EndpointComparer, EndpointPair
 from archgen.conformance.observed_robot import ObservedNode, ObservedRobot
+from archgen.conformance.recording_comparison import RecordingComparer
 from archgen.derivation.wire.running_state import RunningStates, is_filled_in
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics.rule_options import OptionValues
 from archgen.diagnostics.source_span import Span, first_written_span
 from archgen.frozen import dataclass, field
 from archgen.model.architecture import Architecture
@@ -64,8 +67,21 @@ class RobotComparison:
     """Nodes that are planned, and that the robot has already."""
 
 
-def compare_robot(architecture: Architecture, robot: ObservedRobot, part: ComparedPart) -> RobotComparison:
-    """Hold a robot against the design. What may differ by design is no finding, nor is what the robot's side cannot tell."""
+def compare_robot(
+    architecture: Architecture,
+    robot: ObservedRobot,
+    part: ComparedPart,
+    options: Mapping[str, OptionValues] = MappingProxyType({}),
+) -> RobotComparison:
+    """Hold a robot against the design. What may differ by design is no finding, nor is what the robot's side cannot tell.
+
+    `options` are those that the project sets, by rule.
+    """
+    if robot.kind == "recording":
+        recording = RecordingComparer(architecture, robot, options)
+        result = RobotComparison(robot, [*recording.compare_topics()])
+        result.endpoints, result.seen_endpoints = recording.count_expected(), recording.count_recorded()
+        return result
     return _Comparer(architecture, robot, part).compare()
 
 

@@ -47,4 +47,9 @@ def _move_places(robot: ObservedRobot, folder: str) -> ObservedRobot:
         file = Path(os.path.normpath(os.path.join(folder, element.at.file))).as_posix()  # noqa: PTH118 - `..` stays
         return replace(element, at=element.at._replace(file=file))
 
-    return replace(robot, nodes=tuple(map(move, robot.nodes)), endpoints=tuple(map(move, robot.endpoints)))
+    return replace(
+        robot,
+        nodes=tuple(map(move, robot.nodes)),
+        endpoints=tuple(map(move, robot.endpoints)),
+        topics=tuple(map(move, robot.topics)),
+    )

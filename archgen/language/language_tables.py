@@ -62,10 +62,19 @@ KEYS: Mapping[str, Mapping[str, str]] = {
         "distro": "ros.distro", "interfaces": "files", "shared_topics": "shared_topics", "parameters": "ros_parameters",
         "environment": "start_environment", "definitions": "definitions", "parameter_texts": "parameter_texts",
     },
+    "rules.gap-above-promise": {
+        "severity": "severity", "margin": "percentage",
+    },
     "rules.large-jitter": {
         "severity": "severity", "limit": "percentage",
     },
+    "rules.larger-than-modelled": {
+        "severity": "severity", "margin": "percentage",
+    },
     "rules.late-chain": {
+        "severity": "severity", "margin": "percentage",
+    },
+    "rules.late-first-message": {
         "severity": "severity", "margin": "percentage",
     },
     "rules.long-execution": {
@@ -79,6 +88,9 @@ KEYS: Mapping[str, Mapping[str, str]] = {
     },
     "rules.period-conflict": {
         "severity": "severity", "tolerance": "percentage",
+    },
+    "rules.rate-below-promise": {
+        "severity": "severity", "margin": "percentage",
     },
     "rules.saturated-link": {
         "severity": "severity", "limit": "percentage",
@@ -96,9 +108,11 @@ KEYS: Mapping[str, Mapping[str, str]] = {
         "severity": "severity",
     },
     "rules": {
-        "large-jitter": "rules.large-jitter", "late-chain": "rules.late-chain",
-        "long-execution": "rules.long-execution", "lost-samples": "rules.lost-samples",
-        "overloaded-host": "rules.overloaded-host", "period-conflict": "rules.period-conflict",
+        "gap-above-promise": "rules.gap-above-promise", "large-jitter": "rules.large-jitter",
+        "larger-than-modelled": "rules.larger-than-modelled", "late-chain": "rules.late-chain",
+        "late-first-message": "rules.late-first-message", "long-execution": "rules.long-execution",
+        "lost-samples": "rules.lost-samples", "overloaded-host": "rules.overloaded-host",
+        "period-conflict": "rules.period-conflict", "rate-below-promise": "rules.rate-below-promise",
         "saturated-link": "rules.saturated-link", "short-queue": "rules.short-queue",
         "slow-component": "rules.slow-component", "slow-service": "rules.slow-service",
     },

@@ -1,6 +1,6 @@
 """For importers: what they return, reading files within limits, ids and titles, trees of YAML and XML with their places."""
 
-from archgen.conformance.observed_robot import ObservedEndpoint, ObservedNode, ObservedRobot
+from archgen.conformance.observed_robot import ObservedEndpoint, ObservedNode, ObservedRobot, RecordedTopic
 from archgen.diagnostics.source_span import NO_SPAN, SourceTexts, Span
 from archgen.diagnostics.suggestions import find_closest
 from archgen.importers.foreign_files import (
@@ -57,6 +57,7 @@ __all__ = [
     "ObservedNode",
     "ObservedRobot",
     "ReadRecordings",
+    "RecordedTopic",
     "RecordingRefusedError",
     "ScalarNode",
     "SequenceNode",

@@ -45,7 +45,7 @@ def hold_against_robots(
     part = replace(part, other_nodes=frozenset(node.full_name for each in variants for node in each.nodes.values()))
     architecture = checked_project.architecture
     part = replace(part, ignored=(*part.ignored, *architecture.conform.ignore))
-    comparisons = tuple(compare_robot(architecture, robot, part) for robot in robots)
+    comparisons = tuple(compare_robot(architecture, robot, part, checked_project.rule_options) for robot in robots)
     all_findings = [finding for comparison in comparisons for finding in comparison.findings]
     was_compared = _list_compared(architecture, robots)
     kept_findings, accepted_count = apply_acceptances(

@@ -62,7 +62,15 @@ def observe_graph(path: Path, _options: ObservationOptions) -> ObservedRobot | N
     endpoints = tuple(each for node in graph.nodes.values() for each in _list_endpoints(graph, node))
     unseen: frozenset[UseKind] = frozenset({"calls"} if is_ros_1 else ())
     unread = tuple(f"{note.span}: {note.message}" for note in graph.notes if note.fate == "not taken")
-    return ObservedRobot(str(path), "graph", nodes, endpoints, unseen, has_all_parameters=not is_ros_1, unread=unread)
+    return ObservedRobot(
+        str(path),
+        "graph",
+        nodes,
+        endpoints,
+        unseen_uses=unseen,
+        has_all_parameters=not is_ros_1,
+        unread=unread,
+    )
 
 
 def _list_endpoints(graph: RunningGraph, node: RunningNode) -> Iterator[ObservedEndpoint]:
