@@ -35,6 +35,12 @@ _MAX_UNREAD = 10
     help="What says how the robot is: a workspace, a dump of its running graph, a recording; several may be given.  "
     "[default: `conform.against` in the project]",
 )
+@click.option(
+    "--recorder",
+    "wants_recorder",
+    is_flag=True,
+    help="Print a program for the robot: `python3 recorder.py > graph.txt` there, for ROS 1 and ROS 2.",
+)
 @shared_options.variant_option
 @click.option(
     "--host", "hosts", metavar="HOST", multiple=True, help="Expect only the nodes of this host; may be repeated."
@@ -83,6 +89,7 @@ def command(  # noqa: PLR0913 - one for each option
     form: str,
     strict: bool,
     baseline: Path | None,
+    wants_recorder: bool,
 ) -> None:
     """Hold PROJECT against the robot that exists, and show where both differ.
 
@@ -92,6 +99,11 @@ def command(  # noqa: PLR0913 - one for each option
     line for each --against says what was looked at. The exit status is 0 where both agree, 1 with errors (with --strict
     also with warnings), 2 for wrong usage, such as a file that says nothing of a robot.
     """
+    if wants_recorder:
+        from archgen.installed_plugins import load_reader
+
+        click.echo(load_reader("the recorder of graphs")().encode(), nl=False)
+        return
     from archgen.conformance.robot_comparison import ComparedPart
     from archgen.products import robot_conformance
 

@@ -49,6 +49,7 @@ PLUGIN = {
             "reader": "archgen.plugins.ros.running_graph.graph_import:read_ros_1_graph",
         },
     },
+    "readers": {"the recorder of graphs": "archgen.plugins.ros.running_graph.graph_observation:read_recorder"},
     "observers": {
         "workspace": {
             "rank": 1,

@@ -73,6 +73,11 @@ def observe_graph(path: Path, _options: ObservationOptions) -> ObservedRobot | N
     )
 
 
+def read_recorder() -> str:
+    """Return the program that records the graph of a running robot: a file that needs nothing of archgen."""
+    return Path(__file__).with_name("graph_recorder.py").read_text(encoding="utf-8")
+
+
 def _list_endpoints(graph: RunningGraph, node: RunningNode) -> Iterator[ObservedEndpoint]:
     for use in USES:
         for name, own_message in node.uses[use].items():
