@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from archgen.cli import command_support, finding_documents, shared_options
+from archgen.diagnostics.common_wording import fit_lines, join_first
 from archgen.diagnostics.diagnostic import Severity
 from archgen.diagnostics.safe_text import make_visible
 from archgen.frozen import replace
@@ -209,12 +210,10 @@ def _describe_comparison(comparison: RobotComparison) -> Iterator[str]:
     parts += [f"{comparison.compared_parameters} parameters compared"] if comparison.compared_parameters else []
     yield f"{robot.origin} ({robot.kind}): {'; '.join(parts)}"
     if comparison.early_nodes:
-        yield f"  planned, and running already: {', '.join(comparison.early_nodes)}"
+        yield f"  planned, and running already: {join_first(comparison.early_nodes)}"
     yield from _list_unread(robot)
 
 
 def _list_unread(robot: ObservedRobot) -> Iterator[str]:
-    for line in robot.unread[:_MAX_UNREAD]:
+    for line in fit_lines(robot.unread, _MAX_UNREAD):
         yield f"  not read: {line}"
-    if len(robot.unread) > _MAX_UNREAD:
-        yield f"  not read: {len(robot.unread) - _MAX_UNREAD} more"
