@@ -107,6 +107,11 @@ class EndpointComparer:
         for endpoint in designed:
             key = (endpoint.use, endpoint.flow, endpoint.name)
             seen = by_name.get(key)
+            if seen is None and endpoint.flow == "action":
+                # Of one without a type nobody can tell whether it is a service or an action.
+                key = (endpoint.use, "service", endpoint.name)
+                untyped = by_name.get(key)
+                seen = untyped if untyped is not None and untyped.message is None else None
             if seen is not None:
                 met.add(key)
                 pairs.append(EndpointPair(endpoint, seen))

@@ -11,6 +11,7 @@ from pathlib import Path, PurePosixPath
 
 from archgen.conformance.robot_comparison import ComparedPart
 from archgen.diagnostics.diagnostic import Diagnostic
+from archgen.diagnostics.source_span import Span
 from archgen.frozen import dataclass, replace
 from archgen.git.object_reader import GitObjects
 from archgen.importers.foreign_import import ForeignFileError
@@ -53,7 +54,10 @@ def find_new_differences(
     for text in settings.against:
         path = posixpath.normpath(posixpath.join(folder, text))
         workspace = new_project.root / text
-        if path.startswith(("..", "/")) or not workspace.is_dir():
+        # A link of the branch may lead to anywhere on the machine that judges it.
+        is_inside = workspace.resolve().is_relative_to(objects.repository.top.resolve())
+        if path.startswith(("..", "/")) or not is_inside or not workspace.is_dir():
+            obstacles.append(f"{text} is not held against the model: it is no folder of this repository")
             continue
         options = ObservationOptions(launch_files=settings.launch, distro=old_project.architecture.distro or "")
         try:
@@ -83,8 +87,6 @@ def _find_differences(
 
 def _write_out(objects: GitObjects, commit: str, prefix: str, folder: Path) -> None:
     """Write the files of a commit below a folder that readers of workspaces look at. Raise ForeignFileError for too many."""
-    from archgen.diagnostics.source_span import Span
-
     folder.mkdir()
     count = total = 0
     for name, entry in (objects.list_tree(commit, prefix) or {}).items():
@@ -104,5 +106,9 @@ def _write_out(objects: GitObjects, commit: str, prefix: str, folder: Path) -> N
                 words, Span.of_file(prefix or "."), "name a folder that holds less in `conform.against`"
             )
         target = folder / path
-        target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_bytes(objects.read_blob(entry.object_id) or b"")
+        try:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_bytes(objects.read_blob(entry.object_id) or b"")
+        except OSError as error:  # a file that is called as a folder, in a tree that somebody made by hand
+            words = f"`{name}` of {commit[:10]} cannot be written: {error.strerror or error}"
+            raise ForeignFileError(words, Span.of_file(prefix or "."), "look at it with `git fsck`") from None

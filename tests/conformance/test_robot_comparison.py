@@ -309,6 +309,14 @@ def test_a_dump_without_uses_says_nothing_about_them(rover: CheckedProject) -> N
     assert (report.comparisons[0].seen_endpoints, report.comparisons[0].untold) == (0, 11)
 
 
+def test_an_action_whose_type_a_dump_does_not_say_is_seen(rover: CheckedProject) -> None:
+    graph = print_graph(rover.architecture).replace("    /drive: nav2_msgs/action/NavigateToPose\n", "")
+    graph += "$ ros2 action info /drive\nAction: /drive\nAction clients: 1\n    /arm\nAction servers: 1\n    /planner\n"
+    report = compare_with_graph(rover, graph)
+    assert show_findings(report.reported.findings) == []
+    assert report.comparisons[0].seen_endpoints == 12
+
+
 def test_a_large_graph_is_quick(tmp_path: Path) -> None:
     """200 nodes beside a check: far below a second."""
     parts = [f"      c{n}: {{inputs: {{i: c{n - 1}.o}}, outputs: {{o: std_msgs/msg/String}}}}" for n in range(1, 200)]

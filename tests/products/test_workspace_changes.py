@@ -85,3 +85,12 @@ def test_a_workspace_that_is_too_large_is_said(robot: Path, run: Run, monkeypatc
     monkeypatch.setattr(workspace_changes, "_MAX_FILES", 3)
     commit(robot, {"README.md": "y"})
     assert "warning: ../src is not held against the model: src: it holds more than 3 files, or 200 MB" in review(run)[1]
+
+
+def test_a_link_of_the_branch_leads_nowhere_else(robot: Path, run: Run, tmp_path: Path) -> None:
+    """What lies outside of the repository is not read, whatever the branch makes of its folder of sources."""
+    (robot / "src").rename(tmp_path / "elsewhere")
+    (robot / "src").symlink_to(tmp_path / "elsewhere")
+    git(robot, "add", "-A")
+    git(robot, "commit", "-q", "-m", "x")
+    assert "warning: ../src is not held against the model: it is no folder of this repository" in review(run)[1]
