@@ -8,18 +8,25 @@ from pathlib import Path
 import pytest
 
 from archgen import resources
+from archgen.conformance.robot_comparison import ComparedPart
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.findings import rule_pages
 from archgen.findings.rule_table import COMPARISON_RULES, FAILED_RULE, index_rules
+from archgen.importers.robot_observation import ObservationOptions, observe_robot
 from archgen.pipeline import SHIPPED_RULES, check_project, check_text
+from archgen.products.robot_conformance import hold_against_robots
 from archgen.views.generation.architecture_needs import GENERATION_RULES
+from tests.plugins.recordings.test_bag_observation import Recorded, make_scan, write_topics
 from tests.repositories import repository
 
 _LOUD = {Severity.ERROR, Severity.WARNING}
 
 
 def _judge(example: str, folder: Path) -> tuple[Diagnostic, ...]:
-    """Judge an example: one file, or several that begin with a line `# file: NAME`, or one of a commit of some day."""
+    """Judge an example: one file, or several that begin with a line `# file: NAME`, or one of a commit of some day.
+
+    With a graph or the messages of a recording among them, the project is held against that robot, too.
+    """
     if example.startswith("# committed on "):
         day = example.partition("\n")[0].removeprefix("# committed on ")
         repository(folder, {"archgen.yaml": example}, day=day)
@@ -30,7 +37,22 @@ def _judge(example: str, folder: Path) -> tuple[Diagnostic, ...]:
     for name, text in zip(parts[1::2], parts[2::2], strict=True):
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(text, encoding="utf-8")
-    return check_project(folder).findings
+    checked = check_project(folder)
+    graph, messages = folder / "graph.txt", folder / "messages.txt"
+    sources = [graph] if graph.exists() else [write_bag(messages)] if messages.exists() else []
+    robots = [observe_robot(source, folder, ObservationOptions(distro="jazzy")) for source in sources]
+    return (*checked.findings, *hold_against_robots(checked, robots, ComparedPart()).reported.findings)
+
+
+def write_bag(messages: Path) -> Path:
+    """Write a recording whose messages are told a line a topic: `/scan TYPE frame laser, 500 B, at 0 100 200 ms`."""
+    recorded = [
+        Recorded(topic, message, [int(time) for time in times.split()], make_scan(frame, int(size)))
+        for topic, message, frame, size, times in re.findall(
+            r"(/\S+) (\S+) frame (\w+), (\d+) B, at ([\d ]+) ms", messages.read_text(encoding="utf-8")
+        )
+    ]
+    return write_topics(messages.parent / "bag", recorded)
 
 
 def _shown(diagnostics: tuple[Diagnostic, ...]) -> list[str]:

@@ -27,6 +27,7 @@ CAPABILITIES: Mapping[str, tuple[str, ...]] = {
     "rules and findings": ("analyses", "findings"),
     "timing, with its tables and printing": ("timing", "views/timing", "emit/terminal/timing_", "views/timing_"),
     "simulation of timing": ("simulation",),
+    "robots that exist, held against the design": ("conformance",),
     "comparison, review, merging, history": ("compare", "merge", "history", "views/changes", "views/agreement"),
     "importers, what plug-ins may use": ("importers", "plugin", "plugins/__init__.py", "installed_plugins.py"),
     "views and workspaces of generators": ("views/generation", "emit/workspace", "installed_backends.py"),

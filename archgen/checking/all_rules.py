@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from functools import cache
 
-from archgen import analyses, compose, findings, link, project, schema
+from archgen import analyses, compose, conformance, findings, link, project, schema
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.findings import rule_table
 from archgen.findings.rule_table import FAILED_RULE
@@ -19,6 +19,7 @@ SHIPPED_RULES: tuple[Rule, ...] = (
     *compose.RULES,
     *link.RULES,
     *analyses.RULES,
+    *conformance.RULES,
     *findings.RULES,
 )
 """The rules that ship, in the order in which the stages run."""

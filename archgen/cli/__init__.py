@@ -8,6 +8,7 @@ import click
 
 VERBS = {
     "check": "Find mistakes in the architecture.",
+    "conform": "Hold the project against the robot: its workspace, its running graph, recordings.",
     "build": "Make everything: report, site, diagrams, packed file.",
     "report": "Write the Word report.",
     "site": "Write the static web site.",

@@ -307,6 +307,28 @@ def make_progress_printer(label: str = "drawing") -> Callable[[int, int], None] 
     return show_progress
 
 
+def find_repository_folder(folder: Path, default: Path | None = None) -> Path:
+    """Return the folder of the repository around a folder, else the default, else the folder itself."""
+    resolved = folder.resolve()
+    # lexists: in a worktree or submodule `.git` is a file.
+    found = (each for each in (resolved, *resolved.parents) if os.path.lexists(each / ".git"))
+    return next(found, default or resolved)
+
+
+def split_words(words: Iterable[str], joint: str, what: str, example: str) -> dict[str, str]:
+    """Return words such as `NAME=VALUE` by their names. Raise UsageError for one that is none, with an example."""
+    from archgen.diagnostics.safe_text import make_visible
+
+    pairs = {}
+    for word in words:
+        name, found, value = word.partition(joint)
+        if not name or not found:
+            msg = f"`{word}` is no {what}: write `{example}`"
+            raise click.UsageError(make_visible(msg))
+        pairs[name] = value
+    return pairs
+
+
 def require_host(architecture: Architecture, host: str) -> None:
     """Raise UsageError where a project has no host of this id."""
     from archgen.diagnostics.safe_text import make_visible

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from archgen import __version__
+from archgen.cli import command_support
 
 if TYPE_CHECKING:
     from archgen.pipeline import CheckedProject
@@ -55,7 +56,6 @@ def folder_in_repository(root: Path) -> str:
     """
     resolved = root.resolve()
     workspace = os.environ.get("GITHUB_WORKSPACE")
-    # lexists: in a worktree or submodule `.git` is a file.
-    repository_folders = (folder for folder in (resolved, *resolved.parents) if os.path.lexists(folder / ".git"))
-    repository_root = Path(workspace).resolve() if workspace else next(repository_folders, Path.cwd().resolve())
+    found = command_support.find_repository_folder(resolved, Path.cwd().resolve())
+    repository_root = Path(workspace).resolve() if workspace else found
     return resolved.relative_to(repository_root).as_posix() if resolved.is_relative_to(repository_root) else ""

@@ -100,7 +100,9 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
         raise click.UsageError(make_visible(msg))
     given: dict[str, Any] = {"arguments": arguments} if import_format.takes_arguments else {}
     if import_format.takes_environment:
-        given["environment"] = _read_variables(variables)
+        given["environment"] = command_support.split_words(
+            variables, "=", "variable of the environment", "--env NAME=VALUE"
+        )
     else:
         _refuse_options(import_format, {"--env": variables})
     if import_format.takes_launch_files:
@@ -123,15 +125,6 @@ def command(  # noqa: PLR0913, PLR0917 - one for each option
     words = (*(f"{name}:={value}" for name, value in arguments.items()), *launch_files, *variables)
     mode: _Mode = "check" if checks else "dry-run" if dry_run else "write"
     _import_slices(import_format, files, given, words, target, form, merge=merge or checks, mode=mode)
-
-
-def _read_variables(words: Sequence[str]) -> dict[str, str]:
-    pairs = [word.partition("=") for word in words]
-    wrong = next((word for word, (name, joint, _) in zip(words, pairs, strict=True) if not name or not joint), None)
-    if wrong is not None:
-        msg = f"`{wrong}` is no variable of the environment: write `--env NAME=VALUE`"
-        raise click.UsageError(make_visible(msg))
-    return {name: value for name, _, value in pairs}
 
 
 def _take_arguments(words: Sequence[str]) -> tuple[list[str], dict[str, str]]:

@@ -109,7 +109,9 @@ def command(  # noqa: PLR0913 - one for each option
         _write_findings(reported, checked_project, target, strict=strict)
         _print_review_findings(reported, checked_project, strict=strict)
         raise
-    breaks = change.breaks if change else ()
+    breaks = (*change.breaks, *change.code.differences) if change else ()
+    for obstacle in change.code.obstacles if change else ():
+        command_support.print_warning(obstacle)
     whole_report = replace(reported, findings=(*breaks, *reported.findings))
     _print_review(change if not all_findings else None, whole_report, checked_project, baseline, strict=strict)
     if change and (obstacle := describe_obstacle(change.comparison)):
@@ -209,11 +211,13 @@ def _write_document(path: Path, document: str | bytes) -> None:
 
 def _write_comparison(change: ReviewedChange, target: Path) -> None:
     """Write what changed, for people, programs and the job's summary."""
+    from archgen.emit.markdown.comparison_markdown import add_code_differences
     from archgen.products import comparison_documents
     from archgen.products.output_options import OutputOptions
 
     compared = (change.comparison, change.old_version, change.new_version)
     comment = comparison_documents.render_comparison_markdown(*compared, change.command)
+    comment = add_code_differences(comment, change.code.differences)
     _write_document(target / "comment.md", comment)
     _write_document(target / "diff.json", comparison_documents.render_comparison_json(*compared))
     options = OutputOptions(warn=command_support.print_warning)
@@ -312,6 +316,7 @@ def _choose_shown(
     failing_findings = [finding for finding in report.findings if command_support.exit_status([finding], strict=strict)]
     shown_findings = (
         *change.breaks,
+        *change.code.differences,
         *sort_gravest_first(new_report.findings),
         *sort_gravest_first(failing_findings),
     )

@@ -6,6 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Protocol
 
+from archgen.conformance.conformance_rules import RULE_NAMES as ROBOT_RULES
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import did_you_mean
@@ -100,7 +101,8 @@ def _check_ignore(
     elif rule.fixed:
         message = f"`{name}` cannot be ignored: what comes after reading and linking rests on it"
         yield Diagnostic("unused-ignore", message, ignore.span, help="mend what it reports, and take the comment out")
-    elif not is_used:
+    elif not is_used and name not in ROBOT_RULES:
+        # Whether a robot has what the comment silences, `archgen conform` alone knows.
         message = f"nothing here is `{name}`"
         help_text = "take it out, or put it at the end of the line that the finding points at"
         yield Diagnostic("unused-ignore", message, ignore.span, help=help_text)

@@ -23,6 +23,11 @@ class NamedTag:
     commit: str
 
 
+def has_tag(folder: Path, name: str) -> bool:
+    """Whether the repository around a folder has a tag of this name; not outside of one."""
+    return not run_git(folder, "rev-parse", "--quiet", "--verify", f"refs/tags/{name}").status
+
+
 def list_tags_below(folder: Path, prefixes: Iterable[str]) -> tuple[NamedTag, ...]:
     """Return the tags below any of these prefixes (`signed/a-b`) that lie in the history of HEAD, newest first.
 

@@ -12,18 +12,19 @@ from typing import Literal
 
 KindName = Literal[
     "slice", "project", "partner", "agreement", "interface_terms", "agreed_terms", "signature", "ros", "rules",
-    "layout", "report", "review", "accepted", "accepted_key", "site", "variant", "variant_changes", "library",
-    "use_case", "actor", "step", "requirement", "property_declaration", "view", "group", "component", "component_type",
-    "component_node", "input", "output", "type_input", "performance", "indicator", "operation", "parameter",
-    "parameter_declaration", "type", "field", "constant", "frame", "promise", "deprecation", "node", "internal",
-    "topic_use", "call_use", "qos", "host", "host_scheduling", "fair_scheduling", "container", "resource", "link",
-    "start", "start_ready", "policy", "require", "forbid", "timing", "timing_input", "timing_output", "timing_use",
-    "trigger", "execution_time", "latency", "chain",
+    "layout", "report", "review", "accepted", "accepted_key", "conform", "accepted_difference", "site", "variant",
+    "variant_changes", "library", "use_case", "actor", "step", "requirement", "property_declaration", "view", "group",
+    "component", "component_type", "component_node", "input", "output", "type_input", "performance", "indicator",
+    "operation", "parameter", "parameter_declaration", "type", "field", "constant", "frame", "promise", "deprecation",
+    "node", "internal", "topic_use", "call_use", "qos", "host", "host_scheduling", "fair_scheduling", "container",
+    "resource", "link", "start", "start_ready", "policy", "require", "forbid", "timing", "timing_input",
+    "timing_output", "timing_use", "trigger", "execution_time", "latency", "chain",
 ]
 SectionName = Literal[
     "archgen", "project", "sources", "partners", "agreements", "ros", "rules", "layout", "report", "use_cases",
     "requirements", "properties", "glossary", "component_types", "libraries", "groups", "nodes", "types", "hosts",
-    "containers", "resources", "links", "frames", "chains", "views", "policies", "review", "site", "variants",
+    "containers", "resources", "links", "frames", "chains", "views", "policies", "review", "conform", "site",
+    "variants",
 ]
 
 KEYS: Mapping[str, Mapping[str, str]] = {
@@ -34,7 +35,7 @@ KEYS: Mapping[str, Mapping[str, str]] = {
         "glossary": "glossary", "component_types": "component_types", "libraries": "libraries", "groups": "groups",
         "nodes": "nodes", "types": "types", "hosts": "hosts", "containers": "containers", "resources": "resources",
         "links": "links", "frames": "frames", "chains": "chains", "views": "views", "policies": "policies",
-        "review": "review", "site": "site", "variants": "variants",
+        "review": "review", "conform": "conform", "site": "site", "variants": "variants",
     },
     "project": {
         "id": "id", "title": "text", "version": "text", "description": "prose", "middleware": "project.middleware",
@@ -61,10 +62,19 @@ KEYS: Mapping[str, Mapping[str, str]] = {
         "distro": "ros.distro", "interfaces": "files", "shared_topics": "shared_topics", "parameters": "ros_parameters",
         "environment": "start_environment", "definitions": "definitions", "parameter_texts": "parameter_texts",
     },
+    "rules.gap-above-promise": {
+        "severity": "severity", "margin": "percentage",
+    },
     "rules.large-jitter": {
         "severity": "severity", "limit": "percentage",
     },
+    "rules.larger-than-modelled": {
+        "severity": "severity", "margin": "percentage",
+    },
     "rules.late-chain": {
+        "severity": "severity", "margin": "percentage",
+    },
+    "rules.late-first-message": {
         "severity": "severity", "margin": "percentage",
     },
     "rules.long-execution": {
@@ -78,6 +88,9 @@ KEYS: Mapping[str, Mapping[str, str]] = {
     },
     "rules.period-conflict": {
         "severity": "severity", "tolerance": "percentage",
+    },
+    "rules.rate-below-promise": {
+        "severity": "severity", "margin": "percentage",
     },
     "rules.saturated-link": {
         "severity": "severity", "limit": "percentage",
@@ -95,9 +108,11 @@ KEYS: Mapping[str, Mapping[str, str]] = {
         "severity": "severity",
     },
     "rules": {
-        "large-jitter": "rules.large-jitter", "late-chain": "rules.late-chain",
-        "long-execution": "rules.long-execution", "lost-samples": "rules.lost-samples",
-        "overloaded-host": "rules.overloaded-host", "period-conflict": "rules.period-conflict",
+        "gap-above-promise": "rules.gap-above-promise", "large-jitter": "rules.large-jitter",
+        "larger-than-modelled": "rules.larger-than-modelled", "late-chain": "rules.late-chain",
+        "late-first-message": "rules.late-first-message", "long-execution": "rules.long-execution",
+        "lost-samples": "rules.lost-samples", "overloaded-host": "rules.overloaded-host",
+        "period-conflict": "rules.period-conflict", "rate-below-promise": "rules.rate-below-promise",
         "saturated-link": "rules.saturated-link", "short-queue": "rules.short-queue",
         "slow-component": "rules.slow-component", "slow-service": "rules.slow-service",
     },
@@ -126,6 +141,12 @@ KEYS: Mapping[str, Mapping[str, str]] = {
     },
     "accepted_key": {
         "reason": "text", "key": "text", "was": "text",
+    },
+    "conform": {
+        "against": "listed_texts", "launch": "listed_texts", "ignore": "listed_texts", "accepted": "conform.accepted",
+    },
+    "accepted_difference": {
+        "rule": "listed_texts", "reason": "text", "until": "text",
     },
     "site": {
         "repository": "repository_address", "branch": "text", "folder": "text", "forge": "forge",
@@ -386,9 +407,9 @@ ENTRIES: Mapping[str, str] = {
     "use_cases": "use_case", "variants": "variant", "views": "view", "agreement.interfaces": "interface_terms",
     "signature.by": "text", "signature.versions.*": "version_digits", "signature.versions": "signature.versions.*",
     "rules": "rules.*", "report.abbreviations": "text", "report.texts": "report.texts.*",
-    "report.pictures": "report.pictures.*", "review.accepted": "accepted", "performance": "indicator",
-    "operation.request": "operation.request.*", "operation.response": "operation.response.*", "parameter": "parameter",
-    "host_scheduling": "host_order",
+    "report.pictures": "report.pictures.*", "review.accepted": "accepted", "conform.accepted": "accepted_difference",
+    "performance": "indicator", "operation.request": "operation.request.*",
+    "operation.response": "operation.response.*", "parameter": "parameter", "host_scheduling": "host_order",
 }
 """Mappings by id: the part of their values."""
 ITEMS: Mapping[str, str] = {
@@ -401,11 +422,12 @@ ITEMS: Mapping[str, str] = {
     "parameter_set": "parameter_value", "port_conditions.*": "port_conditions.*[]", "port_list": "port_path",
     "promised_range": "promised_limit", "references": "reference_item", "requirement_ids": "requirement_ids[]",
     "requirement_parents": "requirement_parents[]", "reviewers": "reviewers[]", "shared_topics": "topic_name",
-    "steps": "step", "tags": "tags[]", "texts": "texts[]", "topic_names": "topic_name", "type_inputs": "port_type_item",
-    "type_parameters": "type_parameters[]", "variant_ids": "variant_id", "verifications": "verifications[]",
-    "way": "reference_item", "report.authors": "report.authors[]", "report.history": "report.history[]",
-    "report.lists": "report.lists[]", "review.backends": "review.backends[]", "review.passes": "review.passes[]",
-    "accepted": "accepted_key", "variant.of": "variant_id", "requirement.parent": "requirement.parent[]",
+    "steps": "step", "tags": "tags[]", "listed_texts": "listed_texts[]", "texts": "texts[]",
+    "topic_names": "topic_name", "type_inputs": "port_type_item", "type_parameters": "type_parameters[]",
+    "variant_ids": "variant_id", "verifications": "verifications[]", "way": "reference_item",
+    "report.authors": "report.authors[]", "report.history": "report.history[]", "report.lists": "report.lists[]",
+    "review.backends": "review.backends[]", "review.passes": "review.passes[]", "accepted": "accepted_key",
+    "variant.of": "variant_id", "requirement.parent": "requirement.parent[]",
     "requirement.verified_by": "requirement.verified_by[]", "requirement.use_cases": "requirement.use_cases[]",
     "property_declaration.range": "range_limit", "property_declaration.choices": "parameter_value",
     "input.from": "reference_item", "input": "reference_item", "parameter_declaration.value": "parameter_value",
@@ -421,8 +443,8 @@ LIST_ORDERS: Mapping[str, str] = {
     "group_components": "free", "key_paths": "free", "link_ends": "free", "node_kinds": "free", "open_sets": "gathered",
     "owners": "headed", "port_conditions.*": "free", "port_list": "free", "references": "free",
     "requirement_ids": "gathered", "requirement_parents": "gathered", "reviewers": "gathered",
-    "shared_topics": "gathered", "tags": "gathered", "topic_names": "free", "verifications": "gathered",
-    "review.backends": "gathered", "review.passes": "gathered", "accepted": "gathered",
+    "shared_topics": "gathered", "tags": "gathered", "listed_texts": "free", "topic_names": "free",
+    "verifications": "gathered", "review.backends": "gathered", "review.passes": "gathered", "accepted": "gathered",
     "requirement.parent": "gathered", "requirement.verified_by": "gathered", "requirement.use_cases": "gathered",
     "property_declaration.choices": "free", "input.from": "free", "input": "free", "parameter.choices": "free",
     "parameter_declaration.choices": "free", "node.implements": "free", "node": "free", "topic_use": "free",
@@ -510,13 +532,13 @@ PART_TYPES: Mapping[str, str] = {
 """The types of the parts that say more than their type."""
 ATTRIBUTES: Mapping[str, tuple[str, ...]] = {
     "hints": ("annotations",), "properties": ("annotations",), "report.large_paper": ("has_large_paper",),
-    "site.repository": ("address",), "requirement.parent": ("parents", "parent_at"),
-    "component.is": ("component_type",), "component.same_as": ("is_reference",), "component_type.is": ("base",),
-    "component_type.abstract": ("is_abstract",), "input.from": ("connections", "from_written"),
-    "input.medium": ("medium", "medium_written"), "output.medium": ("medium", "medium_written"),
-    "parameter_declaration.from": ("handed_from",), "parameter_declaration.hints": ("hints", "hint_places"),
-    "frame.by": ("by", "by_kind", "by_written"), "node.kind": ("kinds",),
-    "host.scheduling": ("scheduling", "core_scheduling", "core_places", "fair"),
+    "accepted_difference.rule": ("rules",), "site.repository": ("address",),
+    "requirement.parent": ("parents", "parent_at"), "component.is": ("component_type",),
+    "component.same_as": ("is_reference",), "component_type.is": ("base",), "component_type.abstract": ("is_abstract",),
+    "input.from": ("connections", "from_written"), "input.medium": ("medium", "medium_written"),
+    "output.medium": ("medium", "medium_written"), "parameter_declaration.from": ("handed_from",),
+    "parameter_declaration.hints": ("hints", "hint_places"), "frame.by": ("by", "by_kind", "by_written"),
+    "node.kind": ("kinds",), "host.scheduling": ("scheduling", "core_scheduling", "core_places", "fair"),
     "host.environment": ("environment", "environment_places"), "link.connects": ("connects", "devices", "unresolved"),
     "link.latency": ("best", "worst"), "start.by": ("by", "by_written"),
     "policy.forbid": ("forbid_from", "forbid_to", "from_at", "to_at"),
@@ -541,7 +563,7 @@ SECTION_KINDS: Mapping[str, str] = {
 }
 """Sections whose keys are ids of elements: the kind of these."""
 LISTED_PARTS: frozenset[str] = frozenset({
-    "chain.through", "command", "declared_of", "input.from", "key_paths", "link.connects", "link_ends",
+    "chain.through", "command", "declared_of", "input.from", "key_paths", "link.connects", "link_ends", "listed_texts",
     "node.implements", "node_kinds", "references", "requirement.parent", "requirement.verified_by",
     "requirement_parents", "review.backends", "review.passes", "start.after", "topic_names", "variant.of",
     "variant_ids", "verifications", "way",

@@ -126,6 +126,7 @@ def link_project(  # noqa: PLR0913 - all by name
         variants=declare_variants(root),
         glossary=glossary,
         review=section_declaration.declare_review(root),
+        conform=section_declaration.declare_conform(root),
         repository=section_declaration.declare_repository(root),
         interfaces=interfaces,
         partial=is_partial,

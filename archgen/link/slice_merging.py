@@ -244,6 +244,7 @@ _KeyPath = tuple[str, ...]
 _NEEDED_KEYS: dict[_KeyPath, tuple[_KeyPath, ...]] = {
     ("views",): (("show",),),
     ("review", "accepted"): (("reason",),),
+    ("conform", "accepted"): (("rule",), ("reason",)),
 }
 
 
@@ -259,7 +260,11 @@ def find_incomplete(root: MappingNode) -> Iterator[Diagnostic]:
                 if not all(_has_path(node, *path) for node in nodes):
                     message = f"`{entry.key}` lacks `{'.'.join(path)}`"
                     yield Diagnostic(
-                        "missing-key", message, entry.key_span, help=_MISSING_KEY_HELP[section[-1]], element=entry.key
+                        "missing-key",
+                        message,
+                        entry.key_span,
+                        help=_MISSING_KEY_HELP[".".join(section)],
+                        element=entry.key,
                     )
     yield from _find_open_policies(root)
     yield from _find_open_steps(root)
@@ -298,7 +303,8 @@ _MISSING_KEY_HELP = {
     "require": "say who may take its inputs only from whom: "
     '`require: {of: "property:sil>=2", inputs_from: "property:sil>=2"}`',
     "forbid": "say which flow is forbidden: `forbid: {from: planning, to: motors}`",
-    "accepted": "say why the change is right: `camera.image: {key: type, reason: the tracker moved to depth images}`",
+    "review.accepted": "say why the change is right: `camera.image: {key: type, reason: the tracker moved to depth images}`",
+    "conform.accepted": "say what is accepted and why: `lidar: {rule: not-running, reason: it is in repair}`",
 }
 
 

@@ -242,7 +242,9 @@ VALUE_READERS: Mapping[str, ValueReader | None] = {
         ("project.title", "requirement.title", "use_case.title", "frame.title", "node.name", "site.branch"),
         _read_filled_text,
     ),
-    **dict.fromkeys(("texts", "tags", "reviewers", "open_sets", "variant_ids"), mapping_values.get_texts),
+    **dict.fromkeys(
+        ("texts", "listed_texts", "tags", "reviewers", "open_sets", "variant_ids"), mapping_values.get_texts
+    ),
     **dict.fromkeys(("key_paths", "property_declaration.choices", "report.authors"), mapping_values.get_texts),
     **dict.fromkeys(("count", "port_number", "index", "view.depth"), mapping_values.get_integer),
     **dict.fromkeys(("flag", "report.large_paper"), mapping_values.get_flag),

@@ -10,6 +10,7 @@ from archgen.frozen import dataclass, field
 from archgen.model import port_media
 from archgen.model.agreed_terms import Agreement
 from archgen.model.component import Component, ComponentType, Connection, DiagramLayout, Group, Input, Output
+from archgen.model.conform_settings import ConformSettings
 from archgen.model.coordinate_frames import Frame
 from archgen.model.deployment import Container, Host, Link, Resource
 from archgen.model.element_annotations import NO_ANNOTATIONS, ElementAnnotations, PropertyDeclaration
@@ -253,6 +254,7 @@ class Architecture:
     glossary: Mapping[str, GlossaryTerm] = field(default_factory=dict)
     """What terms mean, by the term as written."""
     review: ReviewSettings = field(default_factory=ReviewSettings)
+    conform: ConformSettings = field(default_factory=ConformSettings)
     endpoints: tuple[Endpoint, ...] = ()
     topics: Mapping[str, Topic] = field(default_factory=dict)
     channels: Mapping[str, Topic] = field(default_factory=dict)

@@ -1,5 +1,6 @@
 """For importers: what they return, reading files within limits, ids and titles, trees of YAML and XML with their places."""
 
+from archgen.conformance.observed_robot import ObservedEndpoint, ObservedNode, ObservedRobot, RecordedTopic
 from archgen.diagnostics.source_span import NO_SPAN, SourceTexts, Span
 from archgen.diagnostics.suggestions import find_closest
 from archgen.importers.foreign_files import (
@@ -24,6 +25,7 @@ from archgen.importers.foreign_import import (
     ReadRecordings,
     RecordingRefusedError,
 )
+from archgen.importers.robot_observation import ObservationOptions
 from archgen.model.code_names import make_camel_name
 from archgen.model.element_ids import MAX_ID_LENGTH, is_id, make_id, make_unique_id, spell_in_ascii
 from archgen.model.path_resolver import title_from_id
@@ -50,7 +52,12 @@ __all__ = [
     "ImportedTables",
     "MappingNode",
     "ObjectAccount",
+    "ObservationOptions",
+    "ObservedEndpoint",
+    "ObservedNode",
+    "ObservedRobot",
     "ReadRecordings",
+    "RecordedTopic",
     "RecordingRefusedError",
     "ScalarNode",
     "SequenceNode",

@@ -8,7 +8,7 @@ from archgen.model.element_annotations import ElementAnnotations
 from archgen.model.generic_names import read_generic_name
 from archgen.model.graph_search import find_rings
 from archgen.model.message_types import PART_KEYS, ConceptualType, DataField, flow_of
-from archgen.model.node import Endpoint, Node, Qos, Topic, UseKind
+from archgen.model.node import Endpoint, FlowKind, Node, Qos, Topic, UseKind, qos_profile
 from archgen.model.parameter import MAX_NAME_LENGTH, Operation, Parameter
 from archgen.model.parameter_values import canonical_name, find_declarations
 from archgen.model.port_media import DIGITAL, MEDIUM_NAMES, flow_of_port, is_physical, uses_ros, word_of_medium
@@ -34,6 +34,7 @@ __all__ = [
     "DataField",
     "ElementAnnotations",
     "Endpoint",
+    "FlowKind",
     "Group",
     "Host",
     "Input",
@@ -60,6 +61,7 @@ __all__ = [
     "flow_of_port",
     "is_physical",
     "parse_quantity",
+    "qos_profile",
     "read_generic_name",
     "uses_ros",
     "word_of_medium",

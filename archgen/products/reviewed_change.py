@@ -14,7 +14,7 @@ from archgen.compare import Comparison
 from archgen.compare.review_facts import ReviewFacts
 from archgen.diagnostics.common_wording import shorten_hash
 from archgen.diagnostics.diagnostic import Diagnostic
-from archgen.frozen import NamedTuple, dataclass
+from archgen.frozen import NamedTuple, dataclass, field
 from archgen.git.project_revision import differs_from_head
 from archgen.git.repository_lookup import look_up_commit
 from archgen.pipeline import CheckedProject, VersionCache
@@ -25,6 +25,7 @@ from archgen.products.compared_versions import (
     read_at_base,
 )
 from archgen.products.merge_breaks import find_breaks
+from archgen.products.workspace_changes import WorkspaceChanges, find_new_differences
 from archgen.project import PROJECT_FILE
 from archgen.project.project_tracking import TrackedProject, load_at_commit
 
@@ -52,6 +53,8 @@ class ReviewedChange:
     comparison: Comparison
     breaks: tuple[Diagnostic, ...]
     command: str
+    code: WorkspaceChanges = field(default_factory=WorkspaceChanges)
+    """What the code does otherwise than the model says since the change."""
 
 
 def find_merge_target(path: Path | None, base: str, request: ReviewedRequest | None) -> str:
@@ -96,6 +99,13 @@ def compare_change(  # noqa: PLR0913, PLR0917 - what is compared, and all that i
         comparison,
         find_breaks(comparison, checked_project),
         _repeat_command(old_version, new_version, tracked_project, request),
+        find_new_differences(
+            old_version.checked_project,
+            checked_project,
+            tracked_project.objects,
+            fork.commit_id,
+            tracked_project.locations[0][0],
+        ),
     )
 
 

@@ -17,6 +17,7 @@ from archgen.link.declare.element_declaration import DECLARERS, find_declarer
 from archgen.link.value_readers import VALUE_READERS, find_type, find_value_reader, list_held_keys
 from archgen.model.architecture import Architecture
 from archgen.model.component import PerformanceIndicator
+from archgen.model.conform_settings import ConformSettings
 from archgen.model.declared_timing import Timing
 from archgen.model.element_annotations import PropertyDeclaration
 from archgen.model.node import Qos
@@ -40,6 +41,7 @@ CLASSES: Mapping[str, type] = {
     "qos": Qos,
     "report": ReportSettings,
     "review": ReviewSettings,
+    "conform": ConformSettings,
 }
 KEYS_WITHOUT_FIELD = {
     **dict.fromkeys(("group.autoconnect", "component.autoconnect", "component.from"), "the connections that it makes"),

@@ -36,6 +36,8 @@ _SHOWN_PARTNERS = 12
 _MAX_OPEN_ITEMS, _MAX_OPEN_TOTAL = 8, 24
 """How many changes of one group, and of all of them, are not folded."""
 _MAX_ERRORS = 5
+_MAX_DIFFERENCES = 10
+"""How many differences of code and model are told; all are among the findings."""
 _MAX_OPEN_LINES = 9
 """How many lines of what partners write are not folded."""
 _MAX_COMMAND = 250
@@ -74,6 +76,20 @@ def write_comparison_markdown(
     # Last, so that the picture never takes the room of the text.
     _add_picture(comment, document.main_graph)
     return comment.write_text()
+
+
+def add_code_differences(comment: str, differences: Sequence[Diagnostic]) -> str:
+    """Return a comment with a chapter on what the code does otherwise than the model says since the change, if anything."""
+    if not differences:
+        return comment
+    lines = ["### Code and model", "", "This change alters the code, and the model does not say so:", ""]
+    for finding in differences[:_MAX_DIFFERENCES]:
+        places = [write_code(f"{label.span.file}:{label.span.line}") for label in finding.labels if label.span.file]
+        lines.append(f"{_finding_item(finding)}{f'; in the code {places[0]}' if places else ''}")
+    more = len(differences) - _MAX_DIFFERENCES
+    lines += [f"- and {more} more"] if more > 0 else []
+    chapter = "\n".join(lines)
+    return f"{comment}\n{chapter}\n" if len(comment) + len(chapter) < MAX_COMMENT_SIZE else comment
 
 
 def write_unjudged_markdown(reason: str) -> str:

@@ -18,6 +18,7 @@ from archgen.link.reference_resolution import ReferenceResolver
 from archgen.link.value_readers import read_element, read_values
 from archgen.model.agreed_terms import Agreement, Signature
 from archgen.model.architecture import Chain, Policy, ProjectInfo, SourceDemand, View, Waypoint
+from archgen.model.conform_settings import AcceptedDifference, ConformSettings
 from archgen.model.path_resolver import ElementRef
 from archgen.model.review_settings import BREAK_CATEGORIES, AcceptedChange, BreakPolicy, ReviewSettings
 from archgen.model.source_repository import DEFAULT_BRANCH, SourceRepository
@@ -109,6 +110,26 @@ def declare_review(root: MappingNode) -> ReviewSettings:
             if isinstance(item, MappingNode) and (reason := mapping_values.get_text(item, "reason"))
         ),
     )
+
+
+def declare_conform(root: MappingNode) -> ConformSettings:
+    """Declare how the project is held against a robot, without acceptances that lack something, which merging has reported."""
+    body = mapping_values.get_mapping(root, "conform")
+    return ConformSettings(
+        **read_values("conform", ConformSettings, body),
+        accepted=tuple(
+            AcceptedDifference(entry.key, rules, reason, mapping_values.get_text(values, "until"), entry.key_span)
+            for entry in mapping_values.get_mapping(body, "accepted")
+            if (values := mapping_values.get_body(entry))
+            and (rules := _read_rules(values))
+            and (reason := mapping_values.get_text(values, "reason"))
+        ),
+    )
+
+
+def _read_rules(acceptance: MappingNode) -> tuple[str, ...]:
+    rule = mapping_values.get_text(acceptance, "rule")
+    return mapping_values.get_texts(acceptance, "rule") if rule is None else (rule,)
 
 
 def _read_policy(review: MappingNode) -> BreakPolicy | None:

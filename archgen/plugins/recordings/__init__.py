@@ -1,7 +1,14 @@
-"""Recordings of the running robot, held against the design: `archgen timing --measured`."""
+"""Recordings of the running robot, held against the design: `archgen timing --measured`, `archgen conform`."""
 
 PLUGIN = {
     "api": 1,
     "page": "docs/recordings.md",
     "readers": {"recordings": "archgen.plugins.recordings.recording_import:read_measured"},
+    "observers": {
+        "recording": {
+            "rank": 2,
+            "summary": "a recording: the folder of a bag, its metadata.yaml, .mcap, .db3, or .bag of ROS 1",
+            "reader": "archgen.plugins.recordings.bag_observation:observe_recording",
+        },
+    },
 }

@@ -26,7 +26,7 @@ _MAX_DIGITS = 20
 
 def read_bag_metadata(source: RecordingSource, names: RecordedNames, figures: RecordedFigures) -> None:
     """Read the metadata of a bag. Raise RecordingError where the duration is missing."""
-    bag = _parse_bag(source, figures)
+    bag = parse_bag(source, figures)
     if bag is None:
         return
     version = _read_count(bag.get("version"))
@@ -34,14 +34,13 @@ def read_bag_metadata(source: RecordingSource, names: RecordedNames, figures: Re
         shown_version = "no number" if version is None else str(version)
         message = f"the version of this file is {shown_version}; archgen knows those from 1 to {_LATEST_VERSION}"
         figures.diagnostics.append(Diagnostic("wrong-value", message, bag.span, Severity.WARNING))
-    duration_node = bag.get("duration")
-    duration = _read_count(duration_node.get("nanoseconds")) if isinstance(duration_node, MappingNode) else None
+    duration = read_bag_duration(bag)
     if not duration:
         message = "`duration: {nanoseconds: ...}` is missing or 0: without it there are no rates"
         raise source.refuse(
             bag.span.line, message, "write the file again with `ros2 bag reindex FOLDER`", "missing-key"
         )
-    for name, count, node in _list_topics(bag):
+    for name, count, node, _ in list_bag_topics(bag):
         if not names.has_topic(name):
             if count and not is_common_callback("subscription", name):
                 figures.add_unmapped(f"messages of {name}", count, "the design has no topic of this name", node.span)
@@ -54,7 +53,14 @@ def read_bag_metadata(source: RecordingSource, names: RecordedNames, figures: Re
             figures.observations.append(observation)
 
 
-def _parse_bag(source: RecordingSource, figures: RecordedFigures) -> MappingNode | None:
+def read_bag_duration(bag: MappingNode) -> int | None:
+    """Return the duration of a whole bag in ns, None where it is not written."""
+    duration_node = bag.get("duration")
+    return _read_count(duration_node.get("nanoseconds")) if isinstance(duration_node, MappingNode) else None
+
+
+def parse_bag(source: RecordingSource, figures: RecordedFigures) -> MappingNode | None:
+    """Return what stands below the key of a bag, None for what is no YAML. Raise RecordingError."""
     source.stream.seek(0)
     data = source.stream.read(_MAX_BYTES + 1)
     if len(data) > _MAX_BYTES:
@@ -71,16 +77,16 @@ def _parse_bag(source: RecordingSource, figures: RecordedFigures) -> MappingNode
     return bag
 
 
-def _list_topics(bag: MappingNode) -> Iterator[tuple[str, int, YamlNode]]:
-    """Yield the name, the count of messages and the node of each topic."""
+def list_bag_topics(bag: MappingNode) -> Iterator[tuple[str, int, YamlNode, MappingNode]]:
+    """Yield the name, the count of messages, where the name stands, and the whole metadata of each topic."""
     topics = bag.get("topics_with_message_count")
     for item in topics.items if isinstance(topics, SequenceNode) else ():
         if not isinstance(item, MappingNode):
             continue
         topic, count = item.get("topic_metadata"), _read_count(item.get("message_count"))
         name = topic.get("name") if isinstance(topic, MappingNode) else None
-        if isinstance(name, ScalarNode) and count is not None:
-            yield name.text, count, name
+        if isinstance(topic, MappingNode) and isinstance(name, ScalarNode) and count is not None:
+            yield name.text, count, name, topic
 
 
 def _read_count(node: YamlNode | None) -> int | None:

@@ -51,4 +51,17 @@ PLUGIN = {
             "has_dated_files": True,
         },
     },
+    "readers": {"the recorder of graphs": "archgen.plugins.ros.running_graph.graph_observation:read_recorder"},
+    "observers": {
+        "workspace": {
+            "rank": 1,
+            "summary": "a folder with packages of ROS",
+            "reader": "archgen.plugins.ros.workspace.workspace_observation:observe_workspace",
+        },
+        "graph": {
+            "rank": 3,
+            "summary": "what `archgen conform --recorder`, `ros2 node info` or `rosnode info` say of a running robot",
+            "reader": "archgen.plugins.ros.running_graph.graph_observation:observe_graph",
+        },
+    },
 }

@@ -21,6 +21,7 @@ from archgen.plugin.importing import (
     parse_yaml,
     read_bounded,
 )
+from archgen.plugin.model import UseKind
 from archgen.plugin.ros import find_name_fault, flatten_parameters
 
 MAX_DUMP_BYTES = 64_000_000
@@ -32,11 +33,12 @@ FULL_NAME = re.compile(r"(?:/[A-Za-z_]\w*)+\Z", re.ASCII)
 
 
 class DumpLine(NamedTuple):
-    """A line without its end. `command` is what printed it, as far as a line in front says so."""
+    """A line without its end. `command` is what printed it, as far as a line in front says so; that is `command_line`."""
 
     text: str
     span: Span
     command: str
+    command_line: int = 0
 
 
 def _split_lines(text: str) -> list[str]:
@@ -51,14 +53,14 @@ def read_dump_lines(files: Sequence[Path]) -> Iterator[DumpLine]:
         if b"\0" in data:
             words = "it is no text"
             raise ForeignFileError(words, Span.of_file(path.name), "give what the commands print, as text")
-        command = ""
+        command, command_line = "", 0
         for number, raw_line in enumerate(_split_lines(data.decode("utf-8", "replace")), 1):
             line = _COLOURS.sub("", raw_line[:_MAX_LINE]).rstrip()
             match = _PROMPT.fullmatch(line)
             if match:
-                command = match[1].strip()
+                command, command_line = match[1].strip(), number
                 continue
-            yield DumpLine(line, Span(path.name, number, 1, number, len(line) + 1), command)
+            yield DumpLine(line, Span(path.name, number, 1, number, len(line) + 1), command, command_line)
 
 
 _OWN_PARAMETERS = ("qos_overrides", "start_type_description_service")
@@ -97,7 +99,7 @@ def _parse_lines(graph: RunningGraph, lines: Sequence[DumpLine]) -> MappingNode 
     return document.root if document is not None else None
 
 
-USES = ("publishes", "subscribes", "serves", "calls")
+USES: tuple[UseKind, ...] = ("publishes", "subscribes", "serves", "calls")
 
 
 @dataclass(slots=True, eq=False)
@@ -108,7 +110,12 @@ class RunningNode:
     span: Span
     uses: dict[str, dict[str, str]] = field(default_factory=lambda: {use: {} for use in USES})
     qos: dict[tuple[str, str], dict[str, Any]] = field(default_factory=dict)
+    """By use and name; None is a duration without an end."""
+    places: dict[tuple[str, str], Span] = field(default_factory=dict)
+    """Where each use stands, by use and name."""
     parameters: dict[str, Any] = field(default_factory=dict)
+    count: int = 1
+    """How many nodes of this full name a list of nodes shows."""
     is_container: bool = False
     container: str = ""
     """The full name of the container that loaded it."""
@@ -133,7 +140,7 @@ class RunningGraph:
             self.taken["node"] += 1
         return self.nodes[full_name]
 
-    def add_use(self, node: RunningNode, use: str, name: str, message: str) -> None:
+    def add_use(self, node: RunningNode, use: str, name: str, message: str, span: Span) -> None:
         """Add a topic, service or action of a node, unless ROS knows no such name: a line of a dump may be cut or garbled."""
         fault = "it is only a `/`" if name == "/" else find_name_fault(name, ros_1=self.is_ros_1)
         if fault:
@@ -141,6 +148,7 @@ class RunningGraph:
             return
         if name not in node.uses[use]:
             self.taken[use] += 1
+            node.places[use, name] = span
         if message:
             self.messages.setdefault(name, message)
         if message or name not in node.uses[use]:

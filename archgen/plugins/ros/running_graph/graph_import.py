@@ -128,7 +128,8 @@ class _SliceMaker:
                 entry: dict[str, Any] = {"topic" if use in {"publishes", "subscribes"} else "name": name}
                 if message:
                     entry["message"] = message
-                qos = node.qos.get((use, name))
+                said = node.qos.get((use, name), {})
+                qos = {policy: value for policy, value in said.items() if value not in {None, "automatic"}}
                 if qos:
                     entry["qos"] = qos
                 uses.setdefault(use, {})[key] = entry

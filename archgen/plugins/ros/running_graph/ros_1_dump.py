@@ -72,7 +72,7 @@ class _Ros1DumpReader:
             return
         message = _write_message(use[2] or "")
         if self._node is not None and self._use:
-            self._graph.add_use(self._node, self._use, use[1], message if self._use != "serves" else "")
+            self._graph.add_use(self._node, self._use, use[1], message if self._use != "serves" else "", line.span)
         if message:
             self._graph.messages.setdefault(use[1], message)
 

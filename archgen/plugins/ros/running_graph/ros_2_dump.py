@@ -6,6 +6,7 @@ Read the endpoints that `ros2 topic info -v` prints, with their quality of servi
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
@@ -68,6 +69,8 @@ class _Ros2DumpReader:
         """A name that stands alone: of a node, if what a node has stands below it."""
         self._lone_names: list[DumpLine] = []
         self._parameter_lines: list[DumpLine] = []
+        self._listed: Counter[tuple[str, int, str]] = Counter()
+        """How often each node stands in one list of nodes: by the file and line of the command."""
 
     def read_line(self, line: DumpLine) -> None:
         """Take one line."""
@@ -101,6 +104,10 @@ class _Ros2DumpReader:
             self._lone_names.append(line)
         if _NODE_LISTS.fullmatch(line.command):
             self._open_node()
+            if line.command.startswith("ros2 node list") and self._node is not None:
+                key = (line.span.file, line.command_line, line.text)
+                self._listed[key] += 1
+                self._node.count = max(self._node.count, self._listed[key])
 
     def _open_node(self) -> None:
         if self._name is not None:
@@ -128,7 +135,7 @@ class _Ros2DumpReader:
             node = self._graph.get_node(end[1], line.span)
             # Without `-t` it says no type.
             message = self._choose_message(asked[2], end[2], line) if end[2] else ""
-            self._graph.add_use(node, self._use, asked[2], message)
+            self._graph.add_use(node, self._use, asked[2], message, line.span)
             return True
         answer = _ANSWER.fullmatch(line.text)
         if answer:
@@ -156,7 +163,7 @@ class _Ros2DumpReader:
 
     def _add_use(self, node: RunningNode, name: str, messages: str, line: DumpLine) -> None:
         message = self._choose_message(name, messages, line)
-        self._graph.add_use(node, self._use, name, message)
+        self._graph.add_use(node, self._use, name, message, line.span)
 
     def _choose_message(self, name: str, messages: str, line: DumpLine) -> str:
         found = [message.strip() for message in messages.split(",")]
@@ -185,7 +192,7 @@ _USES = {"PUBLISHER": "publishes", "SUBSCRIPTION": "subscribes"}
 _WORDS = {
     "Reliability": ("reliability", {"RELIABLE", "BEST_EFFORT"}),
     "Durability": ("durability", {"VOLATILE", "TRANSIENT_LOCAL"}),
-    "Liveliness": ("liveliness", {"MANUAL_BY_TOPIC"}),
+    "Liveliness": ("liveliness", {"AUTOMATIC", "MANUAL_BY_TOPIC"}),
 }
 _DURATIONS = {"Lifespan": "lifespan", "Deadline": "deadline", "Liveliness lease duration": "lease_duration"}
 _ENDLESS = 9e9
@@ -257,7 +264,9 @@ class EndpointReader:
             seconds = float(match[1]) / (1 if match[2].startswith("s") else 1e9) if match else 0.0
         except ValueError:
             return
-        if 0 < seconds < _ENDLESS:
+        if value == "Infinite" or (match and not 0 < seconds < _ENDLESS):
+            endpoint.qos[name] = None  # without an end, or not given
+        elif match:
             nanoseconds = round(seconds * 1e9)
             milliseconds = nanoseconds // 1_000_000
             endpoint.qos[name] = f"{nanoseconds} ns" if nanoseconds % 1_000_000 else f"{milliseconds} ms"
@@ -279,7 +288,7 @@ class EndpointReader:
                 graph.add_note("topic info", words, endpoint.span, help_line)
                 continue
             node = graph.get_node(full_name, endpoint.span)
-            graph.add_use(node, endpoint.use, topic, endpoint.message)
+            graph.add_use(node, endpoint.use, topic, endpoint.message, endpoint.span)
             if endpoint.qos:
                 node.qos[endpoint.use, topic] = endpoint.qos
                 graph.taken["QoS profile"] += 1

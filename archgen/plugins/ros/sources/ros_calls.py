@@ -166,17 +166,23 @@ def make_qos(name: str, arguments: Sequence[Value], keywords: Mapping[str, Value
     if last not in {"QoSProfile", "QoS", "KeepLast", "KeepAll"}:
         return read_qos_name(name) if last in _PROFILE_NAMES else None
     qos: dict[str, Any] = {"history": "keep_all"} if last == "KeepAll" else {}
-    for value in (*arguments, *keywords.values()):
+    for value in arguments:
         qos |= read_qos(value)
+    for key, value in keywords.items():
+        qos |= read_qos(value) or ({key: None} if key in {*_POLICIES, "depth"} else {})
     return qos
 
 
 def read_qos(value: Value) -> dict[str, Any]:
-    """Return what is known of a QoS that is handed over: a depth, a profile, policies."""
+    """Return what is known of a QoS that is handed over: a depth, a profile, policies; None for one that is set to what is not known."""
     settled = settle(value)
     if isinstance(settled, int) and not isinstance(settled, bool) and settled > 0:
         return {"depth": settled}
-    return dict(settled) if isinstance(settled, dict) and all(isinstance(key, str) for key in settled) else {}
+    if not isinstance(settled, dict) or not all(isinstance(key, str) for key in settled):
+        return {}
+    # A policy that was assigned (`qos.reliability = ReliabilityPolicy.BEST_EFFORT`) is a mapping of itself.
+    given = {key: settle(each.get(key) if isinstance(each, dict) else each) for key, each in settled.items()}
+    return {key: each if isinstance(each, str | int) else None for key, each in given.items()}
 
 
 def change_qos(qos: Mapping[str, Any], method: str, arguments: Sequence[Value]) -> dict[str, Any] | None:
@@ -185,7 +191,9 @@ def change_qos(qos: Mapping[str, Any], method: str, arguments: Sequence[Value]) 
     if word in _POLICY_OF and word != "keep_last":
         return {**qos, _POLICY_OF[word]: word}
     is_setter = method in _POLICIES or method == "keep_last"
-    return {**qos, **read_qos(arguments[0])} if is_setter and arguments else None
+    if not is_setter or not arguments:
+        return None
+    return {**qos, **(read_qos(arguments[0]) or {"depth" if method == "keep_last" else method: None})}
 
 
 _FACTORS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0, "min": 60.0}

@@ -73,6 +73,11 @@ class WrittenNode:
     variants: Mapping[str, str] = field(default_factory=dict)
     """By their names the titles of the variants in which it runs; none for what always runs."""
     comments: dict[tuple[str, ...], str] = field(default_factory=dict)
+    known: NodeKnowledge | None = None
+    found: FoundNode | None = None
+    """What its program makes of it, where its sources were read."""
+    endpoints: dict[tuple[str, str], FoundEndpoint] = field(default_factory=dict)
+    """What its sources say of each port, by use and port."""
 
 
 def _list_variants(known: NodeKnowledge) -> dict[str, str]:
@@ -101,7 +106,7 @@ class NodeWriter:
             body["hints"] = kept
         self._leave_out_filed(body, known)
         data = {"implements": f"{group}.{node_id}", **body}
-        written = WrittenNode(node_id, group, data, {}, _list_variants(known))
+        written = WrittenNode(node_id, group, data, {}, _list_variants(known), known=known)
         self._account.count("node")
         if known.library_type:
             written.component["is"] = f"{LIBRARY}.{known.library_type}"
@@ -123,7 +128,7 @@ class NodeWriter:
         shared = ("namespace", "status", "remaps", "arguments", "parameters")
         data: dict[str, Any] = {key: first.data[key] for key in ("implements", *shared) if key in first.data}
         data["implements"] = f"{first.group}.{node_id}"
-        written = WrittenNode(node_id, first.group, data, {}, first.variants)
+        written = WrittenNode(node_id, first.group, data, {}, first.variants, known=known)
         written.comments[()] = f"in the process of {first.id}"
         self._account.count("node")
         self._write_found(written, found, known, is_first=False)
@@ -147,6 +152,7 @@ class NodeWriter:
 
     def _write_found(self, written: WrittenNode, found: FoundNode, known: NodeKnowledge, *, is_first: bool) -> None:
         data, name, namespace = written.data, settle(found.name), settle(found.namespace)
+        written.found = found
         if (not is_first or not known.node.name) and isinstance(name, str) and not find_node_name_fault(name):
             data.pop("name", None)
             if name != written.id:
@@ -187,12 +193,15 @@ class NodeWriter:
         typed = endpoint.message or None
         if text in _SHARED and endpoint.flow == "topic":
             internal = written.data.setdefault("internal", FlowMapping()).setdefault(endpoint.use, FlowMapping())
-            internal[make_id(text, "topic")] = FlowMapping({"topic": text, **({"message": typed} if typed else {})})
+            port = make_id(text, "topic")
+            internal[port] = FlowMapping({"topic": text, **({"message": typed} if typed else {})})
+            written.endpoints[endpoint.use, port] = endpoint
             return
         side = "outputs" if endpoint.use in {"publishes", "serves"} else "inputs"
         ports = written.component.setdefault(side, FlowMapping())
         port = _name_port(text or show_value(endpoint.name).replace("*", "_"), endpoint, ports)
         ports[port] = typed if side == "outputs" else FlowMapping({"type": typed})
+        written.endpoints[endpoint.use, port] = endpoint
         written.data.setdefault(endpoint.use, FlowMapping())[port] = _write_use(
             text, endpoint, written.data, is_ros_1=is_ros_1
         )
@@ -229,8 +238,9 @@ def _write_use(text: str, endpoint: FoundEndpoint, data: Mapping[str, Any], *, i
         default = settle(given.default)
         is_name = isinstance(default, str) and default and not find_name_fault(default, ros_1=is_ros_1)
         use = FlowMapping({**({"own_name": default} if is_name else {}), "named_by": given.name})
-    if endpoint.qos not in ({}, _USUAL_QOS) and endpoint.flow == "topic":
-        use["qos"] = endpoint.qos.get("profile") if list(endpoint.qos) == ["profile"] else dict(endpoint.qos)
+    qos = {policy: value for policy, value in endpoint.qos.items() if value is not None}
+    if qos not in ({}, _USUAL_QOS) and endpoint.flow == "topic":
+        use["qos"] = qos["profile"] if list(qos) == ["profile"] else qos
     return text if list(use) == [key] and not may_move else use
 
 

@@ -6,6 +6,7 @@ from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from archgen.plugin import dataclass
 from archgen.plugin.importing import (
     ForeignFileError,
     ForeignImport,
@@ -35,6 +36,18 @@ _NO_LAUNCH = "none"
 _GENERATED_NAMES = ("bringup", "robot")
 
 
+@dataclass(frozen=True, slots=True)
+class JoinedWorkspace:
+    """A workspace with the nodes that its launch files start, and what is known of each."""
+
+    files: WorkspaceFiles
+    launched: LaunchedFiles
+    knowledge: tuple[NodeKnowledge, ...]
+    account: ImportAccount
+    distro: str
+    is_distro_known: bool
+
+
 def read_workspace(
     files: Sequence[Path],
     arguments: Mapping[str, str] | None = None,
@@ -48,6 +61,34 @@ def read_workspace(
     `files` are folders with packages. `launch_files` are those that start the robot, as `PACKAGE/FILE` or as paths, and may be left
     out where one alone is included by no other. What only some of several start stands in variants; `none` takes each program.
     """
+    workspace = join_workspace(files, arguments, environment, launch_files, distro)
+    account, launched = workspace.account, workspace.launched
+    uses_library = any(each.library_type for each in workspace.knowledge)
+    made = make_slices(SliceMaker(launched.run), workspace.knowledge, workspace.files, account, workspace.distro)
+    slices = dict(made.slices)
+    types = read_used_messages(workspace.files, workspace.knowledge, account)
+    if types:
+        slices["messages.yaml"] = {"types": types}
+    if not workspace.is_distro_known and uses_library:
+        words = f"the distribution of ROS is not known: types of the library are those of {workspace.distro}"
+        account.add_note("library", words, Span.of_file("."), "`--distro NAME` says another", fate="noted")
+    entry = next(iter(launched.by_file))
+    title = title_from_id(make_id(find_stem(entry), "robot"))
+    notes = (*account.notes, *launched.run.notes)
+    taken = dict(sorted((+account.taken).items()))
+    return ForeignImport(
+        slices, taken, notes, title, workspace.distro, made.comments, uses_shipped_library=uses_library
+    )
+
+
+def join_workspace(
+    files: Sequence[Path],
+    arguments: Mapping[str, str] | None,
+    environment: Mapping[str, str] | None,
+    launch_files: Sequence[str],
+    distro: str,
+) -> JoinedWorkspace:
+    """Read launch files, packages and sources, and find what each started node is. Raise ForeignFileError."""
     account = ImportAccount()
     for path in files:
         if not path.is_dir():
@@ -69,24 +110,14 @@ def read_workspace(
     known_distro = distro or ("noetic" if is_ros_1 else _ASSUMED_DISTRO)
     reader = ProgramReader(workspace, account, launched.run)
     starters = _list_starters(launched)
-    knowledge = [_read_knowledge(node, reader, known_distro, starters[_identify(node)]) for node in nodes]
+    knowledge = tuple(_read_knowledge(node, reader, known_distro, starters[_identify(node)]) for node in nodes)
     if is_without_launch:
         # Programs that are no nodes.
-        knowledge = [each for each in knowledge if each.program or each.library_type]
+        knowledge = tuple(each for each in knowledge if each.program or each.library_type)
     reader.tell_unread()
-    uses_library = any(each.library_type for each in knowledge)
-    slices, comments = make_slices(SliceMaker(launched.run), knowledge, workspace, account, known_distro)
-    types = read_used_messages(workspace, knowledge, account)
-    if types:
-        slices["messages.yaml"] = {"types": types}
-    if not distro and not is_ros_1 and uses_library:
-        words = f"the distribution of ROS is not known: types of the library are those of {known_distro}"
-        account.add_note("library", words, Span.of_file("."), "`--distro NAME` says another", fate="noted")
-    entry = next(iter(launched.by_file))
-    title = title_from_id(make_id(find_stem(entry), "robot"))
-    notes = (*account.notes, *launched.run.notes)
-    taken = dict(sorted((+account.taken).items()))
-    return ForeignImport(slices, taken, notes, title, known_distro, comments, uses_shipped_library=uses_library)
+    return JoinedWorkspace(
+        workspace, launched, knowledge, account, known_distro, is_distro_known=bool(distro) or is_ros_1
+    )
 
 
 def _start_programs(workspace: WorkspaceFiles, folders: Sequence[Path]) -> LaunchedFiles:

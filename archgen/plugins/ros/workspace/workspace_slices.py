@@ -6,6 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from archgen.plugin import dataclass
 from archgen.plugin.importing import FlowMapping, link_slices, make_id, make_unique_id
 from archgen.plugin.model import Architecture
 from archgen.plugins.ros.launch.launch_actions import LaunchedNode
@@ -19,14 +20,24 @@ _VERBS = {"topic": "publishes", "service": "serves", "action": "serves"}
 _ONE_GROUP = "robot"
 
 
+@dataclass(frozen=True, slots=True)
+class MadeSlices:
+    """The slices, one for each group, the comments behind their lines, and the nodes in them as they come out linked."""
+
+    slices: Mapping[str, Mapping[str, Any]]
+    comments: Mapping[str, Comments]
+    nodes: Sequence[WrittenNode]
+    architecture: Architecture
+
+
 def make_slices(
     maker: SliceMaker,
     knowledge: Sequence[NodeKnowledge],
     workspace: WorkspaceFiles,
     account: ImportAccount,
     distro: str,
-) -> tuple[dict[str, Mapping[str, Any]], dict[str, Comments]]:
-    """Return the slices, one for each group, and the comments behind their lines."""
+) -> MadeSlices:
+    """Make the slices of what is known of the nodes."""
     sections = maker.make_sections([each.node for each in knowledge])
     by_id = {node_id: each for each in knowledge if (node_id := maker.find_node_id(each.node))}
     groups = _choose_groups({node_id: each.node for node_id, each in by_id.items()}, workspace)
@@ -43,7 +54,8 @@ def make_slices(
     project: dict[str, Any] = {"project": {"id": "workspace"}, "ros": {"distro": distro}}
     if any(each.library_type for each in knowledge):
         project["libraries"] = {LIBRARY: "builtin"}
-    wiring = _Wiring(link_slices({**project, **sections, **_write_sections(written)}), written)
+    architecture = link_slices({**project, **sections, **_write_sections(written)})
+    wiring = _Wiring(architecture, written)
     usual = [each for each in written if not each.variants]
     inputs = wiring.wire(usual)
     account.count("connection", wiring.count)
@@ -61,7 +73,7 @@ def make_slices(
         slices[file] = {**slices.get(file, sections), "variants": variants}
         comments[file] = {**comments.get(file, {}), **variant_comments}
         account.count("variant", len(variants))
-    return slices, comments
+    return MadeSlices(slices, comments, written, architecture)
 
 
 def _rename(node: WrittenNode, new_id: str) -> None:

@@ -1,0 +1,69 @@
+"""The rules about a robot that exists and its design. No project breaks them by itself: `archgen conform` reports them."""
+
+from __future__ import annotations
+
+from archgen.diagnostics.diagnostic import Rule, Severity
+from archgen.diagnostics.rule_options import RuleOption
+
+RULES = (
+    Rule(
+        "other-type", Severity.ERROR, "A topic, service or action of the robot has another type than the design says."
+    ),
+    Rule(
+        "other-qos",
+        Severity.ERROR,
+        "The quality of service of the robot is not what the design writes, or no longer fits the other end.",
+    ),
+    Rule(
+        "other-name",
+        Severity.ERROR,
+        "A node of the robot, or what it uses, is there under another name than the design says.",
+    ),
+    Rule(
+        "not-running",
+        Severity.ERROR,
+        "The design has a node, or something that a node uses, which the robot has not.",
+    ),
+    Rule("not-in-model", Severity.WARNING, "The robot has a node, or a node uses something, that the design has not."),
+    Rule("runs-twice", Severity.ERROR, "Two nodes of the robot have the same full name."),
+    Rule(
+        "not-latched",
+        Severity.ERROR,
+        "A publisher keeps nothing for those who come late, although the design says so (`durability: transient_local`).",
+    ),
+    Rule(
+        "rate-below-promise",
+        Severity.ERROR,
+        "Messages were recorded at a lower rate than the output promises.",
+        options=(RuleOption("margin", 10, 0, 90, "The share by which the measured rate may be lower."),),
+    ),
+    Rule(
+        "gap-above-promise",
+        Severity.ERROR,
+        "Between two recorded messages lay more time than the output promises.",
+        options=(RuleOption("margin", 10, 0, 900, "The share by which the measured gap may be longer."),),
+    ),
+    Rule(
+        "late-first-message",
+        Severity.WARNING,
+        "The first message came later after the beginning of the recording than the longest gap that the output promises.",
+        options=(RuleOption("margin", 10, 0, 900, "The share by which that time may be longer."),),
+    ),
+    Rule(
+        "larger-than-modelled",
+        Severity.WARNING,
+        "A recorded message is larger than the size of its type in the model.",
+        options=(RuleOption("margin", 10, 0, 900, "The share by which a message may be larger."),),
+    ),
+    Rule(
+        "other-frame", Severity.ERROR, "Recorded messages are given in another coordinate frame than the design says."
+    ),
+    Rule("other-parameter", Severity.WARNING, "A parameter of the robot has another value than the design gives it."),
+    Rule(
+        "stale-acceptance",
+        Severity.WARNING,
+        "An accepted difference between robot and design is gone, is accepted for longer than was said, or names no rule.",
+    ),
+)
+RULE_NAMES = frozenset(rule.name for rule in RULES)
+"""The names of these rules: a comment that silences one of them silences nothing in a check."""

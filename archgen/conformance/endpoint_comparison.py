@@ -1,0 +1,304 @@
+"""What one node uses on the robot, held against what the design says of it: names, types, quality of service."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Sequence
+
+from archgen.analyses.qos_compatibility import find_qos_conflicts
+from archgen.conformance.observed_robot import ObservedEndpoint, ObservedNode, ObservedRobot
+from archgen.derivation.ros_names import shared_topic_names
+from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
+from archgen.diagnostics.source_span import first_written_span
+from archgen.frozen import NamedTuple, dataclass, field, replace
+from archgen.model.architecture import Architecture
+from archgen.model.common_callbacks import is_common_callback
+from archgen.model.node import Endpoint, Node
+from archgen.model.port_media import ROS
+
+VERBS = {"publishes": "publish", "subscribes": "subscribe to", "serves": "serve", "calls": "call"}
+"""What a sentence calls each use behind `does not`."""
+_VERBS_OF_ONE = {"publishes": "publishes", "subscribes": "subscribes to", "serves": "serves", "calls": "calls"}
+_GRAPH_POLICIES = ("reliability", "durability", "deadline", "liveliness", "lease_duration", "lifespan")
+"""What the graph of a running robot tells of the quality of service: queues are not on the wire."""
+_TRANSPORT_ENDINGS = ("/compressed", "/compressedDepth", "/theora", "/zstd", "/ffmpeg")
+"""What plug-ins of image_transport add to a topic."""
+_COMMON_ENDINGS = ("/transition_event", "/get_loggers", "/set_logger_level", "/get_type_description", "/bond")
+_TRANSFORMS = frozenset({"/tf", "/tf_static"})
+
+
+class EndpointPair(NamedTuple):
+    """An endpoint of the design and what it is on the robot."""
+
+    designed: Endpoint
+    observed: ObservedEndpoint
+
+
+@dataclass(slots=True)
+class NodeComparison:
+    """What came out for one node. `untold` are ends of the design of which nobody can tell whether they are there."""
+
+    pairs: list[EndpointPair] = field(default_factory=list)
+    missing: list[Endpoint] = field(default_factory=list)
+    untold: list[Endpoint] = field(default_factory=list)
+    findings: list[Diagnostic] = field(default_factory=list)
+
+
+class EndpointComparer:
+    """Compares nodes of one robot; what concerns all of them is looked up once."""
+
+    def __init__(self, architecture: Architecture, robot: ObservedRobot) -> None:
+        """Index the ends of the design and of the robot by node."""
+        self._architecture = architecture
+        self._robot = robot
+        self._shared = shared_topic_names(architecture.shared_topics)
+        self._designed: dict[str, list[Endpoint]] = defaultdict(list)
+        for endpoint in architecture.endpoints:
+            if endpoint.medium == ROS:
+                self._designed[endpoint.node].append(endpoint)
+        self._observed: dict[str, list[ObservedEndpoint]] = defaultdict(list)
+        for seen in robot.endpoints:
+            self._observed[seen.node].append(seen)
+
+    def list_uses(self, node_id: str) -> set[tuple[str, str | None]]:
+        """Return what a node of the design uses: use and name."""
+        return {(each.use, each.name) for each in self._designed[node_id] if not each.internal}
+
+    def list_observed_uses(self, full_name: str) -> set[tuple[str, str | None]]:
+        """Return what a node of the robot uses, without what ROS gives each node."""
+        return {(each.use, each.name) for each in self._list_told(full_name)}
+
+    def compare_node(self, nodes: Sequence[Node], observed_node: ObservedNode) -> NodeComparison:
+        """Compare the nodes of the design that have one full name with what was observed of it."""
+        comparison = NodeComparison()
+        designed = [endpoint for node in nodes for endpoint in self._designed[node.id]]
+        if not observed_node.has_known_uses:
+            comparison.untold += [each for each in designed if self._is_expected(each)]
+            return comparison
+        observed = self._list_told(observed_node.full_name)
+        missing, strange = self._match(designed, observed, comparison.pairs)
+        for endpoint, seen in _pair_renamed(missing, strange):
+            missing.remove(endpoint)
+            strange.remove(seen)
+            if self._is_expected(endpoint):
+                comparison.findings.append(_report_other_name(nodes[0], endpoint, seen, self._robot.where))
+        unknown = [each for each in observed if each.name is None]
+        for endpoint in filter(self._is_expected, missing):
+            if any(_may_be(endpoint, each) for each in unknown):
+                comparison.untold.append(endpoint)
+            else:
+                comparison.missing.append(endpoint)
+                comparison.findings.append(self._report_missing(nodes[0], endpoint, observed_node))
+        unnamed = [each for each in designed if each.name is None]
+        comparison.findings += (self._report_strange(nodes[0], seen, unnamed) for seen in strange)
+        for pair in comparison.pairs:
+            comparison.findings += compare_types(nodes[0], pair, self._robot.where)
+        return comparison
+
+    def _match(
+        self, designed: Sequence[Endpoint], observed: Sequence[ObservedEndpoint], pairs: list[EndpointPair]
+    ) -> tuple[list[Endpoint], list[ObservedEndpoint]]:
+        """Add the pairs of one name, and return what is left on both sides, as far as its names are known."""
+        by_name: dict[tuple[str, str, str | None], ObservedEndpoint] = {
+            (each.use, each.flow, each.name): each for each in observed if each.name is not None
+        }
+        missing = []
+        met: set[tuple[str, str, str | None]] = set()
+        for endpoint in designed:
+            key = (endpoint.use, endpoint.flow, endpoint.name)
+            seen = by_name.get(key)
+            if seen is None and endpoint.flow == "action":
+                # Of one without a type nobody can tell whether it is a service or an action.
+                key = (endpoint.use, "service", endpoint.name)
+                untyped = by_name.get(key)
+                seen = untyped if untyped is not None and untyped.message is None else None
+            if seen is not None:
+                met.add(key)
+                pairs.append(EndpointPair(endpoint, seen))
+            elif endpoint.name is not None and endpoint.use not in self._robot.unseen_uses:
+                missing.append(endpoint)
+        return missing, [each for key, each in by_name.items() if key not in met]
+
+    def compare_qos(self, pairs: Iterable[EndpointPair]) -> Iterator[Diagnostic]:
+        """Yield where the quality of service is another one than is written, or where nothing is written, no longer fits."""
+        pairs = [pair for pair in pairs if pair.designed.flow == "topic"]
+        by_topic: dict[str | None, list[EndpointPair]] = defaultdict(list)
+        for pair in pairs:
+            by_topic[pair.designed.name].append(pair)
+        for pair in pairs:
+            if not pair.observed.qos:
+                continue
+            differing = self._list_differing(pair)
+            if differing and pair.designed.qos.written:
+                for policy in differing:
+                    yield self._report_policy(pair, policy)
+            elif differing:
+                yield from self._report_misfits(pair, by_topic[pair.designed.name])
+
+    def _list_told(self, full_name: str) -> list[ObservedEndpoint]:
+        """Return what a node uses, without what ROS and its libraries give each node."""
+        endpoints = self._observed[full_name]
+        names = {each.name for each in endpoints}
+        return [each for each in endpoints if each.name is None or not _is_common(each, names)]
+
+    def _is_expected(self, endpoint: Endpoint) -> bool:
+        """Whether the robot has to have an end of the design."""
+        is_optional = endpoint.use in {"subscribes", "calls"} and self._is_optional(endpoint)
+        is_heard_elsewhere = endpoint.use == "subscribes" and endpoint.name in _TRANSFORMS
+        may_lack = endpoint.internal or is_optional or is_heard_elsewhere or endpoint.runs != "active"
+        return endpoint.name is not None and endpoint.use not in self._robot.unseen_uses and not may_lack
+
+    def _is_optional(self, endpoint: Endpoint) -> bool:
+        port = self._architecture.inputs.get(endpoint.port or "")
+        return port is not None and port.optional
+
+    def _report_missing(self, node: Node, endpoint: Endpoint, observed_node: ObservedNode) -> Diagnostic:
+        message = f"`{node.full_name}` does not {VERBS[endpoint.use]} `{endpoint.name}`"
+        severity = Severity.WARNING if endpoint.use == "calls" else None
+        help_line = (
+            "bring it back on the robot, or take it out here"
+            if self._robot.kind == "workspace"
+            else "start what is missing, or write `status: planned` while it is to come"
+        )
+        return Diagnostic(
+            "not-running",
+            f"{message} {self._robot.where}",
+            endpoint.at,
+            severity,
+            (Label(observed_node.at, "this is the node"),),
+            help_line,
+            endpoint.port or node.id,
+        )
+
+    def _report_strange(self, node: Node, seen: ObservedEndpoint, unnamed: Sequence[Endpoint]) -> Diagnostic:
+        what = f"`{node.full_name}` {_VERBS_OF_ONE[seen.use]} `{seen.name}`"
+        labels = (Label(seen.at, "seen here"),)
+        candidates = [each for each in unnamed if _may_be(each, seen)]
+        if candidates:
+            known = f"may be `{candidates[0].port}`, whose name" if len(candidates) == 1 else "may be one whose name"
+            message, help_line = f"{what}, which {known} the design does not say", f"write `{_write_name(seen)}` there"
+            place = first_written_span(candidates[0].at, node.at)
+            return Diagnostic("not-in-model", message, place, Severity.NOTE, labels, help_line, node.id)
+        entry = f"{_write_name(seen)}{f', message: {seen.message}' if seen.message else ''}"
+        key = (seen.name or "").rpartition("/")[2] or "port"
+        help_line = (
+            f"write `internal: {{{seen.use}: {{{key}: {{{entry}}}}}}}` at the node, or give its component a port"
+        )
+        is_minor = seen.is_conditional or (seen.flow == "topic" and seen.name in self._shared)
+        severity = Severity.NOTE if is_minor else None
+        message = f"{what}, and the design does not say so"
+        return Diagnostic("not-in-model", message, node.at, severity, labels, help_line, node.id)
+
+    def _list_differing(self, pair: EndpointPair) -> list[str]:
+        """Return the policies in which both ends differ, as far as this kind of observation knows them."""
+        qos, seen = pair.designed.qos, pair.observed.qos
+        policies = _GRAPH_POLICIES if self._robot.kind == "graph" else tuple(seen)
+        if self._robot.kind == "graph" and qos.profile == "system_default":
+            return []  # the middleware's own choice
+        return [policy for policy in policies if policy in seen and getattr(qos, policy) != seen[policy]]
+
+    def _report_policy(self, pair: EndpointPair, policy: str) -> Diagnostic:
+        endpoint, seen = pair
+        designed, observed = map(_show_policy, (getattr(endpoint.qos, policy), seen.qos[policy]))
+        key = policy.replace("_", " ")
+        message = f"the {key} of `{endpoint.name}` is {observed} {self._robot.where}, and {designed} in the design"
+        help_line = f"write `qos: {{{policy}: {observed.strip('`')}}}`, or change the program"
+        labels = (Label(seen.at, f"it {_VERBS_OF_ONE[endpoint.use]} it like this"),)
+        place = first_written_span(endpoint.qos.at, endpoint.at)
+        is_latched = (policy, endpoint.use, endpoint.qos.durability) == ("durability", "publishes", "transient_local")
+        rule = "not-latched" if is_latched else "other-qos"
+        return Diagnostic(rule, message, place, None, labels, help_line, endpoint.port or endpoint.node)
+
+    def _report_misfits(self, pair: EndpointPair, others: Iterable[EndpointPair]) -> Iterator[Diagnostic]:
+        """Yield where an end of which the design writes nothing no longer fits another one of its topic."""
+        endpoint, seen = pair
+        for other in others:
+            if other.designed.use == endpoint.use:
+                continue
+            own, opposite = (replace(each.designed.qos, **each.observed.qos) for each in (pair, other))
+            offered, requested = (own, opposite) if endpoint.use == "publishes" else (opposite, own)
+            for conflict in find_qos_conflicts(offered, requested):
+                message = (
+                    f"`{endpoint.name}` does not arrive {self._robot.where}: a reader asks for {conflict.requested}, "
+                    f"and {conflict.offered} is offered"
+                )
+                labels = (Label(seen.at, "seen here"), Label(other.observed.at, "the other end"))
+                help_line = f"{conflict.remedy}; the design writes no `qos` here"
+                place, element = endpoint.at, endpoint.port or endpoint.node
+                yield Diagnostic("other-qos", message, place, None, labels, help_line, element)
+                return
+
+
+def _is_common(seen: ObservedEndpoint, names: set[str | None]) -> bool:
+    """Whether ROS or one of its libraries gives it to each node."""
+    name = seen.name or ""
+    if "/_" in name or name.endswith(_COMMON_ENDINGS):
+        return True
+    if seen.flow == "topic":
+        is_transported = any(name.endswith(each) and name.removesuffix(each) in names for each in _TRANSPORT_ENDINGS)
+        return is_transported or name == "/rosout_agg" or is_common_callback("subscription", name)
+    return seen.flow == "service" and is_common_callback("service", name)
+
+
+def _may_be(endpoint: Endpoint, seen: ObservedEndpoint) -> bool:
+    """Whether both may be the same, if it were not for a name that is not known."""
+    is_alike = (endpoint.use, endpoint.flow) == (seen.use, seen.flow)
+    return is_alike and (None in {endpoint.message, seen.message} or endpoint.message == seen.message)
+
+
+def _pair_renamed(
+    missing: Sequence[Endpoint], strange: Sequence[ObservedEndpoint]
+) -> Iterator[tuple[Endpoint, ObservedEndpoint]]:
+    """Yield what is there under another name: what the program itself calls it, else the only one of its type, else one
+    that ends alike.
+    """
+    lacking, left = list(missing), list(strange)
+    ways: tuple[Callable[[Endpoint, ObservedEndpoint], bool], ...] = (
+        lambda endpoint, seen: seen.name in {endpoint.program_name, endpoint.own_name},
+        lambda endpoint, seen: _last_word(endpoint.name) == _last_word(seen.name),
+        lambda endpoint, seen: endpoint.message is not None and endpoint.message == seen.message,
+    )
+    for fits in ways:
+        for endpoint in tuple(lacking):
+            fitting = [each for each in left if _may_be(endpoint, each) and fits(endpoint, each)]
+            rivals = [each for each in lacking if fitting and _may_be(each, fitting[0]) and fits(each, fitting[0])]
+            if len(fitting) == len(rivals) == 1:
+                lacking.remove(endpoint)
+                left.remove(fitting[0])
+                yield endpoint, fitting[0]
+
+
+def _last_word(name: str | None) -> str:
+    return (name or "").rpartition("/")[2]
+
+
+def _report_other_name(node: Node, endpoint: Endpoint, seen: ObservedEndpoint, where: str) -> Diagnostic:
+    is_own = seen.name == endpoint.program_name and endpoint.program_name != endpoint.name
+    message = f"`{node.full_name}` {_VERBS_OF_ONE[seen.use]} `{seen.name}` {where}, and `{endpoint.name}` in the design"
+    message += ": its remap does not count there" if is_own else ""
+    help_line = f"write `{_write_name(seen)}` here, or change the name there"
+    labels = (Label(seen.at, "seen here"),)
+    return Diagnostic("other-name", message, endpoint.at, None, labels, help_line, endpoint.port or node.id)
+
+
+def _write_name(seen: ObservedEndpoint) -> str:
+    return f"{'topic' if seen.flow == 'topic' else 'name'}: {seen.name}"
+
+
+def compare_types(node: Node, pair: EndpointPair, where: str) -> Iterator[Diagnostic]:
+    """Yield where both sides know a type and have not the same."""
+    endpoint, seen = pair
+    if None in {endpoint.message, seen.message} or endpoint.message == seen.message:
+        return
+    message = (
+        f"`{endpoint.name}`, which `{node.full_name}` {_VERBS_OF_ONE[endpoint.use]}, has the type `{seen.message}` {where}, "
+        f"and `{endpoint.message}` in the design"
+    )
+    place = first_written_span(endpoint.message_at, endpoint.at)
+    labels = (Label(seen.at, "seen here"),)
+    help_line = f"write `{seen.message}` as the type, or change the program"
+    yield Diagnostic("other-type", message, place, None, labels, help_line, endpoint.port or node.id)
+
+
+def _show_policy(value: object) -> str:
+    return "`unlimited`" if value is None else f"`{value}`"

@@ -1,0 +1,55 @@
+"""Observe a robot that exists: plug-ins read workspaces, dumps of graphs and recordings, whichever one knows the content."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from archgen.conformance.observed_robot import ObservedRobot
+from archgen.diagnostics.source_span import Span
+from archgen.frozen import dataclass, field, replace
+from archgen.importers.foreign_import import ForeignFileError
+from archgen.installed_plugins import list_shipped_facts, load_shipped_object
+
+
+@dataclass(frozen=True, slots=True)
+class ObservationOptions:
+    """What launch files of a workspace are given, which of them start the robot, and its distribution of ROS."""
+
+    arguments: Mapping[str, str] = field(default_factory=dict)
+    environment: Mapping[str, str] = field(default_factory=dict)
+    launch_files: tuple[str, ...] = ()
+    distro: str = ""
+
+
+def observe_robot(path: Path, root: Path, options: ObservationOptions) -> ObservedRobot:
+    """Read what a path holds of a robot. Places in it are relative to the project's folder `root`, as all in findings.
+
+    Raise ForeignFileError for what nobody knows or what cannot be read.
+    """
+    observers = sorted(list_shipped_facts("observers"), key=lambda item: item[2]["rank"])
+    for _, _, facts in observers:
+        robot: ObservedRobot | None = load_shipped_object(facts["reader"])(path, options)
+        if robot is not None:
+            folder = path if path.is_dir() else path.parent
+            return _move_places(robot, os.path.relpath(folder.resolve(), root.resolve()))
+    known = "; ".join(facts["summary"] for _, _, facts in observers)
+    words = "it is nothing that says how a robot is"
+    raise ForeignFileError(words, Span.of_file(str(path)), f"give one of these: {known}")
+
+
+def _move_places(robot: ObservedRobot, folder: str) -> ObservedRobot:
+    """Return what was observed with places from another folder on."""
+
+    def move(element: Any) -> Any:  # noqa: ANN401 - a node, an endpoint or a topic
+        file = Path(os.path.normpath(os.path.join(folder, element.at.file))).as_posix()  # noqa: PTH118 - `..` stays
+        return replace(element, at=element.at._replace(file=file))
+
+    return replace(
+        robot,
+        nodes=tuple(map(move, robot.nodes)),
+        endpoints=tuple(map(move, robot.endpoints)),
+        topics=tuple(map(move, robot.topics)),
+    )

@@ -1,0 +1,116 @@
+"""A checked project held against robots that were observed: findings as a check has them, and what was looked at."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
+from pathlib import Path
+
+from archgen.checking.all_rules import index_all_rules
+from archgen.conformance.accepted_differences import apply_acceptances
+from archgen.conformance.conformance_rules import RULE_NAMES
+from archgen.conformance.observed_robot import ObservedRobot
+from archgen.conformance.robot_comparison import ComparedPart, RobotComparison, compare_robot
+from archgen.diagnostics.common_wording import join_words
+from archgen.diagnostics.diagnostic import Diagnostic, settle_diagnostics
+from archgen.findings import ignore_comments
+from archgen.frozen import dataclass, replace
+from archgen.git.tag_list import has_tag
+from archgen.model.architecture import Architecture
+from archgen.pipeline import CheckedProject
+from archgen.products import check_findings
+from archgen.products.check_findings import ReportedFindings
+
+_MAX_EXCERPT_BYTES = 1_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class ConformanceReport:
+    """What was compared, robot by robot, and what is reported of it."""
+
+    comparisons: tuple[RobotComparison, ...]
+    accepted_count: int
+    """How many differences the project accepts."""
+    reported: ReportedFindings
+
+
+def hold_against_robots(
+    checked_project: CheckedProject,
+    robots: Sequence[ObservedRobot],
+    part: ComparedPart,
+    baseline_file: Path | None = None,
+) -> ConformanceReport:
+    """Compare a project with each robot; comments, settings and a baseline silence findings as in a check."""
+    variants = (each.architecture for each in checked_project.variants.values())
+    part = replace(part, other_nodes=frozenset(node.full_name for each in variants for node in each.nodes.values()))
+    architecture = checked_project.architecture
+    part = replace(part, ignored=(*part.ignored, *architecture.conform.ignore))
+    comparisons = tuple(compare_robot(architecture, robot, part, checked_project.rule_options) for robot in robots)
+    all_findings = [finding for comparison in comparisons for finding in comparison.findings]
+    was_compared = _list_compared(architecture, robots)
+    kept_findings, accepted_count = apply_acceptances(
+        all_findings, architecture.conform.accepted, was_compared, partial(has_tag, checked_project.root)
+    )
+    raw_findings = _place_in_project(kept_findings, checked_project)
+    loaded_project = checked_project.loaded_project
+    ignores = [ignore for file_ignores in loaded_project.ignores.values() for ignore in file_ignores]
+    if ignores:
+        first_lines = ignore_comments.find_first_lines(checked_project.architecture)
+        kept = ignore_comments.apply_ignores(raw_findings, ignores, index_all_rules(), first_lines)
+        # What is wrong with the comments themselves is the check's to say.
+        raw_findings = [finding for finding in kept if finding.rule in RULE_NAMES]
+    findings = settle_diagnostics(raw_findings, index_all_rules(), loaded_project.rule_settings)
+    _quote_robots(findings, checked_project)
+    return ConformanceReport(
+        comparisons,
+        accepted_count,
+        check_findings.report_findings(replace(checked_project, findings=findings), baseline_file),
+    )
+
+
+def _list_compared(architecture: Architecture, robots: Sequence[ObservedRobot]) -> Callable[[str], bool]:
+    """Return what says of an element whether something was seen of it: of its node, or of one that implements it."""
+    seen = {node.full_name for robot in robots for node in robot.nodes if node.has_known_uses}
+    compared = set(seen)
+    for node in architecture.nodes.values():
+        if node.full_name in seen:
+            compared |= {node.id, *node.implements}
+    return lambda element: element in compared or element.rpartition(".")[0] in compared
+
+
+def _place_in_project(findings: Iterable[Diagnostic], checked_project: CheckedProject) -> list[Diagnostic]:
+    """Return findings that say whom they concern; what stands in a library, which nobody here can change, is moved to the node."""
+    architecture = checked_project.architecture
+    library_files = frozenset(checked_project.loaded_project.library_files)
+    # All that ships with archgen counts as written where the project names the library.
+    shipped_places = {library.at for library in checked_project.loaded_project.libraries if library.is_shipped}
+    placed = []
+    for finding in findings:
+        element = finding.element or ""
+        owner = architecture.nodes.get(element) or architecture.components.get(element.rpartition(".")[0])
+        is_foreign = finding.span.file in library_files or finding.span in shipped_places
+        span = owner.at if is_foreign and owner is not None else finding.span
+        owners = (
+            [architecture.partners[each].title for each in owner.owners if each in architecture.partners]
+            if owner
+            else []
+        )
+        help_line = f"{finding.help}; it belongs to {join_words(owners)}" if owners else finding.help
+        placed.append(replace(finding, span=span, help=help_line))
+    return placed
+
+
+def _quote_robots(findings: Iterable[Diagnostic], checked_project: CheckedProject) -> None:
+    """Make the texts of the robots' files available for excerpts, as far as findings point into them."""
+    spans = {
+        span.file for each in findings for span in (each.span, *(label.span for label in each.labels)) if span.file
+    }
+    for file in sorted(spans.difference(checked_project.sources.file_names())):
+        path = checked_project.root / file
+        try:
+            is_short = path.is_file() and path.stat().st_size <= _MAX_EXCERPT_BYTES
+            text = path.read_text(encoding="utf-8", errors="replace") if is_short else None
+        except OSError:
+            continue
+        if text is not None:
+            checked_project.sources.add_text(file, text)

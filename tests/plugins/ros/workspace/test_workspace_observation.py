@@ -1,0 +1,132 @@
+"""A workspace held against the model that was made of it: nothing differs, and what somebody changes in it is found."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from archgen.importers.robot_observation import ObservationOptions
+from archgen.plugins.ros.workspace.workspace_observation import observe_workspace
+from tests.cli.conftest import Run
+from tests.plugins.ros.workspace.test_workspace_import import WORKSPACE, write_workspace
+
+
+@pytest.fixture
+def robot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, run: Run) -> Path:
+    """Return a folder with a workspace and the project that was imported from it."""
+    pytest.importorskip("tree_sitter_cpp")
+    monkeypatch.chdir(tmp_path)
+    write_workspace(tmp_path / "src", WORKSPACE)
+    assert run("import", "workspace", "src", "--distro", "humble", "-o", "robot").status == 0
+    return tmp_path
+
+
+def plant(file: str, old: str, new: str) -> None:
+    """Replace a text that is there."""
+    path = Path("src") / file
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new), encoding="utf-8")
+
+
+DRIVER = "my_driver/my_driver/driver.py"
+LAUNCH = "my_bringup/launch/robot.launch.py"
+FAULTS = {
+    "type": (
+        (DRIVER, '(Odometry, "odom"', '(LaserScan, "odom"'),
+        "error[other-type]: `/odom`, which `/front/front_driver` publishes, has the type `sensor_msgs/msg/LaserScan` in src",
+        f"{DRIVER}:13:9",
+    ),
+    "remap": (
+        (LAUNCH, 'remappings=[("odom", "/odom")]', "remappings=[]"),
+        "error[other-name]: `/front/front_driver` publishes `/front/odom` in src, and `/odom` in the design: its remap does not count there",
+        f"{DRIVER}:13:9",
+    ),
+    "service": (
+        (DRIVER, 'self.create_service(Trigger, "~/reset", self.reset)', "pass"),
+        "error[not-running]: `/front/front_driver` does not serve `/front/front_driver/reset` in src",
+        f"{LAUNCH}:12:9",
+    ),
+    "node": (
+        (
+            LAUNCH,
+            'Node(package="slam_toolbox", executable="async_slam_toolbox_node", name="slam",',
+            "Node(package='x', executable='y', name='z',",
+        ),
+        "error[not-running]: no launch file starts `/slam` in src",
+        "robot.yaml",
+    ),
+    "quality of service": (
+        ("my_filter/src/filter.cpp", "rclcpp::SensorDataQoS()", "rclcpp::QoS(5)"),
+        "error[other-qos]: the reliability of `/scan` is `reliable` in src, and `best_effort` in the design",
+        "my_filter/src/filter.cpp:7",
+    ),
+    "parameter": (
+        (LAUNCH, '"odom0": "/odom"', '"odom0": "/other"'),
+        'warning[other-parameter]: the parameter `odom0` of `/ekf` is `"/other"` in src, and `"/odom"` in the design',
+        "src/my_bringup/launch/robot.launch.py:15:9",
+    ),
+    "new topic": (
+        (
+            DRIVER,
+            'self.create_publisher(Odometry, "odom", 10)',
+            'self.create_publisher(Odometry, "odom", 10)\n        self.create_subscription(Odometry, "/goal", print, 10)',
+        ),
+        "warning[not-in-model]: `/front/front_driver` subscribes to `/goal`, and the design does not say so",
+        f"{DRIVER}:14:9",
+    ),
+}
+
+
+@pytest.mark.usefixtures("robot")
+def test_a_workspace_is_as_the_model_that_was_made_of_it(run: Run) -> None:
+    """Its node that is off by default is that of a variant, and is known; what only running it tells is counted."""
+    done = run("conform", "robot", "--against", "src", "--strict")
+    assert (done.status, done.out.splitlines()) == (
+        0,
+        [
+            "src (workspace): 4 of 4 nodes, 14 of 14 endpoints seen; 1 of its names unknown; 2 parameters compared",
+            "no differences",
+        ],
+    )
+
+
+@pytest.mark.usefixtures("robot")
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_change_of_the_workspace_is_found_with_both_places(run: Run, name: str) -> None:
+    change, sentence, place = FAULTS[name]
+    plant(*change)
+    done = run("conform", "robot", "--against", "src", "--strict")
+    assert done.status == 1
+    assert sentence in done.out
+    assert place in done.out, done.out
+
+
+@pytest.mark.usefixtures("robot")
+def test_what_may_be_a_computed_name_is_not_missed(run: Run) -> None:
+    """The name of one publisher of the driver is computed: a topic of its type may be that, and nobody says it is gone."""
+    text = Path("robot/robot.yaml").read_text(encoding="utf-8")
+    assert "bump: {}" in text
+    Path("robot/robot.yaml").write_text(text.replace("bump: {}", "bump: /bump"), encoding="utf-8")
+    done = run("conform", "robot", "--against", "src")
+    assert done.status == 0
+    assert "14 of 15 endpoints seen; 1 cannot be told; 1 of its names unknown" in done.out
+
+
+@pytest.mark.usefixtures("robot")
+def test_launch_files_are_given_what_starts_them(run: Run) -> None:
+    done = run("conform", "robot", "--against", "src", "--env", "MY_SCAN=/other")
+    assert "`/slam` subscribes to `/other` in src, and `/scan` in the design" in done.out
+    done = run("conform", "robot", "--against", "src", "--argument", "rviz:=true")
+    assert done.status == 0
+    assert "no launch argument" not in done.out
+    assert (
+        "`rviz` is no argument: write `--argument NAME:=VALUE`"
+        in run("conform", "robot", "--against", "src", "--argument", "rviz").err
+    )
+
+
+def test_what_is_no_workspace_is_left_to_others(tmp_path: Path) -> None:
+    assert observe_workspace(tmp_path, ObservationOptions()) is None
+    assert observe_workspace(tmp_path / "x", ObservationOptions()) is None
