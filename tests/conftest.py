@@ -108,6 +108,8 @@ def pytest_configure(config: pytest.Config) -> None:
     forked_templates.fork_templates(config)
 
 
+_LONGEST = frozenset({"test_slopes", "test_interpreters", "test_fuzz_run", "test_wheel", "test_faults"})
+"""Modules with tests that take a minute and more."""
 _LEFT_OUT = Counter[str]()
 _HIDING = pytest.StashKey[ToolHiding]()
 
@@ -126,6 +128,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
                 found[key] = list_tool_marks([item.function, *functions])
             for mark in found[key]:
                 item.add_marker(mark)
+    # First: one of them left for the end would keep one worker, with nothing to do for the others.
+    items.sort(key=lambda item: item.path.stem not in _LONGEST)
 
 
 def pytest_deselected(items: Sequence[pytest.Item]) -> None:

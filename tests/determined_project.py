@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import os
 import subprocess
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 
+import pytest
+
 from tests.repositories import commit, git, repository
-from tests.running import ROOT, contents
+from tests.running import ROOT, contents, made_once
 
 _PROGRAM = ROOT / "tests" / "every_output.py"
 _SECOND_PARTNER = """\
@@ -38,6 +41,17 @@ def make_project(folder: Path) -> Path:
     git(folder, "config", "user.name", "Clerk")
     git(folder, "config", "user.email", "clerk@x.org")
     return folder
+
+
+def make_every_output_once(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> dict[str, bytes]:
+    """Make every output by the Python of the tests, with no settings, once for all of pytest's workers; return the files."""
+    base = tmp_path_factory.getbasetemp()
+    place = (base if worker_id == "master" else base.parent) / "every output"
+
+    def make(folder: Path) -> None:
+        run_every_output(sys.executable, make_project(folder / "robot"), folder / "out", {"PYTHONPATH": str(ROOT)})
+
+    return contents(made_once(place, make) / "out")
 
 
 def run_every_output(

@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 from tests import readable
-from tests.determined_project import make_project, run_every_output
-from tests.running import RAMCIP, REVISION, ROOT, archgen, archgen_here, contents, made_once
+from tests.determined_project import make_every_output_once, make_project, run_every_output
+from tests.running import RAMCIP, REVISION, ROOT, archgen, archgen_here, contents
 
 ELSEWHERE = {
     "TZ": "Asia/Kathmandu",
@@ -197,14 +197,8 @@ def locales(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def every_output(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> dict[str, bytes]:
-    """Make every output under the settings of the tests, once for all of pytest's workers."""
-    base = tmp_path_factory.getbasetemp()
-    place = (base if worker_id == "master" else base.parent) / "every output"
-
-    def make(folder: Path) -> None:
-        run_every_output(sys.executable, make_project(folder / "robot"), folder / "out", {"PYTHONPATH": str(ROOT)})
-
-    return contents(made_once(place, make) / "out")
+    """Make every output under the settings of the tests."""
+    return make_every_output_once(tmp_path_factory, worker_id)
 
 
 @pytest.mark.slow

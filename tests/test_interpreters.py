@@ -11,18 +11,18 @@ import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from importlib import metadata
 from pathlib import Path
 
 import pytest
 
-from tests.determined_project import make_project, run_every_output
-from tests.running import RAMCIP, REVISION, ROOT, contents
+from tests.determined_project import make_every_output_once, make_project, run_every_output
+from tests.running import RAMCIP, REVISION, ROOT, contents, made_once
 
 pytestmark = pytest.mark.build
 VERSIONS = ("3.11", "3.12", "3.13", "3.14")
-OTHER = Path("other")
+OTHER = Path("ramcip")
 """Stands for the changed copy of the case study."""
 PRINTED = (
     ("check", "--format", "json", RAMCIP),
@@ -86,15 +86,22 @@ def pinned_libraries() -> Iterator[str]:
 
 
 @pytest.fixture(scope="module")
-def other(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Copy the case study, with some changes."""
-    folder = tmp_path_factory.mktemp("changed") / "ramcip"
-    shutil.copytree(RAMCIP, folder, ignore=shutil.ignore_patterns("archgen-out"))
-    for name, (old, new) in EDITS.items():
-        text = (folder / name).read_text(encoding="utf-8")
-        assert old in text
-        (folder / name).write_text(text.replace(old, new), encoding="utf-8")
-    return folder
+def printed(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> Path:
+    """Copy the case study, with some changes; beside it stands what the Python of the tests prints, by number."""
+    base = tmp_path_factory.getbasetemp()
+    place = (base if worker_id == "master" else base.parent) / "printed"
+
+    def make(folder: Path) -> None:
+        shutil.copytree(RAMCIP, folder / OTHER, ignore=shutil.ignore_patterns("archgen-out"))
+        for name, (old, new) in EDITS.items():
+            text = (folder / OTHER / name).read_text(encoding="utf-8")
+            assert old in text
+            (folder / OTHER / name).write_text(text.replace(old, new), encoding="utf-8")
+        for number, words in enumerate(PRINTED):
+            shown = run(sys.executable, *name_call(words, folder)).replace(bytes(folder), bytes(place))
+            (folder / str(number)).write_bytes(shown)
+
+    return made_once(place, make)
 
 
 @pytest.fixture(scope="module", params=VERSIONS)
@@ -134,17 +141,21 @@ def test_every_python_makes_the_same_files(python: Path, ramcip: Path, tmp_path:
     assert [path for path, data in expected.items() if made[path] != data] == []
 
 
-def test_every_python_prints_the_same(python: Path, other: Path) -> None:
-    for words in PRINTED:
-        call = ("-m", "archgen", *(other if word == OTHER else word for word in words))
-        assert run(python, *call) == run(sys.executable, *call), words
+def test_every_python_prints_the_same(python: Path, printed: Path) -> None:
+    for number, words in enumerate(PRINTED):
+        assert run(python, *name_call(words, printed)) == (printed / str(number)).read_bytes(), words
 
 
-def test_every_python_makes_the_same_bytes_of_every_output(python: Path, tmp_path: Path) -> None:
-    made = []
-    for number, program in enumerate((python, Path(sys.executable))):
-        place = tmp_path / str(number)
-        settings = {"PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(place / "cache")}
-        made.append(run_every_output(program, make_project(place / "robot"), place / "out", settings))
-    assert sorted(made[0]) == sorted(made[1])
-    assert [name for name, data in made[1].items() if made[0][name] != data] == []
+def name_call(words: Sequence[str | Path], printed: Path) -> tuple[str | Path, ...]:
+    """Return the arguments of a call, in which the changed copy stands below a folder."""
+    return ("-m", "archgen", *(printed / OTHER if word == OTHER else word for word in words))
+
+
+def test_every_python_makes_the_same_bytes_of_every_output(
+    python: Path, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory, worker_id: str
+) -> None:
+    expected = make_every_output_once(tmp_path_factory, worker_id)
+    settings = {"PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(tmp_path / "cache")}
+    made = run_every_output(python, make_project(tmp_path / "robot"), tmp_path / "out", settings)
+    assert sorted(made) == sorted(expected)
+    assert [name for name, data in expected.items() if made[name] != data] == []

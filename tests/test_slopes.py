@@ -19,11 +19,11 @@ from archgen.cli import main
 
 _BENCHMARK = import_module("benchmarks.generate")
 _STEEPEST = 1.3
-"""n log n has 1.2 between 80 and 320; a loop within a loop has 2."""
+"""n log n has 1.2 between 60 and 240; a loop within a loop has 2."""
 _FEW_CALLS = 3_000
 """So many more calls are nothing, whatever their slope: a sorted list of 200 names takes some hundreds."""
-_SIZES = {"components": (80, 160, 320), "variants": (10, 20, 40)}
-_OTHER_SIZES = (50, 100, 200)
+_SIZES = {"components": (60, 120, 240), "variants": (6, 12, 24)}
+_OTHER_SIZES = (30, 60, 120)
 _VERBS: dict[str, tuple[str, ...]] = {
     "check": ("check", "{project}"),
     "pack": ("pack", "{project}", "-o", "{out}/packed.yaml"),
