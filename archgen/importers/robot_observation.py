@@ -35,7 +35,9 @@ def observe_robot(path: Path, root: Path, options: ObservationOptions) -> Observ
         if robot is not None:
             folder = path if path.is_dir() else path.parent
             return _move_places(robot, os.path.relpath(folder.resolve(), root.resolve()))
-    known = "; ".join(facts["summary"] for _, _, facts in observers)
+    known = (
+        "; ".join(facts["summary"] for _, _, facts in observers) or "none: the plug-ins that read them are taken out"
+    )
     words = "it is nothing that says how a robot is"
     raise ForeignFileError(words, Span.of_file(str(path)), f"give one of these: {known}")
 

@@ -8,11 +8,9 @@ from textwrap import dedent
 import pytest
 
 from archgen.products import workspace_changes
-from tests.cli.conftest import Run, run
+from tests.cli.conftest import Run
 from tests.plugins.ros.workspace.test_workspace_import import WORKSPACE, write_workspace
 from tests.repositories import commit, git, repository
-
-__all__ = ["run"]
 
 DRIVER = "src/my_driver/my_driver/driver.py"
 
