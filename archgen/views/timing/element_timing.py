@@ -10,6 +10,7 @@ from archgen.timing.analysis import ChainResult
 from archgen.timing.chains.chain_advice import advise_on_chain
 from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import TimingValue
+from archgen.timing.figures.value_arithmetic import list_assumptions
 from archgen.timing.system.timing_system import Activity
 from archgen.views import element_references, inline_text
 from archgen.views.lookup import Lookup
@@ -57,7 +58,7 @@ def make_chain_blocks(
         Fact(
             "earliest",
             "At the earliest",
-            timing_tables.figure_cell(value_format.display_lower_bound(result.best), result.best),
+            timing_tables.lower_bound_cell(result.best),
         ),
         Fact(
             "",
@@ -128,7 +129,7 @@ def describe_assumptions(timing_lookup: TimingLookup, result: ChainResult) -> It
     # These texts must equal the assumptions that the timing analysis writes, or both versions appear in the report.
     redundant_words = {f"the response of {name} is as declared" for name in activities_by_tier.get("declared", ())}
     redundant_words |= {"assuming a dedicated core"} if "dedicated" in activities_by_tier else set()
-    yield from (word for word in result.bound.assumptions if word not in redundant_words)
+    yield from (word for word in list_assumptions(result.bound) if word not in redundant_words)
     yield from (
         f"{timing_tables.TIER_WORDS[tier]}: {', '.join(dict.fromkeys(names))}"
         for tier, names in activities_by_tier.items()
