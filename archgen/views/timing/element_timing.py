@@ -16,6 +16,7 @@ from archgen.views import element_references, inline_text
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Fact, Figure, Inlines, Table, Text, make_columns, show_facts
 from archgen.views.timing import chain_charts, load_charts, timing_tables, use_tables, value_format
+from archgen.views.timing.flow_tables import list_activities
 from archgen.views.timing.late_run_charts import make_late_run_figures
 from archgen.views.timing.timing_lookup import TimingLookup
 
@@ -200,13 +201,7 @@ def make_rate_fact(lookup: Lookup, nodes: Iterable[Node], component_id: str) -> 
     timing_lookup = lookup.timing
     if timing_lookup is None:
         return ()
-    short_name = component_id.rsplit(".", 1)[-1]
-    node_activities = [activity for node in nodes for activity in timing_lookup.activities_of_node.get(node.id, ())]
-    # A node may implement several components, and an activity names its component by full id, by short name, or not at
-    # all.
-    matching_activities = [
-        activity for activity in node_activities if activity.component in {None, short_name, component_id}
-    ]
+    matching_activities = list_activities(lookup, nodes, component_id)
     lines = []
     for activity in matching_activities:
         pace = timing_lookup.analysis.paces.get(activity.id)

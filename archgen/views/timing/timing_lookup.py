@@ -13,6 +13,7 @@ from archgen.views.timing import chain_status, value_format
 
 if TYPE_CHECKING:
     from archgen.simulation.schedule_log import LateSchedule
+    from archgen.timing.chains.element_flows import FlowFinder
     from archgen.timing.chains.fused_inputs import FusedInputs
     from archgen.timing.chains.use_case_times import UseCaseTimes, WholeBound
 
@@ -34,6 +35,8 @@ class TimingLookup:
     """The worst ways through composed components that say how long they take, by id."""
     use_cases: Mapping[str, UseCaseTimes] = field(default_factory=dict)
     """How long the steps of use cases take, by id."""
+    flows: FlowFinder | None = None
+    """What elements take in and give out; None in a lookup of a test."""
     late_runs: Mapping[str, LateSchedule] = field(default_factory=dict)
     """The runs in which chains were late, by chain."""
 
@@ -77,11 +80,15 @@ def complete_with_chains(analysis: Analysis | None, architecture: Architecture) 
 def bound_chains(analysis: Analysis, architecture: Architecture) -> TimingLookup:
     """Build the look-ups of a timing analysis, with the bounds of all chains, and of the composed components that have limits."""
     from archgen.simulation.chain_witnesses import judge_chains
+    from archgen.timing.chains.element_flows import FlowFinder
     from archgen.timing.chains.use_case_times import bound_use_cases, bound_wholes
 
     lookup = make_timing_lookup(analysis, judge_chains(analysis, architecture).values())
     return replace(
-        lookup, whole_bounds=bound_wholes(analysis, architecture), use_cases=bound_use_cases(analysis, architecture)
+        lookup,
+        whole_bounds=bound_wholes(analysis, architecture),
+        use_cases=bound_use_cases(analysis, architecture),
+        flows=FlowFinder(analysis, architecture, lookup.chains),
     )
 
 
