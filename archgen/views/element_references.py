@@ -124,8 +124,8 @@ def _find_concerned(lookup: Lookup, name: str) -> tuple[str, ...]:
         return tuple(owner for end in ends for owner in list_node_owners(architecture, end.node))
     if name in architecture.hosts:
         nodes = [node.id for node in architecture.nodes.values() if node.host == name]
-        host_owners = {owner for node in nodes for owner in list_node_owners(architecture, node)}
-        return tuple(host_owners) if len(host_owners) == 1 else ()
+        host_owners = tuple(dict.fromkeys(owner for node in nodes for owner in list_node_owners(architecture, node)))
+        return host_owners if len(host_owners) == 1 else ()
     servers = lookup.components_for_requirement.get(name, ())
     return tuple(owner for component in servers for owner in component.owners)
 
@@ -141,8 +141,10 @@ def list_node_owners(architecture: Architecture, node_id: str) -> tuple[str, ...
 
 def _find_file_owners(architecture: Architecture, file: str) -> tuple[str, ...]:
     """Return the partner whose groups alone stand in a file."""
-    owners = {group.owners for group in architecture.groups.values() if file and group.at.file == file}
-    return owners.pop() if len(owners) == 1 else ()
+    owners = list(
+        dict.fromkeys(group.owners for group in architecture.groups.values() if file and group.at.file == file)
+    )
+    return owners[0] if len(owners) == 1 else ()
 
 
 def link_message(architecture: Architecture, finding: Diagnostic) -> Inlines:

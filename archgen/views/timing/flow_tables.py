@@ -145,14 +145,14 @@ def make_flow_blocks(lookup: Lookup, element_id: str, title: str, activities: Se
                 ("Rate", 0.7, "right"),
                 ("Largest gap", 0.8, "right"),
                 ("Age on arrival", 0.8, "right"),
-                ("Since the sensor took it, on arrival", 1, "right"),
-                ("and when read", 0.8, "right"),
+                ("From sensor to arrival", 0.9, "right"),
+                ("To being read", 0.8, "right"),
                 ("How it is read", 1.3),
                 ("Deadlines on it", 1.3),
             )
             cells = tuple(
                 (
-                    inline_text.to_inlines(Text(row.port, code=True)),
+                    (Text("internal", muted=True) if row.port.startswith("/") else Text(row.port, code=True),),
                     *row[1:8],
                     inline_text.to_inlines(row.reading),
                     row.deadlines or (Text("none", muted=True),),
@@ -267,8 +267,8 @@ def _write_line(row: FlowRow, arrow: str) -> str:
         ("", row.rate),
         ("largest gap ", row.gap),
         ("age on arrival ", row.age),
-        ("since the sensor took it ", row.since_sensing),
-        ("when read ", row.read),
+        ("from sensor to arrival ", row.since_sensing),
+        ("to being read ", row.read),
     )
     texts = [f"{label}{_read(cell)}" for label, cell in figures if cell]
     deadlines = f"deadlines: {_read(row.deadlines) or 'none'}"
@@ -296,7 +296,12 @@ def make_partner_bullets(lookup: Lookup, activities: Sequence[Activity]) -> Bull
     for owner, (given, taken) in ports.items():
         verbs = ("gives", given), ("takes", taken)
         words = " and ".join(f"{verb} {join_words([f'`{each}`' for each in names])}" for verb, names in verbs if names)
-        items.append((*inline_text.owner_links(architecture, (owner,)), *inline_text.message_to_inlines(f" {words}")))
+        items.append(
+            (
+                *inline_text.owner_links(architecture, (owner,)),
+                *element_references.link_names(architecture, f" {words}"),
+            )
+        )
     return Bullets(tuple(items)) if items else None
 
 
