@@ -29,8 +29,8 @@ from archgen.products import (
     signed_agreements,
 )
 from archgen.products.output_options import OutputOptions
+from archgen.simulation.chain_witnesses import judge_chains
 from archgen.timing.analysis import Analysis, ChainResult
-from archgen.timing.chains import chain_bounds as timing_chains
 from archgen.timing.run_analysis import analyse_architecture
 from archgen.views.pages.report_outline import DetailLevel
 from archgen.views.partner_ownership import Ownership
@@ -93,7 +93,7 @@ class Project:
 
     def chains(self) -> dict[str, ChainResult]:
         """Return the latency of each chain (ns), its terms and the verdict on its deadline, by the chain's id."""
-        return timing_chains.bound_all_chains(self.timing(), self.architecture)
+        return judge_chains(self.timing(), self.architecture)
 
     def select(self, words: str) -> Selection:
         """Evaluate a selector. Raises `SelectorError` if it is invalid."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 
 from archgen.diagnostics.common_wording import join_first, join_words
@@ -14,7 +14,7 @@ from archgen.frozen import NamedTuple
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component, PerformanceIndicator
 from archgen.model.deployment import Host
-from archgen.timing.analysis import Analysis, ChainTerm, ServiceLoad
+from archgen.timing.analysis import Analysis, ChainTerm, LateRun, ServiceLoad
 from archgen.timing.chains.chain_bounds import LateChain, find_missed_shares, find_unmet_chains
 from archgen.timing.chains.read_ages import ReadAge, find_read_ages
 from archgen.timing.chains.use_case_times import WholeBound, WholeLimit, bound_wholes, list_limits
@@ -234,23 +234,42 @@ def late_chain(architecture: Architecture, analysis: Analysis, *, margin: Fracti
             help=f"`archgen timing --sensitivity {chain.id}` shows which figure shortens it most",
             element=chain.id,
         )
-    for late_result in find_unmet_chains(analysis, architecture, margin):
+    unmet_chains = list(find_unmet_chains(analysis, architecture, margin))
+    late_runs = _find_late_runs(architecture, analysis, unmet_chains)
+    for late_result in unmet_chains:
         chain_id, chain = late_result.chain.id, late_result.chain
+        late_run = late_runs.get(chain_id)
         deadline = f"its deadline of {chain.deadline}"
         verdict_text = (
             f"the chain `{chain_id}` misses {deadline}"
-            if late_result.verdict == "missed"
+            if late_result.verdict == "missed" or late_run
             else f"nothing proves that the chain `{chain_id}` meets {deadline}"
             + (f" with a margin of {format_percentage(margin)}" if margin else "")
         )
         yield Diagnostic(
             "late-chain",
-            f"{verdict_text}: {_describe_bound(analysis, late_result)}",
+            f"{verdict_text}: {_describe_run(chain_id, late_run) if late_run else _describe_bound(analysis, late_result)}",
             chain.at,
             labels=(_label_largest_part(architecture, analysis, late_result),),
             help=f"`archgen timing --sensitivity {chain_id}` shows which figure shortens it most",
             element=chain_id,
         )
+
+
+def _find_late_runs(
+    architecture: Architecture, analysis: Analysis, unmet_chains: Sequence[LateChain]
+) -> Mapping[str, LateRun]:
+    """Return the runs that show chains late that bounds alone do not prove to be, by chain."""
+    if all(each.verdict == "missed" for each in unmet_chains):
+        return {}
+    # Imported here because the simulator takes time to load, and of most projects all chains are proven.
+    from archgen.simulation.chain_witnesses import judge_chains
+
+    return {key: result.late_run for key, result in judge_chains(analysis, architecture).items() if result.late_run}
+
+
+def _describe_run(chain_id: str, run: LateRun) -> str:
+    return f"it took {format_duration(run.longest)} in a simulated run (`{run.write_command(chain_id)}`)"
 
 
 def _describe_bound(analysis: Analysis, late_chain: LateChain) -> str:

@@ -10,7 +10,7 @@ from archgen.diagnostics.suggestions import did_you_mean
 from archgen.model.architecture import Architecture
 from archgen.model.component import Input, Output
 from archgen.model.generic_names import read_generic_name
-from archgen.model.message_types import ConceptualType
+from archgen.model.message_types import ConceptualType, flow_of
 from archgen.model.port_media import uses_ros
 
 
@@ -66,6 +66,24 @@ def _suggest_mapping(type_name: str, architecture: Architecture) -> str:
     mapped_names = {type_.name for type_ in architecture.types.values() if type_.message and type_.origin != "message"}
     guess = did_you_mean(type_name, mapped_names | set(architecture.interfaces.mapper_names))
     return guess or f"name it below `types:`, as in `{type_name}: {{message: package/msg/Name}}`"
+
+
+def borrowed_call(architecture: Architecture) -> Iterator[Diagnostic]:
+    """That a type is a service or an action is said by the mapper that ships with archgen alone."""
+    for name, spans in _spans_by_type(architecture).items():
+        type_ = architecture.types.get(name)
+        if type_ is None or type_.origin != "shipped" or flow_of(type_.message) == "topic":
+            continue
+        # Who reads a topic is given something; who reads a service or an action calls it, which turns the arrow round.
+        yield Diagnostic(
+            "borrowed-call",
+            f"the type `{name}` is taken to be the {flow_of(type_.message)} `{type_.message}`, and who reads it to call it: "
+            "the mapper that ships with archgen says so",
+            spans[0],
+            labels=tuple(Label(span, "also used here") for span in spans[1:]),
+            help=f"say so below `types:`, or what it is: `{name}: {{message: {type_.message}}}`",
+            element=name,
+        )
 
 
 def unused_type(architecture: Architecture) -> Iterator[Diagnostic]:
@@ -134,5 +152,6 @@ def _is_mapped(architecture: Architecture, name: str) -> bool:
 
 RULES = (
     (unmapped_type, Severity.WARNING),
+    (borrowed_call, Severity.WARNING),
     (unused_type, Severity.NOTE),
 )

@@ -38,12 +38,12 @@ def command(words: tuple[str, ...], project: Path | None) -> None:
     lookup = make_lookup(checked_project.architecture, checked_project.findings)
     timed_kinds = {kind for word in words for kind, _ in element_names.find_elements(lookup, word)}
     if checked_project.analysis is not None and not timed_kinds.isdisjoint(
-        {"requirement", "chain", "composed", "use case"}
+        {"requirement", "chain", "composed", "use case", "component", "node"}
     ):
-        # Only these say whether they are in time; the bounds of chains take longer than all else here.
-        from archgen.views.timing.timing_lookup import bound_chains
+        # Only these say how often and how late; the bounds of chains take longer than all else here.
+        from archgen.views.timing.timing_lookup import complete_with_chains
 
-        lookup = add_timing(lookup, bound_chains(checked_project.analysis, checked_project.architecture))
+        lookup = add_timing(lookup, complete_with_chains(checked_project.analysis, checked_project.architecture))
     unknown_words = []
     for word in words:
         matches = element_names.find_elements(lookup, word)

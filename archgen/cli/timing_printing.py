@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from archgen.edit.element_edit import FileEdit
     from archgen.model.architecture import Architecture
     from archgen.pipeline import CheckedProject
-    from archgen.simulation.chain_evidence import ChainEvidence
     from archgen.timing.analysis import Analysis, ChainResult
+    from archgen.timing.search.proposals import Proposal
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,12 +42,13 @@ def print_timing_summary(request: TimingRequest) -> None:
 
     present = _analyse_chains(request.checked_project.architecture)
     if not request.overrides:
-        analysis, chains, evidence = _search_beyond(request.architecture, *present)
+        analysis, chains = present
+        proposal = _find_short_proposal(request.architecture, analysis, chains)
         if request.as_json:
-            _print_json(timing_json.timing_to_json(analysis, chains, evidence))
+            _print_json(timing_json.timing_to_json(analysis, chains, proposal))
         else:
             loops = find_loop_rounds(CostNetwork.of_analysis(analysis))
-            _print_lines(timing_text.format_timing(analysis, chains, loops, find_width(sys.stdout), evidence))
+            _print_lines(timing_text.format_timing(analysis, chains, loops, find_width(sys.stdout), proposal))
         return
     changed = _analyse_chains(request.architecture)
     if request.as_json:
@@ -61,26 +62,21 @@ def print_chain(request: TimingRequest, chain_id: str) -> None:
     """Print one chain term by term (`--chain`)."""
     from archgen.emit.data import timing_json
     from archgen.emit.terminal import chain_text
-    from archgen.simulation.chain_evidence import ChainEvidence
     from archgen.timing.chains import chain_bounds as chains_of
     from archgen.timing.chains import duerr_bounds
     from archgen.timing.chains.cost_network import CostNetwork
 
     analysis, chains = _analyse_chains(request.architecture)
-    _find_chain(chains, chain_id)
-    # What `--set` lays over the files cannot be simulated by a command of its own: then nothing is looked for.
-    if not request.overrides:
-        analysis, chains, evidence = _search_beyond(request.architecture, analysis, chains, chain_id)
-    else:
-        evidence = ChainEvidence()
-    result = chains[chain_id]
+    result = _find_chain(chains, chain_id)
+    is_late = result.verdict in {"missed", "not proven"} and not request.overrides
+    proposal = _find_short_proposal(request.architecture, analysis, chains) if is_late else None
     # Without terms the chain is open: its elements may be components that no activity stands for.
     published = duerr_bounds.bound_periodic_chain(analysis, result.through) if result.terms else None
     if request.as_json:
-        _print_json({"version": timing_json.VERSION, "chain": chain_id, **timing_json.chain_to_json(result, evidence)})
+        _print_json({"version": timing_json.VERSION, "chain": chain_id, **timing_json.chain_to_json(result, proposal)})
     else:
         age = chains_of.find_data_age(CostNetwork.of_analysis(analysis), result)
-        _print_lines(chain_text.format_chain(result, analysis, age, published, find_width(sys.stdout), evidence))
+        _print_lines(chain_text.format_chain(result, analysis, age, published, find_width(sys.stdout), proposal))
 
 
 def print_reasons(request: TimingRequest, word: str) -> None:
@@ -213,23 +209,21 @@ def print_proposal(request: TimingRequest, *, keep_triggers: bool, applies: bool
         click.echo("\n".join(shown_lines), nl=False)
 
 
-def _search_beyond(
-    architecture: Architecture, analysis: Analysis, chains: dict[str, ChainResult], asked: str | None = None
-) -> tuple[Analysis, dict[str, ChainResult], ChainEvidence]:
-    """Look for runs in which chains are late, and for what would prove those that are not met."""
+def _find_short_proposal(
+    architecture: Architecture, analysis: Analysis, chains: dict[str, ChainResult]
+) -> Proposal | None:
     from archgen.link.timing_overrides import apply_overrides
-    from archgen.simulation.chain_evidence import apply_witnesses, find_evidence
+    from archgen.timing.search.proposals import find_short_proposal
 
-    evidence = find_evidence(architecture, analysis, chains, apply_overrides, asked)
-    return analysis, apply_witnesses(chains, evidence.witnesses), evidence
+    return find_short_proposal(architecture, analysis, chains, apply_overrides)
 
 
 def _analyse_chains(architecture: Architecture) -> tuple[Analysis, dict[str, ChainResult]]:
-    from archgen.timing.chains.chain_bounds import bound_all_chains
+    from archgen.simulation.chain_witnesses import judge_chains
     from archgen.timing.run_analysis import analyse_architecture
 
     analysis = analyse_architecture(architecture)
-    return analysis, bound_all_chains(analysis, architecture)
+    return analysis, judge_chains(analysis, architecture)
 
 
 def _find_chain(chain_results: dict[str, ChainResult], chain_id: str) -> ChainResult:

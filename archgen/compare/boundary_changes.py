@@ -137,14 +137,16 @@ def _compare_interfaces(
     for key in sorted({*old_versions, *new_versions}):
         (name, (giver, taker)), old, new = key, old_versions.get(key), new_versions.get(key)
         new_figures = _known_figures(old, new) if new else {}
-        figures = tuple(_compare_figures(old.figures if old else {}, new_figures))
+        all_figures = tuple(_compare_figures(old.figures if old else {}, new_figures))
         kind: BoundaryKind = "changed" if old and new else "added" if new else "removed"
+        missed_deadline = _find_missed_deadline(all_figures, new.figures) if new and kind == "changed" else None
+        figures = all_figures if missed_deadline else tuple(each for each in all_figures if not _says_the_same(each))
         old_id = old.own_id if old and new and old.own_id != name else None
         if old and new and old.is_replaced and old.wire != new.wire:
             figures = (FigureChange(FigureKey(new.wire.flow), old.wire, new.wire), *figures)
         if figures or kind != "changed":
-            concerned = {giver, taker} if kind != "changed" else _find_concerned(figures, giver, taker, new)
-            missed_deadline = _find_missed_deadline(figures, new.figures) if new and kind == "changed" else None
+            is_for_both = kind != "changed" or missed_deadline
+            concerned = {giver, taker} if is_for_both else _find_concerned(figures, giver, taker, new)
             yield BoundaryChange(
                 kind,
                 name,
@@ -193,8 +195,12 @@ def _compare_figures(old_figures: InterfaceFigures, new_figures: InterfaceFigure
     )
     for key in dict.fromkeys((*new_figures, *old_figures)):
         before, after = old_figures.get(key), new_figures.get(key)
-        if not is_same_figure(key.name, before, after):
+        if before != after:
             yield FigureChange(key, before, after)
+
+
+def _says_the_same(figure: FigureChange) -> bool:
+    return is_same_figure(figure.key.name, figure.before, figure.after)
 
 
 def _find_concerned(

@@ -29,6 +29,10 @@ _NEGLIGIBLE_SHARE, _NEGLIGIBLE_AGE = Fraction(5, 1000), Fraction(5, 100)
 """A figure that changed by a smaller share concerns nobody. Of the age on arrival smaller changes are not even told, since
 one more message on a link makes everything on it a little older; agreements do not have it.
 """
+UNCHANGED_SHARE, _UNCHANGED_DURATION = Fraction(1, 1000), 1000
+"""A figure that differs by no more than that share, or a duration by less than so many ns, is the same to everybody: all
+figures move a little with the common tick of the analysis.
+"""
 _AGE_NAME = "age on arrival"
 DELAY_NAMES = frozenset({"largest gap", _AGE_NAME, "answers within"})
 RECEIVER_NAMES = frozenset({_AGE_NAME, "QoS asked", "hosts"})
@@ -156,7 +160,8 @@ def is_same_figure(name: str, before: ComparedFigure | None, after: ComparedFigu
         return before == after or _plain_qos(before) == _plain_qos(after)
     if not isinstance(before, TimingValue) or not isinstance(after, TimingValue):
         return _is_unknown(before) and _is_unknown(after) if before is None or after is None else before == after
-    return is_close_value(before, after, _NEGLIGIBLE_AGE if name == _AGE_NAME else Fraction(0))
+    share = _NEGLIGIBLE_AGE if name == _AGE_NAME else Fraction(0)
+    return is_same_duration(before, after, share) if name in DELAY_NAMES else is_close_value(before, after, share)
 
 
 def concerns_nobody(change: FigureChange) -> bool:
@@ -175,15 +180,25 @@ def is_smaller(before: TimingValue, after: TimingValue) -> bool:
 
 
 def is_close_value(before: TimingValue, after: TimingValue, negligible_share: Fraction = _NEGLIGIBLE_SHARE) -> bool:
-    """Whether two values differ by no more than a share of the larger one."""
+    """Whether two values differ by no more than a share of the larger one, and by so little that nobody calls it a change."""
     if before.value is None or after.value is None:
         return name_unknown_reason(before) == name_unknown_reason(after)
     sides = [(value.complete, value.side) for value in (before, after)]
     # Nearly all are equal, and arithmetic of fractions is slow.
     return sides[0] == sides[1] and (
         before.value == after.value
-        or abs(after.value - before.value) <= negligible_share * max(abs(before.value), abs(after.value))
+        or abs(after.value - before.value)
+        <= max(negligible_share, UNCHANGED_SHARE) * max(abs(before.value), abs(after.value))
     )
+
+
+def is_same_duration(before: TimingValue, after: TimingValue, negligible_share: Fraction = Fraction(0)) -> bool:
+    """Whether two durations (ns) are close, or differ by so little time that nobody calls it a change."""
+    if before.value is not None and after.value is not None:
+        is_short = abs(after.value - before.value) < _UNCHANGED_DURATION
+        if is_short and (before.complete, before.side) == (after.complete, after.side):
+            return True
+    return is_close_value(before, after, negligible_share)
 
 
 def _is_unknown(figure: ComparedFigure | None) -> bool:

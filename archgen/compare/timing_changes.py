@@ -8,7 +8,7 @@ from typing import Literal
 
 from archgen.compare.architecture_version import ArchitectureVersion
 from archgen.compare.comparison import ChainChange, Change, LoadChange
-from archgen.compare.interface_figures import is_close_value, is_smaller
+from archgen.compare.interface_figures import is_close_value, is_same_duration, is_smaller
 from archgen.compare.kinds import Worsening, find_key
 from archgen.compare.losses.change_context import ChangeContext
 from archgen.compare.losses.timing_causes import TimingCauses
@@ -16,8 +16,8 @@ from archgen.compare.matched_ids import MatchedIds
 from archgen.compare.timing_pair import TimingPair, can_affect_timing, find_activity_owners
 from archgen.frozen import replace
 from archgen.model.architecture import Architecture
+from archgen.simulation.chain_witnesses import judge_chains
 from archgen.timing.analysis import Analysis, ChainResult
-from archgen.timing.chains import chain_bounds as timing_chains
 from archgen.timing.figures.timing_values import UNKNOWN_VALUE, TimingValue
 
 
@@ -130,18 +130,18 @@ def compare_chains(
 
 
 def _chain_results(architecture: Architecture, analysis: Analysis) -> Mapping[str, ChainResult]:
-    return timing_chains.bound_all_chains(analysis, architecture) if architecture.chains else {}
+    return judge_chains(analysis, architecture) if architecture.chains else {}
 
 
 def _results_differ(old_result: ChainResult | None, new_result: ChainResult | None) -> bool:
     if old_result is None or new_result is None:
         return True
     # The words of a bound (what it lacks, where it is from) may change without the figure: they are left out.
-    bounds = [(result.bound.value, result.bound.complete, result.bound.side) for result in (old_result, new_result)]
     limits = [
-        (result.deadline, *((each.share, each.limit) for each in result.shares)) for result in (old_result, new_result)
+        (result.verdict, result.deadline, *((each.share, each.limit) for each in result.shares))
+        for result in (old_result, new_result)
     ]
-    return bounds[0] != bounds[1] or limits[0] != limits[1]
+    return limits[0] != limits[1] or not is_same_duration(old_result.bound, new_result.bound)
 
 
 def _is_negligible(old_result: ChainResult | None, new_result: ChainResult | None) -> bool:

@@ -5,7 +5,7 @@ times and data ages off the traces, and `simulate_system` puts the seeds togethe
 which a chain is late. An observed maximum is a lower bound on the worst case, never the worst case itself.
 """
 
-from archgen.simulation.seeded_runs import LateRun, find_late_runs, simulate_system
+from archgen.simulation.seeded_runs import find_late_runs, simulate_system
 from archgen.simulation.simulation_result import (
     ChainFigures,
     DurationDistribution,
@@ -19,7 +19,6 @@ from archgen.simulation.simulation_result import (
 __all__ = [
     "ChainFigures",
     "DurationDistribution",
-    "LateRun",
     "ObservedActivity",
     "ObservedChain",
     "ObservedHost",

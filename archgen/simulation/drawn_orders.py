@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
 
-from archgen.frozen import NamedTuple
 from archgen.simulation import executor_state
 from archgen.simulation.simulation_run import SimulationRun
+from archgen.timing.analysis import DrawnOrder
 
 _ORDER_WORDS = {
     executor_state.WAIT_SET: "in rounds, as ROS 2 does",
@@ -15,13 +15,6 @@ _ORDER_WORDS = {
     executor_state.RANDOM_ORDER: "at random",
     executor_state.FIXED_RANKS: "by ranks",
 }
-
-
-class DrawnOrder(NamedTuple):
-    """Who goes first at a place (`navbox`, `pc`, `gpu`), in words, where several wait there and no order is written."""
-
-    place: str
-    words: str
 
 
 def describe_orders(orders: Iterable[DrawnOrder]) -> str:

@@ -10,10 +10,11 @@ from typing import Literal
 from archgen.frozen import NamedTuple, dataclass, field
 from archgen.simulation.chain_series import ChainTrace, find_latest_passage, list_passed_jobs
 from archgen.simulation.chain_tracking import ChainTrack, track_chain
-from archgen.simulation.drawn_orders import DrawnOrder, list_drawn_orders
+from archgen.simulation.drawn_orders import list_drawn_orders
 from archgen.simulation.event_loop import process_events
 from archgen.simulation.plan_builder import PublishPauses, build_plan
 from archgen.simulation.simulation_run import SimulationRun, ThreadState
+from archgen.timing.analysis import DrawnOrder
 from archgen.timing.system.timing_system import TimingSystem
 
 _SECOND = 10**9

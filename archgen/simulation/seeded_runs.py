@@ -9,16 +9,16 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
-from archgen.frozen import dataclass
 from archgen.simulation.chain_series import find_latest_passage
 from archgen.simulation.chain_tracking import ChainTrack, track_chain
-from archgen.simulation.drawn_orders import DrawnOrder, list_drawn_orders
+from archgen.simulation.drawn_orders import list_drawn_orders
 from archgen.simulation.event_loop import EventFloodError, run_plan
 from archgen.simulation.plan_builder import PublishPauses, build_plan
 from archgen.simulation.run_totals import RunTotals
 from archgen.simulation.simulation_plan import SimulationPlan
 from archgen.simulation.simulation_result import SimulationResult
 from archgen.simulation.simulation_run import SimulationRun
+from archgen.timing.analysis import LateRun
 from archgen.timing.system.timing_system import TimingSystem
 
 _SECOND = 10**9
@@ -48,18 +48,6 @@ def simulate_system(
     for seed in numbers:
         totals.add_run(_run_recorded(plan, seed, horizon, tuple(tracks.values())), horizon)
     return totals.to_result(seconds, numbers, horizon, chains or {})
-
-
-@dataclass(frozen=True, slots=True)
-class LateRun:
-    """A run in which a chain took longer than its deadline: `archgen simulate --seed SEED --seconds SECONDS`."""
-
-    seed: int
-    seconds: int
-    longest: Fraction
-    """What the chain took in it, in ns: its longest reaction, or its oldest data where it samples the world."""
-    orders: tuple[DrawnOrder, ...] = ()
-    """The orders of what the chain comes to, where nobody wrote one."""
 
 
 def find_late_runs(

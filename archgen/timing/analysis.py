@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Literal
 
 from archgen.diagnostics.source_span import NO_SPAN, Span
-from archgen.frozen import dataclass, field, replace
+from archgen.frozen import NamedTuple, dataclass, field, replace
 from archgen.model.declared_timing import ActivityBehaviour, SchedulingOrder
 from archgen.model.quantity import write_share
 from archgen.timing.figures.figure_wording import describe_timing_value, format_duration
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 ChainVerdict = Literal["met", "missed", "not proven", "open"]
-"""What is known of a chain's deadline: it is `met` at all times; it can be `missed` (an overload, a best case above it);
+"""What is known of a chain's deadline: it is `met` at all times; it can be `missed` (an overload, a best case above it, a run that was late);
 it is `not proven`, since the bound is above it, or none was found; it is `open`, since figures are missing.
 """
 
@@ -265,6 +265,29 @@ class ShareDeadline:
         return write_share(self.share)
 
 
+class DrawnOrder(NamedTuple):
+    """Who goes first at a place (`navbox`, `pc`, `gpu`), in words, where several wait there and no order is written."""
+
+    place: str
+    words: str
+
+
+@dataclass(frozen=True, slots=True)
+class LateRun:
+    """A run in which a chain took longer than its deadline: `archgen simulate --seed SEED --seconds SECONDS`."""
+
+    seed: int
+    seconds: int
+    longest: Fraction
+    """What the chain took in it, in ns: its longest reaction, or its oldest data where it samples the world."""
+    orders: tuple[DrawnOrder, ...] = ()
+    """The orders of what the chain comes to, where nobody wrote one."""
+
+    def write_command(self, chain_id: str) -> str:
+        """Return the command that shows the run again."""
+        return f"archgen simulate --chain {chain_id} --seed {self.seed} --seconds {self.seconds}"
+
+
 @dataclass(frozen=True, slots=True)
 class ChainResult:
     """A chain: its safe bound (reaction time = data age), best case, the reduced figures and the verdict; in ns."""
@@ -280,6 +303,8 @@ class ChainResult:
     verdict: ChainVerdict
     shares: tuple[ShareDeadline, ...] = ()
     """What is asked of shares of its reactions, the smallest first."""
+    late_run: LateRun | None = None
+    """The run that shows that it can be late, where bounds alone do not prove that (`simulation.judge_chains`)."""
 
     def find_limit(self, share: Fraction) -> Fraction | None:
         """Return how long a share of the reactions may take at most, as is asked of it or of more of them; None for any time."""

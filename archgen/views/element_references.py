@@ -10,9 +10,10 @@ from archgen.language.language_tables import SECTION_KINDS
 from archgen.model.architecture import Architecture
 from archgen.model.component import Component
 from archgen.model.message_types import full_message_name
+from archgen.timing.chains.chain_advice import find_deciding_term
 from archgen.views import inline_text
 from archgen.views.lookup import Lookup
-from archgen.views.shapes import Inlines, Text
+from archgen.views.shapes import Inlines, Text, split_anchor
 
 _SHARED_IDS = ("component_type", "node", "group", "requirement", "chain")
 """Kinds that are meant by an id which others share, in this order."""
@@ -75,10 +76,75 @@ def find_owners(architecture: Architecture, element_id: str | None) -> tuple[str
     return element.owners if element else ()
 
 
-def owner_cell(architecture: Architecture, element_id: str | None) -> Inlines:
-    """Return links to the owners of an element; "nobody yet" where it has none."""
-    owners = find_owners(architecture, element_id)
-    return inline_text.owner_links(architecture, owners) if owners else (Text("nobody yet", muted=True),)
+def answering_cell(lookup: Lookup, element_id: str | None, place: Span) -> Inlines:
+    """Return links to the partners who have to act on what is said of an element at a place; where nobody can be named,
+    the question that decides it. Empty in a project without partners.
+    """
+    architecture, name = lookup.architecture, element_id or ""
+    if not architecture.partners:
+        return ()
+    for owners in (
+        find_owners(architecture, name),
+        _find_concerned(lookup, name),
+        _find_file_owners(architecture, place.file),
+        tuple(architecture.partners) if len(architecture.partners) == 1 else (),
+    ):
+        if owners:
+            return inline_text.owner_links(architecture, tuple(dict.fromkeys(owners)))
+    reference = find_reference(architecture, name) if name else None
+    what = f"the {split_anchor(reference)[0].replace('_', ' ')} {name}" if reference else place.file or "this"
+    return (Text(f"who answers for {what}?", muted=True),)
+
+
+def _find_concerned(lookup: Lookup, name: str) -> tuple[str, ...]:
+    """Return who has to act on an element that nobody owns: who takes most of a chain's time, gives a type, sends on a
+    topic, runs on a host alone, or serves a requirement.
+    """
+    architecture = lookup.architecture
+    results = (result for result in (lookup.timing.chains if lookup.timing else ()) if result.id == name)
+    if (result := next(results, None)) and result.terms and lookup.timing:
+        activity = lookup.timing.analysis.system.activities.get(find_deciding_term(result).activity)
+        return list_node_owners(architecture, activity.node) if activity else ()
+    if name in architecture.chains:
+        return next(
+            (
+                owners
+                for point in architecture.chains[name].through[::-1]
+                if (owners := find_owners(architecture, point.id))
+            ),
+            (),
+        )
+    if name in architecture.types:
+        outputs = [each.id for each in architecture.outputs.values() if each.type == name]
+        inputs = [each.id for each in architecture.inputs.values() if each.type == name]
+        return next((owners for port in (*outputs, *inputs) if (owners := find_owners(architecture, port))), ())
+    if name in architecture.topics:
+        topic = architecture.topics[name]
+        ends = topic.writers or topic.readers
+        return tuple(owner for end in ends for owner in list_node_owners(architecture, end.node))
+    if name in architecture.hosts:
+        nodes = [node.id for node in architecture.nodes.values() if node.host == name]
+        host_owners = tuple(dict.fromkeys(owner for node in nodes for owner in list_node_owners(architecture, node)))
+        return host_owners if len(host_owners) == 1 else ()
+    servers = lookup.components_for_requirement.get(name, ())
+    return tuple(owner for component in servers for owner in component.owners)
+
+
+def list_node_owners(architecture: Architecture, node_id: str) -> tuple[str, ...]:
+    """Return who owns a node: those that it names, else the owners of what it implements."""
+    node = architecture.nodes.get(node_id)
+    if node is None:
+        return ()
+    components = (architecture.components.get(name) for name in node.implements)
+    return node.owners or tuple(dict.fromkeys(owner for each in components if each for owner in each.owners))
+
+
+def _find_file_owners(architecture: Architecture, file: str) -> tuple[str, ...]:
+    """Return the partner whose groups alone stand in a file."""
+    owners = list(
+        dict.fromkeys(group.owners for group in architecture.groups.values() if file and group.at.file == file)
+    )
+    return owners[0] if len(owners) == 1 else ()
 
 
 def link_message(architecture: Architecture, finding: Diagnostic) -> Inlines:

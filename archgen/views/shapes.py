@@ -58,6 +58,8 @@ class Text:
     """
     status: Status | None = None
     """The state that this run tells. Emitters may show it as a coloured chip; its words say the same."""
+    is_lower: bool = False
+    """The figure is at least so much though it has no sign: a best case, a deadline. Emitters round it down."""
     is_place: bool = False
     """Whether this is a place in the project's files, `FILE:LINE`. One without an address may be offered to be copied."""
     is_number: bool = False

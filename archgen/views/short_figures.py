@@ -1,4 +1,8 @@
-"""Quantities in texts with three significant digits: 7.22 s for 7223.333 ms. What bounds from one side stays true."""
+"""Quantities in texts with three significant digits: 7.23 s for 7223.333 ms. What bounds from one side stays true.
+
+The only place that decides how a shown figure is rounded: as its sign says; a time without a sign is one that nothing takes
+longer than, and is rounded up; all else, what `~` calls rounded, and a period behind its rate, to the nearest.
+"""
 
 from __future__ import annotations
 
@@ -6,10 +10,12 @@ import re
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_UP, Decimal
 
 _UNITS = "ns|us|ms|s|Hz|kHz|MHz|B|kB|MB|GB|B/s|kB/s|MB/s|GB/s|%"
-QUANTITY = re.compile(rf"(?<![\w.])([<>]= )?([0-9]+(?:\.[0-9]+)?) ({_UNITS})(?![\w/])")
+QUANTITY = re.compile(rf"(?<![\w.])([<>]= |~)?([0-9]+(?:\.[0-9]+)?) ({_UNITS})(?![\w/])")
 """A number and its unit, with the sign of a bound: the groups are sign, number and unit."""
 _COMPARISON = re.compile(r"([<>])=[ \u00a0](?=[+-]?[0-9])")
 _DIGITS = 3
+_PERIOD_LEAD = " Hz · "
+_DURATION_UNITS = frozenset({"ns", "us", "ms", "s"})
 
 
 def write_comparisons(text: str) -> str:
@@ -18,12 +24,16 @@ def write_comparisons(text: str) -> str:
     return _COMPARISON.sub(lambda found: f"{'≤' if found[1] == '<' else '≥'} ", text) if "=" in text else text
 
 
-def shorten_quantity(sign: str, number: str, unit: str) -> tuple[str, str]:
-    """Return a number and its unit with three significant digits; milliseconds from 1000 on become seconds."""
-    value = Decimal(number)
+def shorten_match(match: re.Match[str], *, is_lower: bool = False) -> tuple[str, str, str]:
+    """Return sign, number and unit of a quantity with three significant digits; milliseconds from 1000 on become seconds.
+    Without a sign it is at least so much where it `is_lower`, and the period of a rate that it stands behind is neither.
+    """
+    sign, unit, value = match[1] or "", match[3], Decimal(match[2])
+    is_period = match.string.endswith(_PERIOD_LEAD, 0, match.start())
+    rounding_sign = sign or (">" if is_lower else "~" if is_period else "<" if unit in _DURATION_UNITS else "")
     if unit == "ms" and value >= 1000:  # noqa: PLR2004 - more digits than three are none that count
         value, unit = value / 1000, "s"
-    return round_number(value, sign), unit
+    return sign, round_number(value, rounding_sign), unit
 
 
 def round_number(value: Decimal, sign: str = "") -> str:
@@ -39,27 +49,18 @@ def round_number(value: Decimal, sign: str = "") -> str:
     return text.rstrip("0").rstrip(".") if "." in text else text
 
 
-def shorten_bounds(text: str) -> str:
-    """Return a text whose quantities are upper bounds with three significant digits each; what it says stays true."""
-
-    def shorten_bound(match: re.Match[str]) -> str:
-        number, unit = shorten_quantity(match[1] or "<", match[2], match[3])
-        return f"{match[1] or ''}{number} {unit}"
-
-    return QUANTITY.sub(shorten_bound, text)
-
-
 def shorten_text(text: str) -> str:
     """Return a text with its figures short, for where no other place has room for all digits: pictures and tips."""
     return "".join([short or part for part, short in split_figures(text)])
 
 
-def split_figures(text: str) -> list[tuple[str, str]]:
-    """Split a text into its parts, each with its shorter form: empty but for a quantity that has one.
+def split_figures(text: str, *, is_lower: bool = False) -> list[tuple[str, str]]:
+    """Split a text into its parts, each with its shorter form: empty but for a quantity that has one. Where its figures
+    are `is_lower`, those without a sign are at least so much.
 
     None has one where two quantities of the text would then read the same: their digits are what it is about.
     """
-    quantities = [(match.span(), *_shorten(match)) for match in QUANTITY.finditer(text)]
+    quantities = [(match.span(), *_shorten(match, is_lower=is_lower)) for match in QUANTITY.finditer(text)]
     forms = {whole: short for _, whole, short in quantities}
     if len(set(forms.values())) < len(forms):
         return [(text, "")]
@@ -71,7 +72,6 @@ def split_figures(text: str) -> list[tuple[str, str]]:
     return [*parts, (text[position:], "")]
 
 
-def _shorten(match: re.Match[str]) -> tuple[str, str]:
-    sign = match[1] or ""
-    number, unit = shorten_quantity(sign, match[2], match[3])
+def _shorten(match: re.Match[str], *, is_lower: bool) -> tuple[str, str]:
+    sign, number, unit = shorten_match(match, is_lower=is_lower)
     return match[0], f"{sign}{number} {unit}"

@@ -245,9 +245,9 @@ def test_show_says_whether_the_chains_of_a_requirement_are_in_time(run: Run, tmp
         "chains: {k: {through: [g.a, g.b], deadline: 10 ms, requirements: [R-1]}}\n"
     )
     (tmp_path / "archgen.yaml").write_text(text, encoding="utf-8")
-    assert "  served by:\n    the chain k (not proven)\n" in run("show", "R-1", "-C", tmp_path).out
+    assert "  served by:\n    the chain k (missed)\n" in run("show", "R-1", "-C", tmp_path).out
     shown_chain = run("show", "k", "-C", tmp_path).out
-    assert "  state:          not proven\n  requirements:   R-1\n" in shown_chain
+    assert "  state:          missed\n  requirements:   R-1\n" in shown_chain
 
 
 def test_a_terminal_of_80_columns_shows_progress_as_a_table(

@@ -26,18 +26,22 @@ from tests.compare.conftest import Checked
 from tests.compare.elements import pair, some
 
 AB = ("a", "b")
+MS = 10**6
 
 
 def read_version(figures: str = "", wire: str = "/x", lacks: str = "", own_id: str = "") -> InterfaceVersion:
-    """Return an interface: `rate=10 asked=5`; `lacks` says which ends nobody wrote, a QoS is its deadline in ns (`-`)."""
+    """Return an interface: `rate=10 asked=5`; `lacks` says which ends nobody wrote, a QoS is its deadline (`-`);
+    times are in ms.
+    """
     values: dict[FigureKey, ComparedFigure] = {}
     for word in figures.split():
         name, value = word.split("=")
+        scale = 1 if name == "rate" else MS
         if name in {"asked", "offered"}:
-            deadline = None if value == "-" else TimingValue(Fraction(value))
+            deadline = None if value == "-" else TimingValue(Fraction(value) * MS)
             values[FigureKey(f"QoS {name}", str(len(values)))] = Qos(deadline=deadline)  # type: ignore[arg-type]
         else:
-            values[FigureKey(name.replace("_", " "))] = TimingValue(None if value == "?" else Fraction(value))
+            values[FigureKey(name.replace("_", " "))] = TimingValue(None if value == "?" else Fraction(value) * scale)
     return InterfaceVersion(own_id, values, WireNames("topic", (wire,)), "sender" not in lacks, "receiver" not in lacks)
 
 
@@ -49,7 +53,7 @@ def write_change(change: BoundaryChange) -> str:
         f"{change.interface_id}{f'({change.old_id})' if change.old_id else ''}",
         f"{'+'.join(change.givers)}>{'+'.join(change.takers)}",
         *figures,
-        f"over {change.missed_deadline.value}" if change.missed_deadline else "",
+        f"over {_scale(change.missed_deadline.value)}" if change.missed_deadline else "",
         f"concerns {''.join(sorted(change.concerned_partners))}",
     )
     return " ".join(filter(None, facts))
@@ -57,10 +61,14 @@ def write_change(change: BoundaryChange) -> str:
 
 def _show(figure: object) -> str:
     if isinstance(figure, TimingValue):
-        return str(figure.value)
+        return _scale(figure.value)
     if isinstance(figure, Qos):
-        return str(figure.deadline and figure.deadline.value)
+        return _scale(figure.deadline and figure.deadline.value)
     return figure.names[0] if isinstance(figure, WireNames) else "-"
+
+
+def _scale(value: Any) -> str:  # noqa: ANN401 - a figure or a quantity
+    return str(Fraction(value) / MS if value and value >= MS else value)
 
 
 def compare(old: InterfaceVersion | None, new: InterfaceVersion | None) -> list[str]:
@@ -82,7 +90,10 @@ def compare(old: InterfaceVersion | None, new: InterfaceVersion | None) -> list[
         (read_version("rate=1", own_id="x"), read_version("rate=2"), ["changed x a>b rate:1..2 concerns ab"]),
         (None, read_version("rate=2", own_id="old"), ["added x a>b rate:-..2 concerns ab"]),
         # Small changes, and what only comes sooner, concern nobody.
-        (read_version("rate=1000"), read_version("rate=1001"), ["changed x a>b rate:1000..1001 concerns "]),
+        (read_version("rate=1000"), read_version("rate=1002"), ["changed x a>b rate:1000..1002 concerns "]),
+        (read_version("rate=1000"), read_version("rate=1001"), []),
+        (read_version("largest_gap=9"), read_version("largest_gap=9.0000005"), []),
+        (read_version("largest_gap=5 asked=5"), read_version("largest_gap=5.0000005 asked=5"), ["changed x a>b largest gap:5..10000001/2000000 over 5 concerns ab"]),
         (read_version("largest_gap=9"), read_version("largest_gap=8"), ["changed x a>b largest gap:9..8 concerns "]),
         # Another QoS that is asked for concerns the taker alone, unless it is not offered.
         (read_version("offered=5 asked=-"), read_version("offered=5 asked=9"), ["changed x a>b QoS asked:None..9 concerns b"]),
@@ -224,7 +235,7 @@ def test_with_errors_of_linking_only_what_changed_counts(checked: Checked, waiti
         "changed g.a.x p>q size:1000..2000 traffic:1000..2000 concerns pq",
     ]
     assert [write_change(change) for change in find_boundary_changes(before, later, matched, timing, versions)] == [
-        "added g.a.w p>q rate:-..1 largest gap:-..1000000000 size:-..1000 traffic:-..1000 QoS offered:-..None QoS asked:-..None concerns pq",
+        "added g.a.w p>q rate:-..1 largest gap:-..1000 size:-..1000 traffic:-..1000 QoS offered:-..None QoS asked:-..None concerns pq",
         "changed g.a.x p>q size:1000..2000 traffic:1000..2000 concerns pq",
         "removed g.a.y p>q concerns pq",
         "changed g.c.z r>q concerns pqr",

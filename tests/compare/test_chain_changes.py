@@ -42,7 +42,7 @@ def test_a_deadline_that_changed(compared: Compared) -> None:
     (change,) = compared(ROBOT, ROBOT.replace("300 ms", "100 ms")).chains
     assert change.deadline is not None
     assert change.deadline.value == 100 * MS
-    assert [side and side.verdict for side in (change.before, change.after)] == ["met", "not proven"]
+    assert [side and side.verdict for side in (change.before, change.after)] == ["met", "missed"]
 
 
 def test_chains_that_came_went_or_were_renamed(compared: Compared) -> None:

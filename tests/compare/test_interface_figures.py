@@ -28,10 +28,15 @@ def read_value(text: str) -> TimingValue:
     return replace(value, side="at most") if text.startswith("<=") else value
 
 
+def _in_ms(value: TimingValue) -> TimingValue:
+    return replace(value, value=None if value.value is None else value.value * 10**6)
+
+
 @pytest.mark.parametrize(
     ("before", "after", "expected"),
     [
         ("10", "10", "close same age"),
+        ("10000", "10010", "close same age"),
         ("1000", "1005", "close age"),
         ("1000", "1006", "age"),
         ("1005", "1000", "close age smaller"),
@@ -57,7 +62,7 @@ def test_values_that_say_the_same(before: str, after: str, expected: str) -> Non
     judged = {
         "close": is_close_value(*sides),
         "same": is_same_figure("rate", *sides),
-        "age": is_same_figure("age on arrival", *sides),
+        "age": is_same_figure("age on arrival", *map(_in_ms, sides)),
         "smaller": is_smaller(*sides),
     }
     assert " ".join(name for name, is_true in judged.items() if is_true) == expected

@@ -141,7 +141,7 @@ def test_a_question_is_answered_as_the_command_line_does(server: SiteServer, rob
         "id": "stop",
         "title": "Stops in time",
         "now": {"figure": "110 ms", "status": "met", "margin": "90 ms left"},
-        "then": {"figure": "1.16 s", "status": "not proven", "margin": "≤ +955 ms"},
+        "then": {"figure": "1.16 s", "status": "missed", "margin": "seen +955 ms"},
         "difference": "+1.05 s",
         "differs": True,
     }

@@ -6,8 +6,7 @@ from archgen.model.architecture import Architecture
 from archgen.simulation.analysis_bounds import find_publish_pauses
 from archgen.simulation.chain_witnesses import find_witnesses
 from archgen.simulation.schedule_log import LateSchedule, record_schedule
-from archgen.simulation.seeded_runs import LateRun
-from archgen.timing.analysis import Analysis, ChainResult
+from archgen.timing.analysis import Analysis, ChainResult, LateRun
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.run_analysis import analyse_architecture
 from tests.timing.random_systems import architecture

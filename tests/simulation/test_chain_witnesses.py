@@ -6,10 +6,10 @@ from fractions import Fraction
 
 import pytest
 
+from archgen.model.architecture import Architecture
 from archgen.simulation import chain_witnesses, simulate_system
 from archgen.simulation.analysis_bounds import find_publish_pauses
-from archgen.simulation.chain_evidence import apply_witnesses
-from archgen.simulation.chain_witnesses import find_witnesses
+from archgen.simulation.chain_witnesses import find_witnesses, judge_chains
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.run_analysis import analyse_architecture
 from tests.timing.sketches import read_sketch
@@ -19,9 +19,13 @@ REST = "hosts: {p: {cores: 1}}\nchains: {c: {through: [scan, fast], deadline: DE
 
 
 def _prepare(deadline: str):  # type: ignore[no-untyped-def]  # noqa: ANN202 - what both need
-    model = read_sketch(NODES, "scan>fast", REST.replace("DEADLINE", deadline))
+    model = _read_robot(deadline)
     analysis = analyse_architecture(model)
     return analysis, bound_all_chains(analysis, model)
+
+
+def _read_robot(deadline: str) -> Architecture:
+    return read_sketch(NODES, "scan>fast", REST.replace("DEADLINE", deadline))
 
 
 def test_what_was_seen_is_seen_again_from_its_seed() -> None:
@@ -38,10 +42,11 @@ def test_what_was_seen_is_seen_again_from_its_seed() -> None:
     ).chains["c"]
     figures = [again.bounded_figures.reaction, again.bounded_figures.age]
     assert max(figure.largest for figure in figures if figure) == witness.longest
-    assert {key: chain.verdict for key, chain in apply_witnesses(results, witnesses).items()} == {
-        "c": "missed",
-        "free": "open",
-    }
+    judged = judge_chains(analysis, _read_robot("115 ms"))
+    assert [(key, chain.verdict, chain.late_run) for key, chain in judged.items()] == [
+        ("c", "missed", witness),
+        ("free", "open", None),
+    ]
 
 
 def test_the_same_run_is_found_each_time() -> None:

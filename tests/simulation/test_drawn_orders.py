@@ -7,7 +7,8 @@ from fractions import Fraction
 
 from archgen.simulation import find_late_runs
 from archgen.simulation.chain_witnesses import find_witnesses
-from archgen.simulation.drawn_orders import DrawnOrder, describe_orders
+from archgen.simulation.drawn_orders import describe_orders
+from archgen.timing.analysis import DrawnOrder
 from archgen.timing.chains.chain_bounds import bound_all_chains
 from archgen.timing.run_analysis import analyse_architecture
 from tests.simulation.systems import arc, event, process, system, timed, within

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from archgen.simulation import LateRun, find_late_runs, simulate_system
+from archgen.simulation import find_late_runs, simulate_system
+from archgen.timing.analysis import LateRun
 from archgen.timing.system.timing_system import TimingSystem
 from tests.simulation.systems import arc, event, process, system, timed, within
 

@@ -46,7 +46,7 @@ def test_the_table_of_requirements_names_chains_with_their_state(tmp_path: Path)
     assert table is not None
     assert ["".join(part.text for part in row[-1]) for row in table.rows] == [
         "uncovered no component yet",
-        "chain Late: not proven, chain In good time: met, chain Free: without a deadline",
+        "chain Late: missed, chain In good time: met, chain Free: without a deadline",
         "Eye, chain In good time: met",
     ]
 
@@ -56,7 +56,7 @@ def test_the_page_of_a_requirement_lists_its_chains(tmp_path: Path) -> None:
     blocks = pages["requirement:R-1"].section.blocks
     assert [
         "".join(part.text for part in item) for block in blocks if isinstance(block, Bullets) for item in block.items
-    ] == ["Late: not proven", "In good time: met", "Free: without a deadline"]
+    ] == ["Late: missed", "In good time: met", "Free: without a deadline"]
     assert not [block for block in blocks if isinstance(block, Paragraph) and block.kind == "warning"]
     assert Bullets not in {type(block) for block in pages["requirement:R-3"].section.blocks}
 
@@ -66,7 +66,7 @@ def test_a_card_names_what_serves_a_requirement_and_what_a_chain_serves(tmp_path
     assert make_card(lookup, "requirement", "R-2").lists == (("served by", ("g.eye", "the chain good (met)")),)
     assert make_card(lookup, "chain", "late").facts == (
         ("deadline", "10 ms"),
-        ("state", "not proven"),
+        ("state", "missed"),
         ("requirements", "R-1"),
     )
 
@@ -107,8 +107,8 @@ def test_the_table_is_a_tree_with_states(tmp_path: Path) -> None:
     assert table is not None
     assert [column.title for column in table.columns] == ["Id", "Requirement", "Served by", "Verified by", "State"]
     assert [" | ".join(plain(cell) for cell in row) for row in table.rows] == [
-        "R-1 | Safesafety · must | both of its parts served | both of its parts verified | open",
-        "R-1.1 | >Stops | chain Late: not proven, chain Free: without a deadline | UC-1, chain Late: not proven, tests/stop.py, By hand | open",
+        "R-1 | Safesafety · must | both of its parts served | both of its parts verified | missed",
+        "R-1.1 | >Stops | chain Late: missed, chain Free: without a deadline | UC-1, chain Late: missed, tests/stop.py, By hand | missed",
         "R-1.2 | >Slow | Eye | By hand | met",
         "R-2 | Nice | chain In good time: met, its part served | chain In good time: met, its part verified | met",
         "R-1.2 | >Slow (also above) |  |  | ",
@@ -140,11 +140,11 @@ def test_the_card_of_a_whole_lists_its_parts_with_their_states(tmp_path: Path) -
     lookup = look_up_tree(tmp_path)
     card = make_card(lookup, "requirement", "R-1")
     assert card.facts[-5:] == (
-        ("state", "open"), ("kind", "safety"), ("priority", "must"), ("rationale", "People *fall*."), ("source", "D3, 4"),
+        ("state", "missed"), ("kind", "safety"), ("priority", "must"), ("rationale", "People *fall*."), ("source", "D3, 4"),
     )  # fmt: skip
-    assert dict(card.lists)["parts"] == ("R-1.1 Stops (open)", "R-1.2 Slow (met)")
+    assert dict(card.lists)["parts"] == ("R-1.1 Stops (missed)", "R-1.2 Slow (met)")
     part = dict(make_card(lookup, "requirement", "R-1.1").lists)
-    assert part["verified by"] == ("the use case UC-1", "the chain late (not proven)", "tests/stop.py", "By hand")
+    assert part["verified by"] == ("the use case UC-1", "the chain late (missed)", "tests/stop.py", "By hand")
 
 
 def test_a_tree_as_deep_as_there_are_requirements_is_shown(tmp_path: Path) -> None:

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import pytest
 
-from archgen.views.short_figures import shorten_bounds, shorten_text, split_figures, write_comparisons
+from archgen.views.short_figures import shorten_text, split_figures, write_comparisons
 
 
 @pytest.mark.parametrize(
     ("text", "shown"),
     [
-        ("7223.333 ms", "7.22 s"),
+        ("7223.333 ms", "7.23 s"),
         (">= 32.098 s of 60 s", ">= 32 s of 60 s"),
         ("<= 10.004 Hz", "<= 10.1 Hz"),
         ("1234 Hz and 2500 B", "1234 Hz and 2500 B"),
         ("up to 7000.4 ms, after 7000.1 ms", "up to 7000.4 ms, after 7000.1 ms"),
-        ("223.333 ms of 7223.333 ms", "223 ms of 7.22 s"),
+        ("223.333 ms of 7223.333 ms", "224 ms of 7.23 s"),
         ("version 2.1 of 10.0.0.1 ms", "version 2.1 of 10.0.0.1 ms"),
     ],
 )
@@ -33,10 +33,15 @@ def test_bounds_stay_true_and_what_differs_stays_apart(text: str, shown: str) ->
         ("at most 8.1 s", "at most 8.1 s"),
         ("not proven (0.012345 s)", "not proven (0.0124 s)"),
         ("not proven", "not proven"),
+        ("took ~104.2 ms", "took ~104 ms"),
     ],
 )
 def test_upper_bounds_are_rounded_up(text: str, shown: str) -> None:
-    assert shorten_bounds(text) == shown
+    assert shorten_text(text) == shown
+
+
+def test_what_is_at_least_so_much_is_rounded_down() -> None:
+    assert split_figures("124.9999 ms", is_lower=True) == [("", ""), ("124.9999 ms", "124 ms"), ("", "")]
 
 
 @pytest.mark.parametrize(

@@ -14,8 +14,8 @@ from archgen.compare.losses.timing_causes import TimingCauses
 from archgen.model.architecture import Architecture
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm
 from archgen.timing.chains.chain_bounds import bound_chain
-from archgen.timing.chains.chain_verdicts import judge_deadline
-from archgen.timing.figures.figure_wording import format_compared, format_duration
+from archgen.timing.chains.chain_verdicts import judge_chain
+from archgen.timing.figures.figure_wording import format_compared, format_compared_bounds, format_duration
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.system.timing_system import TimingSystem
 
@@ -75,7 +75,7 @@ def _separate_causes(
         asked_chain = architecture.chains[new_result.id]
         result = bound_chain(analysis, architecture, asked_chain)
         limit = old_result.deadline if asking and without.issuperset(asking) else binding
-        verdict = judge_deadline(result.bound, result.best, limit) if result.terms else "open"
+        verdict = judge_chain(result, limit) if result.terms else "open"
         return verdict != "met" and (verdict == "missed" or old_result.verdict == "met")
 
     grown = _grown_activities(causes, old_result.terms, new_result.terms)
@@ -122,12 +122,14 @@ def _lateness_reason(old_result: ChainResult, new_result: ChainResult) -> str:
     limit = f"its deadline of {_format_bound(deadline)}"
     if new_result.deadline != deadline:
         # A chain without steps is cut, which is told in words of its own.
-        new_verdict = judge_deadline(new_result.bound, new_result.best, deadline) if new_result.terms else "open"
+        new_verdict = judge_chain(new_result, deadline) if new_result.terms else "open"
         limit = f"the deadline of {_format_bound(deadline)} that it had before"
     limit_value, bound_value = deadline.value if deadline else None, new_result.bound.value
     is_above = limit_value is not None and bound_value is not None and bound_value > limit_value
     # What is no longer proven is as much of a loss as what is missed: nobody can rely on it any more.
-    if old_result.verdict in {"met", "not proven"} and new_verdict == "missed":
+    # A run may show by chance only now what nobody could rely on before.
+    is_lost = old_result.verdict == "met" or (old_result.verdict == "not proven" and not new_result.late_run)
+    if new_verdict == "missed" and is_lost:
         return f"makes {chain_name} miss {limit} ({_format_growth(old_result, new_result)})"
     if old_result.verdict == "met" and new_verdict == "not proven" and is_above:
         growth = _format_growth(old_result, new_result)
@@ -142,10 +144,9 @@ def _lateness_reason(old_result: ChainResult, new_result: ChainResult) -> str:
 def _format_growth(old_result: ChainResult, new_result: ChainResult) -> str:
     bounds = old_result.bound, new_result.bound
     limit = _binding_deadline(old_result, new_result)
-    values = [bound.value for bound in bounds if bound.value is not None]
-    texts = iter(format_compared(values, format_duration, limit=limit.value if limit else None))
+    texts = format_compared_bounds(bounds, limit.value if limit else None)
     old_text, new_text = (
-        "no bound" if bound.value is None else ("" if bound.complete else "at least ") + next(texts) for bound in bounds
+        "no bound" if bound.value is None else text for bound, text in zip(bounds, texts, strict=True)
     )
     return f"it takes {new_text}" if bounds[0] == bounds[1] else f"{old_text} → {new_text}"
 

@@ -8,12 +8,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from archgen.simulation.chain_evidence import NO_EVIDENCE, ChainEvidence
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, ResourceLoad
 from archgen.timing.chains.chain_bounds import BoundedPath
 from archgen.timing.chains.fused_inputs import FusedInputs, find_fused_inputs
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import is_known_bound
+from archgen.timing.search.proposals import Proposal
 from archgen.timing.system.timing_system import Arc
 
 VERSION = 1
@@ -22,7 +22,7 @@ JsonObject = dict[str, Any]
 
 
 def timing_to_json(
-    analysis: Analysis, chains: Mapping[str, ChainResult], evidence: ChainEvidence = NO_EVIDENCE
+    analysis: Analysis, chains: Mapping[str, ChainResult], proposal: Proposal | None = None
 ) -> JsonObject:
     """Return everything as plain data."""
     return {
@@ -38,7 +38,7 @@ def timing_to_json(
             }
             for edge in analysis.edges
         ],
-        "chains": {name: chain_to_json(result, evidence) for name, result in chains.items()},
+        "chains": {name: chain_to_json(result, proposal) for name, result in chains.items()},
         "hosts": {
             name: {
                 "utilisation": quantity_to_json(load.utilisation),
@@ -119,7 +119,7 @@ def _element_to_json(analysis: Analysis, name: str) -> JsonObject:
     }
 
 
-def chain_to_json(result: ChainResult, evidence: ChainEvidence = NO_EVIDENCE) -> JsonObject:
+def chain_to_json(result: ChainResult, proposal: Proposal | None = None) -> JsonObject:
     """Return a chain's figures, and what was found beyond them."""
     return {
         "through": list(result.through),
@@ -134,20 +134,20 @@ def chain_to_json(result: ChainResult, evidence: ChainEvidence = NO_EVIDENCE) ->
         ],
         "slack": None if result.slack is None else float(result.slack / _MS),
         "verdict": result.verdict,
-        **_evidence_to_json(result.id, evidence),
+        **_evidence_to_json(result, proposal),
     }
 
 
-def _evidence_to_json(chain_id: str, evidence: ChainEvidence) -> JsonObject:
-    """Return the run in which a chain is late, and what would prove it; nothing where neither was looked for."""
+def _evidence_to_json(result: ChainResult, proposal: Proposal | None) -> JsonObject:
+    """Return the run in which a chain is late, and what would prove it; nothing where there is neither."""
     document: JsonObject = {}
-    witness, proposal = evidence.witnesses.get(chain_id), evidence.proposal
-    if witness:
+    chain_id, run = result.id, result.late_run
+    if run:
         document["witness"] = {
-            "seed": witness.seed,
-            "seconds": witness.seconds,
-            "longest": float(witness.longest / _MS),
-            "orders": [order._asdict() for order in witness.orders],
+            "seed": run.seed,
+            "seconds": run.seconds,
+            "longest": float(run.longest / _MS),
+            "orders": [order._asdict() for order in run.orders],
         }
     if proposal and chain_id in proposal.tried[0].late:
         best = proposal.best

@@ -171,7 +171,11 @@ class PageWriter:
             return status_marks.write_chip(run.status, text)
         if run.code:
             return escape_breakable(run.text)
-        return escape_breakable(write_signs(run.text)) if has_exact_figures else write_figures(run.text)
+        return (
+            escape_breakable(write_signs(run.text))
+            if has_exact_figures
+            else write_figures(run.text, is_lower=run.is_lower)
+        )
 
     def _write_table(self, table: Table, *, hides_caption: bool = False) -> str:
         caption = escape_html(table.caption)

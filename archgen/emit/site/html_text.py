@@ -49,12 +49,14 @@ def write_signs(text: str) -> str:
 
 
 @lru_cache(65536)
-def write_figures(text: str) -> str:
-    """Escape text for an element, its figures with three significant digits; pointing at one shows all of it."""
+def write_figures(text: str, *, is_lower: bool = False) -> str:
+    """Escape text for an element, its figures with three significant digits, rounded down where they are `is_lower`;
+    pointing at one shows all of it.
+    """
     # Most texts have no figure: the pattern of quantities costs more than looking for one.
     if not _FIGURE.search(text):
         return escape_breakable(write_signs(text))
-    return "".join([_write_part(part, short) for part, short in split_figures(text)])
+    return "".join([_write_part(part, short) for part, short in split_figures(text, is_lower=is_lower)])
 
 
 def _write_part(text: str, short: str) -> str:

@@ -8,7 +8,6 @@ from archgen.diagnostics.common_wording import join_first, join_words
 from archgen.diagnostics.safe_text import make_visible
 from archgen.diagnostics.text_columns import TextRow
 from archgen.simulation.drawn_orders import describe_orders
-from archgen.simulation.seeded_runs import LateRun
 from archgen.timing.analysis import Analysis, ChainResult
 from archgen.timing.chains.chain_verdicts import VERDICT_WORDS
 from archgen.timing.chains.unfound_bounds import describe_unfound_places, find_overloaded_hosts, find_unfound_places
@@ -120,11 +119,13 @@ def list_share_rows(result: ChainResult) -> Iterator[TextRow]:
         yield f"  {each.name} of reactions", "", f"deadline {figure_wording.format_duration(each.limit)}", verdict
 
 
-def describe_witness(chain_id: str, witness: LateRun | None) -> str:
+def describe_late_run(result: ChainResult) -> str:
     """Return how to see a chain late, empty where no run is known."""
-    if witness is None:
+    run = result.late_run
+    if run is None:
         return ""
-    command = f"archgen simulate --seed {witness.seed} --chain {chain_id} --seconds {witness.seconds}"
-    orders_text = describe_orders(witness.orders)
-    longest_text = figure_wording.format_duration(witness.longest)
-    return make_visible(f"seen in `{command}`: {longest_text}{f' ({orders_text})' if orders_text else ''}")
+    orders_text = describe_orders(run.orders)
+    longest_text = figure_wording.format_duration(run.longest)
+    return make_visible(
+        f"seen in `{run.write_command(result.id)}`: {longest_text}{f' ({orders_text})' if orders_text else ''}"
+    )

@@ -12,7 +12,6 @@ from archgen.emit.data import timing_json
 from archgen.emit.terminal import chain_gaps, chain_remedies
 from archgen.emit.terminal.chain_gaps import describe_gaps, describe_slack
 from archgen.emit.terminal.timing_text import format_figure, format_missing
-from archgen.simulation.chain_evidence import NO_EVIDENCE, ChainEvidence
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm
 from archgen.timing.chains.chain_advice import advise_on_chain
 from archgen.timing.chains.chain_bounds import BoundedPath
@@ -21,6 +20,7 @@ from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import list_assumptions
 from archgen.timing.search.chain_budgets import ChainBudget, FactorBudget, FigureBudget, PartnerShare
+from archgen.timing.search.proposals import Proposal
 
 
 def format_chain(  # noqa: PLR0913, PLR0917 - what is shown of one chain
@@ -29,7 +29,7 @@ def format_chain(  # noqa: PLR0913, PLR0917 - what is shown of one chain
     age: TimingValue,
     published: tuple[Fraction, Fraction] | None = None,
     width: int | None = None,
-    evidence: ChainEvidence = NO_EVIDENCE,
+    proposal: Proposal | None = None,
 ) -> Iterator[str]:
     """Yield a chain term by term, with the reason and the place of each; `age` is its largest data age."""
     yield f"{result.id}: {' > '.join(result.through)}"
@@ -84,9 +84,9 @@ def format_chain(  # noqa: PLR0913, PLR0917 - what is shown of one chain
         rows.append(("deadline", format_figure(result.deadline), verdict_text))
     rows += [(share.strip(), limit, verdict) for share, _, limit, verdict in chain_gaps.list_share_rows(result)]
     yield from align_rows(rows, width)
-    if result.id in evidence.witnesses:
-        yield f"  {chain_gaps.describe_witness(result.id, evidence.witnesses[result.id])}"
-    advice, proposal = advise_on_chain(analysis, result), evidence.proposal
+    if result.late_run:
+        yield f"  {chain_gaps.describe_late_run(result)}"
+    advice = advise_on_chain(analysis, result)
     if advice is not None:
         yield ""
         yield from (f"  {sentence}" for sentence in advice if sentence)

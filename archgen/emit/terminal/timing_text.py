@@ -9,7 +9,6 @@ from archgen.diagnostics.common_wording import join_first
 from archgen.diagnostics.text_columns import TextRow, format_section
 from archgen.emit.terminal import chain_gaps, chain_remedies
 from archgen.emit.terminal.chain_gaps import describe_gaps
-from archgen.simulation.chain_evidence import NO_EVIDENCE, ChainEvidence
 from archgen.timing.analysis import Analysis, ChainResult, HostLoad
 from archgen.timing.chains.chain_advice import advise_on_chain
 from archgen.timing.chains.chain_verdicts import VERDICT_MEANINGS, VERDICT_WORDS
@@ -22,6 +21,7 @@ from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import NO_MATCH_NOTE, is_unfound
 from archgen.timing.load.host_verdicts import name_host_verdict
 from archgen.timing.load.resource_loads import list_turn_notes
+from archgen.timing.search.proposals import Proposal
 from archgen.timing.system.thread_pools import find_joint_nodes
 
 
@@ -30,16 +30,16 @@ def format_timing(
     chains: Mapping[str, ChainResult],
     loops: Iterable[LoopRound],
     width: int | None = None,
-    evidence: ChainEvidence = NO_EVIDENCE,
+    proposal: Proposal | None = None,
 ) -> Iterator[str]:
     """Yield the whole picture: chains first, then hosts, links, services, elements, loops. `width` is the terminal's."""
     sections = (
-        ("Chains: largest reaction time (= largest data age)", _chain_rows(analysis, chains.values(), evidence)),
+        ("Chains: largest reaction time (= largest data age)", _chain_rows(analysis, chains.values())),
         (
             "What is late or not proven to be in time, and why",
             _advice_rows(analysis, chains.values()),
         ),
-        (chain_remedies.REMEDY_TITLE, chain_remedies.list_remedy_rows(evidence.proposal)),
+        (chain_remedies.REMEDY_TITLE, chain_remedies.list_remedy_rows(proposal)),
         ("Hosts: load (100 % is one core all the time)", _host_rows(analysis)),
         ("Resources: load, and longest time from asking until done", _resource_rows(analysis)),
         ("Links", _link_rows(analysis)),
@@ -65,7 +65,7 @@ def format_timing(
     yield from _fault_lines(analysis)
 
 
-def _chain_rows(analysis: Analysis, chains: Iterable[ChainResult], evidence: ChainEvidence) -> Iterator[TextRow]:
+def _chain_rows(analysis: Analysis, chains: Iterable[ChainResult]) -> Iterator[TextRow]:
     for result in chains:
         deadline = f"deadline {format_figure(result.deadline)}" if result.deadline else "no deadline"
         yield (
@@ -74,15 +74,7 @@ def _chain_rows(analysis: Analysis, chains: Iterable[ChainResult], evidence: Cha
             deadline,
             VERDICT_WORDS[result.verdict] if result.deadline else "",
             chain_gaps.describe_slack(result),
-            "; ".join(
-                filter(
-                    None,
-                    (
-                        chain_gaps.describe_witness(result.id, evidence.witnesses.get(result.id)),
-                        describe_gaps(result, analysis),
-                    ),
-                )
-            ),
+            "; ".join(filter(None, (chain_gaps.describe_late_run(result), describe_gaps(result, analysis)))),
         )
         yield from chain_gaps.list_share_rows(result)
 

@@ -12,10 +12,17 @@ from typing import Literal
 from archgen.diagnostics.common_wording import join_words
 from archgen.frozen import NamedTuple
 from archgen.timing.analysis import Analysis, ChainResult, ChainTerm
-from archgen.timing.chains.unfound_bounds import find_overloaded_hosts
+from archgen.timing.chains.chain_verdicts import find_lateness
+from archgen.timing.chains.unfound_bounds import describe_unfound_places, find_overloaded_hosts, find_unfound_places
 from archgen.timing.figures import figure_wording
 from archgen.timing.figures.timing_values import TimingValue
-from archgen.timing.figures.value_arithmetic import NO_USE_NOTE, REPLACED_WORDS, UNLINKED_NOTE, is_boundless
+from archgen.timing.figures.value_arithmetic import (
+    NO_USE_NOTE,
+    REPLACED_WORDS,
+    UNLINKED_NOTE,
+    is_boundless,
+    is_known_bound,
+)
 from archgen.timing.system.core_placement import is_missing_cores
 
 _NAMED_LOADS = 3
@@ -45,10 +52,21 @@ def advise_on_chain(analysis: Analysis, result: ChainResult) -> ChainAdvice | No
         return None
     parts = sorted(_list_parts(result), key=lambda part: -part.duration)
     return ChainAdvice(
-        _describe_lateness(analysis, result, result.deadline.value),
+        describe_lateness(analysis, result, result.deadline.value),
         _describe_parts(analysis, parts[:2]),
         _suggest_for_cause(analysis, result),
     )
+
+
+def find_deciding_term(result: ChainResult) -> ChainTerm:
+    """Return the step of a chain to begin with: the first with a figure that is missing, else the one that takes most."""
+    missing = (term for term in result.terms if term.activity in result.bound.missing)
+    return next(missing, None) or max(result.terms, key=sum_known_parts)
+
+
+def sum_known_parts(term: ChainTerm) -> Fraction:
+    """Add up the known parts of a step, in ns."""
+    return sum((value.value or Fraction(0) for value in (term.sampling, term.response, term.link)), Fraction(0))
 
 
 def _list_parts(result: ChainResult) -> Iterator[_ChainPart]:
@@ -61,32 +79,39 @@ def _list_parts(result: ChainResult) -> Iterator[_ChainPart]:
         yield from (_ChainPart(kind, term, value.value) for kind, value in values if value.value)
 
 
-def _describe_lateness(analysis: Analysis, result: ChainResult, deadline: Fraction) -> str:
-    """Say by how much a chain may be late, or why nobody can say."""
-    bound, best = result.bound.value, result.best.value
+def describe_lateness(analysis: Analysis, result: ChainResult, deadline: Fraction) -> str:
+    """Say by how much a chain may be above its deadline (ns), by what evidence, or why nobody can say."""
+    bound, late = result.bound, find_lateness(result)
     deadline_text = f"its deadline of {_write(deadline)}"
-    if result.verdict == "missed" and best is not None and best > deadline:
-        return f"It takes at least {_write(best)}, {_write(best - deadline)} longer than {deadline_text} allows."
+    excess = f"{_write(late.duration)}, {_write(late.excess)} longer than {deadline_text} allows" if late else ""
+    if late and late.kind in {"at least", "seen"}:
+        run_words = f"In a simulated run it took {excess}; {_describe_most(analysis, result)}."
+        return f"It takes at least {excess}." if late.kind == "at least" else run_words
     hosts = find_overloaded_hosts(analysis, result.terms)
     if hosts:
         return f"It may take any time, whatever its deadline: more is to be done on {join_words(hosts)} than can be."
     if is_boundless(result.bound):
         return f"It may take any time, and so longer than {deadline_text} allows."
     if result.verdict == "open":
-        known = f"What is known of it adds up to {_write(bound)}" if bound else "Nothing is known of how long it takes"
+        known = (
+            f"What is known of it adds up to {_write(bound.value)}"
+            if bound.value
+            else "Nothing is known of how long it takes"
+        )
         return f"{known}, and figures are missing: nobody can say whether it meets {deadline_text}."
-    # Missed although its best case is in time: a simulated run was too late.
-    is_seen = result.verdict == "missed"
-    if bound is not None and bound > deadline:
-        head = "It may take up to" if result.bound.complete else "What is known of it adds up to"
-        evidence = "a simulated run was late" if is_seen else "nothing shows that it ever does"
-        return f"{head} {_write(bound)}, {_write(bound - deadline)} longer than {deadline_text} allows; {evidence}."
-    unsure = (
-        f"A simulated run took longer than {deadline_text} allows"
-        if is_seen
-        else f"Nothing says whether it meets {deadline_text}"
-    )
-    return f"{unsure}; nobody can say how long it takes at most: no bound was found."
+    if late:
+        head = "It may take up to" if late.kind == "at most" else "What is known of its longest time adds up to"
+        return f"{head} {excess}; nothing shows that it ever does."
+    return f"Nothing says whether it meets {deadline_text}: {_describe_most(analysis, result)}."
+
+
+def _describe_most(analysis: Analysis, result: ChainResult) -> str:
+    """Say how long a chain takes at most, as far as that is known."""
+    bound = result.bound.value
+    if bound is not None and is_known_bound(result.bound):
+        return f"it never takes more than {_write(bound)}"
+    places = find_unfound_places(analysis, result.terms)
+    return f"no bound was found{f' {describe_unfound_places(places)}' if places else ''}"
 
 
 def _describe_parts(analysis: Analysis, parts: list[_ChainPart]) -> str:

@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Literal
 
+from archgen.frozen import NamedTuple
 from archgen.model.architecture import Chain
 from archgen.model.quantity import parse_share
-from archgen.timing.analysis import ChainVerdict, ShareDeadline
+from archgen.timing.analysis import ChainResult, ChainVerdict, ShareDeadline
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import is_boundless, is_known_bound, is_unfound
 
@@ -38,6 +39,39 @@ def judge_deadline(bound: TimingValue, best: TimingValue, deadline: TimingValue 
     if may_be_late(bound, deadline):
         return "not proven"
     return "met" if is_known_bound(bound) else "open"
+
+
+def judge_chain(result: ChainResult, deadline: TimingValue | None) -> ChainVerdict:
+    """Judge a chain against any deadline, by its bounds and by the run in which it was late."""
+    run = result.late_run
+    if run and deadline and deadline.value is not None and run.longest > deadline.value:
+        return "missed"
+    return judge_deadline(result.bound, result.best, deadline)
+
+
+class Lateness(NamedTuple):
+    """By how much a chain is above its deadline (`excess`), of which time (`duration`), both in ns, and what that time is:
+    the least that it takes, what it took in a run, the most that it takes, or what is known of the most.
+    """
+
+    kind: Literal["at least", "seen", "at most", "known"]
+    duration: Fraction
+    excess: Fraction
+
+
+def find_lateness(result: ChainResult) -> Lateness | None:
+    """Return by how much a chain is above its deadline, by the strongest evidence; None where no figure is above it."""
+    deadline = result.deadline.value if result.deadline else None
+    run, bound = result.late_run, result.bound
+    figures: tuple[tuple[Literal["at least", "seen", "at most", "known"], Fraction | None], ...] = (
+        ("at least", result.best.value),
+        ("seen", run.longest if run else None),
+        ("at most" if is_known_bound(bound) else "known", bound.value),
+    )
+    for kind, duration in figures if deadline is not None else ():
+        if duration is not None and deadline is not None and duration > deadline:
+            return Lateness(kind, duration, duration - deadline)
+    return None
 
 
 def may_be_late(bound: TimingValue, deadline: TimingValue) -> bool:

@@ -84,6 +84,20 @@ def format_compared(
     return [f"{mark}{write(value).removeprefix('~')}" for mark, value in zip(marks, rounded, strict=True)]
 
 
+def format_compared_bounds(bounds: Sequence[TimingValue], limit: Fraction | None = None) -> list[str]:
+    """Write bounds of durations (ns) that are compared, each rounded so that it stays true: `at least ~269 ms`, `~271 ms`;
+    of those without a figure the reason.
+    """
+    texts = {}
+    for is_complete in (True, False):
+        values = [each.value for each in bounds if each.value is not None and each.complete is is_complete]
+        texts[is_complete] = iter(format_compared(values, format_duration, upwards=is_complete, limit=limit))
+    return [
+        name_unknown_reason(each) or f"{'' if each.complete else 'at least '}{next(texts[each.complete])}"
+        for each in bounds
+    ]
+
+
 def round_compared(
     values: Sequence[Fraction], *, upwards: bool = True, limit: Fraction | None = None
 ) -> list[Fraction]:

@@ -9,12 +9,15 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 
 from archgen.frozen import dataclass, replace
-from archgen.timing.analysis import ChainResult
-from archgen.timing.search.change_trials import Changes, ChangeTrials, TriesSpentError
+from archgen.model.architecture import Architecture
+from archgen.timing.analysis import Analysis, ChainResult
+from archgen.timing.search.change_trials import Changes, ChangeTrials, OverrideLayer, TriesSpentError
 from archgen.timing.search.run_configurations import ORDERS, ConfigurationSpace, RunConfiguration, TriggerChoice
 
 MAX_TRIES = 60
 """How many configurations are tried for a project."""
+_SMALL_SIZE, _LEAST_TRIES = 150, 12
+"""So many activities make a small project; and so many configurations are tried of the largest one that nobody asked for."""
 _KEPT_TRIES = 12
 """How many tries moving single elements leaves for what comes after it."""
 _UNBOUNDED_LATENESS = Fraction(3)
@@ -69,6 +72,19 @@ class Proposal:
     def _find_best(self, tried: Sequence[TriedConfiguration]) -> TriedConfiguration:
         harmless = [each for each in tried if set(each.late) <= set(self.tried[0].late)]
         return min(harmless, key=lambda each: each.rank)
+
+
+def find_short_proposal(
+    architecture: Architecture, analysis: Analysis, results: Mapping[str, ChainResult], lay_overrides: OverrideLayer
+) -> Proposal | None:
+    """Look for a configuration in which chains are met, without being asked for it; None where none is late.
+
+    Of a large project fewer are tried: `--propose` tries them all.
+    """
+    if not any(result.deadline and result.verdict in {"missed", "not proven"} for result in results.values()):
+        return None
+    tries = max(_LEAST_TRIES, MAX_TRIES * _SMALL_SIZE // max(_SMALL_SIZE, len(analysis.system.activities)))
+    return find_proposal(ChangeTrials(architecture, analysis, lay_overrides, tries), results)
 
 
 def find_proposal(trials: ChangeTrials, chains: Mapping[str, ChainResult], *, keep_triggers: bool = False) -> Proposal:

@@ -7,8 +7,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from fractions import Fraction
 
 from archgen.compare.comparison import ChangeKind
+from archgen.compare.interface_figures import UNCHANGED_SHARE
 from archgen.compare.matched_ids import MatchedIds
 from archgen.frozen import dataclass, field
 from archgen.model.agreed_terms import RULES
@@ -17,6 +19,7 @@ from archgen.views.agreement.plain_terms import PlainTerm
 from archgen.views.agreement.promise_rows import SOURCE_PHRASE, is_weaker
 from archgen.views.changes.change_wording import CHANGE_SIGNS, choose_mark
 from archgen.views.shapes import Text
+from archgen.views.short_figures import QUANTITY
 
 NAME_KIND = "name"
 """The kind of the term that a renamed interface has its old and new id in."""
@@ -169,12 +172,24 @@ def _compare_terms(old_terms: Mapping[str, PlainTerm], new_terms: Mapping[str, P
         old_term = old_terms.get(key)
         if old_term is None:
             term_changes.append(_describe_change("added", new_term, None, new_term))
-        elif old_term.identity != new_term.identity or is_weaker(old_term.strength, new_term.strength):
+        elif is_weaker(old_term.strength, new_term.strength) or not _says_the_same(old_term, new_term):
             term_changes.append(_describe_change("changed", new_term, old_term, new_term))
         elif old_term.text != new_term.text and key in {"type", "message"}:
             term_changes.append(_describe_change("renamed", new_term, old_term, new_term))
     gone_terms = (old_term for key, old_term in old_terms.items() if key not in new_terms)
     return [*term_changes, *(_describe_change("removed", old_term, old_term, None) for old_term in gone_terms)]
+
+
+def _says_the_same(old_term: PlainTerm, new_term: PlainTerm) -> bool:
+    """Whether two terms say the same; figures that only follow from others may differ by as little as in comparisons."""
+    if not new_term.is_expected or old_term.identity == new_term.identity:
+        return old_term.identity == new_term.identity
+    texts = old_term.identity, new_term.identity
+    figures = [[Fraction(match[2]) for match in QUANTITY.finditer(text)] for text in texts]
+    words = [QUANTITY.sub(r"\1# \3", text) for text in texts]
+    return words[0] == words[1] and all(
+        abs(new - old) <= UNCHANGED_SHARE * max(old, new) for old, new in zip(*figures, strict=True)
+    )
 
 
 def _describe_change(

@@ -184,7 +184,8 @@ def _describe_figures(boundary: _Boundary) -> Iterator[str]:
     change, deadline = boundary.change, boundary.change.missed_deadline
     for figure in boundary.figures:
         limit = f", over the deadline of {display_duration(deadline)} asked for" if deadline else ""
-        yield describe_figure(figure, change.kind) + (limit if figure.key.name == _GAP else "")
+        if text := describe_figure(figure, change.kind):
+            yield text + (limit if figure.key.name == _GAP else "")
 
 
 def _name_interfaces(changes: Iterable[BoundaryChange], partner_names: Mapping[str, str]) -> str:

@@ -6,7 +6,7 @@ Beside them: edits of what belongs to another partner, and new findings that say
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from archgen.compare import Change, Comparison
 from archgen.compare.change_sentences import READERS_LEAD
@@ -147,14 +147,12 @@ def is_break_shown(category: BreakCategory, comparison: Comparison) -> bool:
     return category != "source" or comparison.only_breaking or comparison.policy.source > Severity.NOTE
 
 
-def note_source(edit: Edit, partner_names: Mapping[str, str]) -> Edit:
-    """Return an edit with a note on the partners for whom only ids change."""
-    if not edit.breaks:
-        return edit
-    return replace(
-        edit,
-        text=f"{edit.text}; for {join_words(name_each(edit.broken_partners, partner_names))} only ids change (source)",
-    )
+def note_source(edit: Edit, partner_names: Mapping[str, str], broken_partners: Collection[str]) -> Edit:
+    """Return an edit with a note on the partners for whom only ids change; of those whom another edit breaks this is not
+    true.
+    """
+    partners = name_each((each for each in edit.broken_partners if each not in broken_partners), partner_names)
+    return replace(edit, text=f"{edit.text}; for {join_words(partners)} only ids change (source)") if partners else edit
 
 
 def _share_losses(edit: Edit, partner_names: Mapping[str, str]) -> Iterator[SharedLoss]:

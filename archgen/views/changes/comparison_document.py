@@ -175,7 +175,10 @@ def describe_comparison(
     edits = list_edits(comparison)
     breaking_edits = [edit for edit in edits if is_shown_as_break(edit, comparison)]
     partner_names = name_partners(comparison)
-    other_edits = [note_source(edit, partner_names) for edit in edits if not is_shown_as_break(edit, comparison)]
+    broken_partners = {partner for edit in breaking_edits for partner in edit.broken_partners}
+    other_edits = [
+        note_source(edit, partner_names, broken_partners) for edit in edits if not is_shown_as_break(edit, comparison)
+    ]
     repeated_findings = find_repeated_findings(comparison)
     caveat = " in what could be read" if any(reading_errors) else ""
     finding_groups = tuple(_group_findings(comparison, reading_errors, repeated_findings.keys()))
@@ -225,9 +228,10 @@ def describe_comparison(
         ),
         load_lines=write_load_lines(comparison, partner_names),
         chain_rows=tuple(
-            make_chain_row(chain, is_only_edit=len(edits) == 1)
+            row
             for chain in comparison.chains
             if not noise.is_small_chain(chain)
+            and (row := make_chain_row(chain, is_only_edit=len(edits) == 1)).says_a_change
         ),
         finding_groups=finding_groups,
         graphs=graphs,

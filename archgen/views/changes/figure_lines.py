@@ -24,7 +24,12 @@ from archgen.diagnostics.rule_options import format_percentage
 from archgen.frozen import dataclass, replace
 from archgen.model.node import Qos
 from archgen.timing.analysis import ChainResult
-from archgen.timing.figures.figure_wording import format_compared, format_duration, name_unknown_reason, round_compared
+from archgen.timing.figures.figure_wording import (
+    format_compared,
+    format_compared_bounds,
+    format_duration,
+    round_compared,
+)
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.views.changes.named_elements import name_each
 from archgen.views.inline_text import count_noun, list_qos_settings
@@ -47,6 +52,11 @@ class ChainRow:
     verdict: str
     reason: str
     """What made the bound another: elements, with what changed of them; names in backticks."""
+
+    @property
+    def says_a_change(self) -> bool:
+        """Whether anything reads otherwise than before."""
+        return self.before != self.after or bool(self.growth) or "→" in self.deadline or "(was " in self.verdict
 
 
 def make_chain_row(chain_change: ChainChange, *, is_only_edit: bool = False) -> ChainRow:
@@ -78,16 +88,9 @@ def _format_causes(chain_change: ChainChange) -> str:
 def _format_bounds(chain_change: ChainChange) -> Iterator[str]:
     """Yield how long a chain takes at most, before and after."""
     results = chain_change.before, chain_change.after
-    values = [each.bound.value for each in results if each and each.bound.value is not None]
     deadline = chain_change.deadline.value if chain_change.deadline else None
-    texts = iter(format_compared(values, format_duration, limit=deadline))
-    for result in results:
-        if result is None:
-            yield "not there"
-        elif result.bound.value is None:
-            yield name_unknown_reason(result.bound)
-        else:
-            yield ("" if result.bound.complete else "at least ") + next(texts)
+    texts = iter(format_compared_bounds([each.bound for each in results if each], deadline))
+    yield from ("not there" if result is None else next(texts) for result in results)
 
 
 def _format_growth(chain_change: ChainChange) -> str:
@@ -145,7 +148,7 @@ class FigureLine:
 
 
 def describe_figure(figure: FigureChange, kind: str) -> str:
-    """Describe a figure before and after; of a new interface as it is."""
+    """Describe a figure before and after, empty where both read the same; of a new interface as it is."""
     name = f"{figure.key.name} of `{figure.key.node}`" if figure.key.node else figure.key.name
     before, after = figure.before, figure.after
     if kind == "added":
@@ -154,14 +157,16 @@ def describe_figure(figure: FigureChange, kind: str) -> str:
         old_settings, new_settings = list_qos_settings(before), list_qos_settings(after)
         lost = [setting for setting in old_settings if setting not in new_settings]
         gained = [setting for setting in new_settings if setting not in old_settings]
-        return f"{name} {', '.join(lost) or _NO_FIGURE} → {', '.join(gained) or _NO_FIGURE}"
-    if isinstance(before, TimingValue) and isinstance(after, TimingValue):
-        return f"{name} {_format_pair(figure.key, before, after)}"
-    lead = "travels" if isinstance(before, TravelPath) or isinstance(after, TravelPath) else name
-    return f"{lead} {_format_figure(figure.key, before)} → {_format_figure(figure.key, after)}"
+        texts = [", ".join(settings) or _NO_FIGURE for settings in (lost, gained)]
+    elif isinstance(before, TimingValue) and isinstance(after, TimingValue):
+        texts = _format_pair(figure.key, before, after)
+    else:
+        name = "travels" if isinstance(before, TravelPath) or isinstance(after, TravelPath) else name
+        texts = [_format_figure(figure.key, each) for each in (before, after)]
+    return f"{name} {texts[0]} → {texts[1]}" if texts[0] != texts[1] else ""
 
 
-def _format_pair(key: FigureKey, before: TimingValue, after: TimingValue) -> str:
+def _format_pair(key: FigureKey, before: TimingValue, after: TimingValue) -> list[str]:
     """Return two figures with the digits that inputs carry; a rate is rounded down, all else up."""
     values = [each.value for each in (before, after) if each.value is not None]
     rounded = dict(zip(values, round_compared(values, upwards=key.name != "rate"), strict=True))
@@ -169,7 +174,7 @@ def _format_pair(key: FigureKey, before: TimingValue, after: TimingValue) -> str
     for each in (before, after):
         told = each if each.value is None else replace(each, value=rounded[each.value])
         texts.append(("" if told == each else "~") + _format_figure(key, told))
-    return " → ".join(texts)
+    return texts
 
 
 def _format_figure(key: FigureKey, figure: ComparedFigure | None) -> str:

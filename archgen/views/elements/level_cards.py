@@ -22,6 +22,7 @@ from archgen.views.elements.parameter_blocks import list_effective_lines, list_o
 from archgen.views.lookup import Lookup
 from archgen.views.start_phrases import describe_override, describe_start, list_running_facts
 from archgen.views.timing.element_timing import make_whole_fact
+from archgen.views.timing.flow_tables import list_activities, list_flow_lines
 
 
 def make_group_card(_lookup: Lookup, group: Group) -> ElementCard:
@@ -53,6 +54,9 @@ def make_component_card(lookup: Lookup, component: Component) -> ElementCard:
     lists = (
         ("inputs", inputs),
         ("outputs", outputs),
+        *drop_empty_lists(
+            *list_flow_lines(lookup, list_activities(lookup, lookup.nodes_of.get(component.id, ()), component.id))
+        ),
         *_list_setting_lists(component),
         ("nodes", nodes),
         ("findings", tuple(list_finding_lines(lookup, component.id))),
@@ -222,6 +226,7 @@ def make_node_card(lookup: Lookup, node: Node) -> ElementCard:
     )
     lists = (
         ("topics, services and actions", lines),
+        *drop_empty_lists(*list_flow_lines(lookup, list_activities(lookup, (node,)))),
         *drop_empty_lists(("parameters", tuple(list_effective_lines(lookup, node)))),
         ("findings", tuple(list_finding_lines(lookup, node.id))),
     )

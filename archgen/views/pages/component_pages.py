@@ -21,6 +21,7 @@ from archgen.views.lookup import Lookup
 from archgen.views.pages import context_pages
 from archgen.views.pages.context_pages import HOME_CRUMB, FigureFilter
 from archgen.views.shapes import Block, Markdown, Page, Paragraph, Section
+from archgen.views.timing.flow_tables import list_activities, make_flow_sections
 from archgen.views.type_names import find_component_type
 
 _MAX_DEPTH = 2
@@ -206,15 +207,20 @@ class ComponentPages:
         return self._make_page(shell, blocks, crumbs, lead)
 
     def _make_page(self, component: Component, blocks: tuple[Block, ...], crumbs: Crumbs, lead: str) -> Page:
-        sections: list[Section] = []
         is_composed = component.id in self.lookup.architecture.shells
+        activities = (
+            []
+            if is_composed
+            else list_activities(self.lookup, self.lookup.nodes_of.get(component.id, ()), component.id)
+        )
+        sections = make_flow_sections(self.lookup, component.id, component.title, activities)
         if self.shows_nodes:
             figures = self.keep_drawn(make_implementation_blocks(self.lookup, component.id))
             nodes = list(self.lookup.nodes_inside(component.id))
             table = context_pages.make_node_table(self.lookup, nodes, component)
             if table or not is_composed:
                 anchor = f"implementation:{component.id}"
-                sections = [Section(anchor, "Implementation", (*figures, *table))]
+                sections.append(Section(anchor, "Implementation", (*figures, *table)))
         sections += self.find_findings(component.id)
         section = Section(f"component:{component.id}", component.title, blocks, tuple(sections))
         path = f"components/{component.id}.html"

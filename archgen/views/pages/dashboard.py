@@ -156,7 +156,7 @@ def _point_card(lookup: Lookup) -> DashboardCard | None:
         (
             *finding_tables.finding_chip(finding),
             Text(" "),
-            *element_references.owner_cell(lookup.architecture, finding.element),
+            *element_references.answering_cell(lookup, finding.element, finding.span),
             *_on_new_line(element_references.link_message(lookup.architecture, finding)),
             *_on_new_line(element_references.place_cell(lookup, finding)),
         )
@@ -178,7 +178,9 @@ def make_chain_points(lookup: Lookup) -> list[Inlines]:
             title = Text(lookup.architecture.chains[result.id].title, ref=f"chain:{result.id}", line_break=True)
             missing = value_format.describe_missing(result.bound, lookup.timing.analysis, 3)
             missing_line = Text(missing, muted=True, line_break=True)
-            points.append((*chain_status.chain_chip(result), title, *([missing_line] if missing else [])))
+            partners = element_references.answering_cell(lookup, result.id, lookup.architecture.chains[result.id].at)
+            chip = (*chain_status.chain_chip(result), Text(" "), *partners)
+            points.append((*chip, title, *([missing_line] if missing else [])))
     return points
 
 

@@ -43,6 +43,7 @@ from archgen.views.tables import (
     type_tables,
 )
 from archgen.views.timing.chain_waterfall import WATERFALL_FACTS, make_waterfall
+from archgen.views.timing.flow_tables import list_activities, make_flow_sections
 from archgen.views.timing.host_waterfall import make_slack_waterfall
 
 
@@ -175,9 +176,9 @@ class PageMaker:
 
     def make_node_page(self, node: Node) -> Page:
         """Make the page of a node."""
-        section = Section(
-            f"node:{node.id}", node.id, make_node_blocks(self.lookup, node), tuple(self._finding_sections(node.id))
-        )
+        flows = make_flow_sections(self.lookup, node.id, node.id, list_activities(self.lookup, (node,)))
+        sections = (*flows, *self._finding_sections(node.id))
+        section = Section(f"node:{node.id}", node.id, make_node_blocks(self.lookup, node), sections)
         kinds = ", ".join(inline_text.NODE_KIND_WORDS[kind] for kind in node.kinds)
         lead = self._lead_with_owners(
             f"{kinds[0].upper()}{kinds[1:]}{f' · {node.status}' if node.status else ''}", node.owners

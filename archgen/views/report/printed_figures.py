@@ -9,7 +9,7 @@ from decimal import Decimal
 from archgen.frozen import replace
 from archgen.views import inline_text
 from archgen.views.shapes import Block, Bullets, Column, Facts, Inlines, Paragraph, Section, Table, Text
-from archgen.views.short_figures import QUANTITY, round_number, shorten_quantity, write_comparisons
+from archgen.views.short_figures import QUANTITY, round_number, shorten_match, write_comparisons
 
 _TIME_FACTORS = {"ns": Decimal(1), "us": Decimal(1000), "ms": Decimal(10**6), "s": Decimal(10**9)}
 _TIME_CELL = re.compile(r"(>= |<= )?([0-9]+(?:\.[0-9]+)?) (ns|us|ms|s)")
@@ -44,18 +44,18 @@ def _print_block(block: Block) -> Block:
 def print_inlines(inlines: Inlines) -> Inlines:
     """Return runs of text with real signs and three significant digits; code stays as it is written."""
     return tuple(
-        part if part.code else replace(part, text=print_text(part.text)) for part in inline_text.render_marks(inlines)
+        part if part.code else replace(part, text=print_text(part.text, is_lower=part.is_lower))
+        for part in inline_text.render_marks(inlines)
     )
 
 
-def print_text(text: str) -> str:
+def print_text(text: str, *, is_lower: bool = False) -> str:
     """Return text with real signs and three significant digits: `≤ 4.17 s` for `<= 4166.667 ms`."""
-    text = QUANTITY.sub(lambda found: _print_quantity(found[1] or "", found[2], found[3]), text)
-    return write_comparisons(text)
+    return write_comparisons(QUANTITY.sub(lambda found: _print_quantity(found, is_lower=is_lower), text))
 
 
-def _print_quantity(sign: str, number: str, unit: str) -> str:
-    number, unit = shorten_quantity(sign, number, unit)
+def _print_quantity(found: re.Match[str], *, is_lower: bool) -> str:
+    sign, number, unit = shorten_match(found, is_lower=is_lower)
     return f"{sign}{number}{_THIN}{'µs' if unit == 'us' else unit}"
 
 
@@ -91,7 +91,8 @@ def _choose_unit(column: Column, cells: Sequence[Inlines]) -> str:
 def _convert_text(part: Text, unit: str) -> Text:
     found = _TIME_CELL.fullmatch(part.text)
     if not found:
-        return replace(part, text=print_text(part.text))
+        return replace(part, text=print_text(part.text, is_lower=part.is_lower))
     sign = found[1] or ""
     value = Decimal(found[2]) * _TIME_FACTORS[found[3]] / _TIME_FACTORS[unit]
-    return replace(part, text=write_comparisons(f"{sign}{round_number(value, sign)}"))
+    rounding_sign = sign or (">" if part.is_lower else "<")
+    return replace(part, text=write_comparisons(f"{sign}{round_number(value, rounding_sign)}"))

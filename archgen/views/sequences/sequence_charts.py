@@ -110,7 +110,7 @@ def _draw_steps(
     title = use_case.title if is_whole else f"{use_case.title}: {numbers}"
     legend = tuple(key for style, key in _LEGEND_KEYS.items() if style in styles)
     has_outside = any(lifeline.kind == "actor" for lifeline in lifelines)
-    total = short_figures.shorten_bounds(describe_total(lookup, use_case.id)) if is_whole else ""
+    total = short_figures.shorten_text(describe_total(lookup, use_case.id)) if is_whole else ""
     return SequenceChart(
         chart_id,
         title,
@@ -142,7 +142,7 @@ def _make_message(
     carriers = list(_list_carriers(lookup, connected))
     shown = join_first(carriers, 2)
     time = describe_step_time(lookup, use_case.id, connected.number)
-    lines = ("" if is_printed and text else shown, short_figures.shorten_bounds(time))
+    lines = ("" if is_printed and text else shown, short_figures.shorten_text(time))
     detail = "no connection" if connected.is_broken else "\n".join(filter(None, lines))
     tooltip = "\n".join(filter(None, (text, ", ".join(carriers), time)))
     return SequenceMessage(

@@ -26,7 +26,7 @@ def make_finding_table(
         (
             severity_chip(finding),
             inline_text.join_lines(_finding_lines(lookup, finding)),
-            element_references.owner_cell(lookup.architecture, finding.element),
+            element_references.answering_cell(lookup, finding.element, finding.span),
             element_references.place_cell(lookup, finding),
             inline_text.to_inlines(Text(finding.rule, ref=f"rule:{finding.rule}")),
         )

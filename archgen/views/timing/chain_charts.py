@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 
-from archgen.diagnostics.common_wording import join_words
-from archgen.timing.analysis import Analysis, ChainResult, ChainTerm, ChainVerdict
-from archgen.timing.chains.unfound_bounds import describe_unfound_places, find_overloaded_hosts, find_unfound_places
+from archgen.timing.analysis import ChainResult, ChainVerdict
+from archgen.timing.chains.chain_advice import describe_lateness, sum_known_parts
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.views.lookup import Lookup
 from archgen.views.picture_shapes import BarSegment, Chart, ChartBar, SegmentKind
-from archgen.views.timing import load_charts, value_format
+from archgen.views.timing import chain_status, load_charts, value_format
 from archgen.views.timing.late_run_charts import make_late_run_charts
 from archgen.views.timing.load_charts import is_outside_scope, to_float
 from archgen.views.timing.timing_lookup import TimingLookup
@@ -89,11 +88,6 @@ def _make_term_bars(lookup: Lookup, timing_lookup: TimingLookup, result: ChainRe
         start += sum_known_parts(term)
 
 
-def sum_known_parts(term: ChainTerm) -> Fraction:
-    """Add up the known parts of a step, in ns."""
-    return sum((value.value or Fraction(0) for value in (term.sampling, term.response, term.link)), Fraction(0))
-
-
 _TERM_KIND_WORDS = {"sampling": "waits", "response": "responds within", "link": "on the network"}
 
 
@@ -159,31 +153,13 @@ def describe_chain_verdict(result: ChainResult, timing_lookup: TimingLookup) -> 
         )
     if deadline is None or deadline.value is None:
         return f"{result.verdict.capitalize()}: {value_format.display_duration(bound)}."
-    return f"{result.verdict.capitalize()}: {_compare_with_deadline(result, deadline.value, timing_lookup.analysis)}."
-
-
-def _compare_with_deadline(result: ChainResult, deadline: Fraction, analysis: Analysis) -> str:
-    """Say by how much a chain meets or exceeds its deadline (ns), or why nobody can say."""
-    bound, best = result.bound, result.best.value
-    deadline_text = f"the deadline of {_format_spare(deadline)}"
-    if result.verdict == "missed" and best is not None and best > deadline:
-        return f"at the earliest after {_format_spare(best)}, {_format_spare(best - deadline)} after {deadline_text}"
-    unfound_text = describe_unfound_places(find_unfound_places(analysis, result.terms))
-    if unfound_text and (bound.value is None or bound.value <= deadline):
-        return f"no bound was found {unfound_text}, for {deadline_text}"
-    if bound.value is None:
-        hosts = find_overloaded_hosts(analysis, result.terms)
-        verb = "is" if len(hosts) == 1 else "are"
-        return f"{join_words(hosts)} {verb} overloaded" if hosts else value_format.display_duration(bound)
-    bound_text = value_format.display_duration(bound)
-    if result.verdict == "met":
-        return f"at the latest after {bound_text}, {_format_spare(deadline - bound.value)} before {deadline_text}"
-    return f"up to {bound_text}, {_format_spare(bound.value - deadline)} after {deadline_text}"
-
-
-def _format_spare(value: Fraction) -> str:
-    """Format an exact duration in ns."""
-    return value_format.display_duration(TimingValue(value))
+    if result.verdict != "met" or bound.value is None:
+        return f"{result.verdict.capitalize()}. {describe_lateness(timing_lookup.analysis, result, deadline.value)}"
+    left_text = chain_status.round_duration(deadline.value - bound.value, ">")
+    return (
+        f"Met: at the latest after {value_format.display_duration(bound)}, {left_text} before the deadline of "
+        f"{value_format.display_duration(deadline)}."
+    )
 
 
 def _legend_keys(result: ChainResult) -> Iterator[str]:

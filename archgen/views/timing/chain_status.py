@@ -7,6 +7,7 @@ from decimal import Decimal
 from fractions import Fraction
 
 from archgen.timing.analysis import ChainResult
+from archgen.timing.chains.chain_verdicts import find_lateness
 from archgen.views.shapes import Inlines, Meter, Text
 from archgen.views.short_figures import round_number
 
@@ -64,33 +65,30 @@ def margin_cell(result: ChainResult) -> Inlines:
 
 def describe_margin(result: ChainResult) -> str:
     """Describe what is left of the deadline, `629 ms left`, or by how much it is exceeded, `+23.8 ms`."""
+    late = find_lateness(result)
+    if late:
+        # What was seen, and what is known of a bound, may be more: as the best case, it is exceeded by at least that.
+        sign = "<= " if late.kind == "at most" else ">= "
+        return f"{'seen ' if late.kind == 'seen' else sign}+{round_duration(late.excess, sign)}"
     margin = _find_margin(result)
     if margin is None:
         return ""
-    if margin < 0:
-        # A bound above the deadline says how late a chain may be; a best case above it how late it is at least.
-        sign = ">= " if _is_missed_at_best(result) else {"not proven": "<= ", "missed": "<= "}.get(result.verdict, "")
-        return f"{sign}+{round_duration(-margin, sign)}"
-    sign = "<= " if result.verdict == "open" else ""
-    return f"{sign}{round_duration(margin, sign)} left"
+    # What is left is at least so much; where figures are missing, at most.
+    return (
+        f"<= {round_duration(margin, '<')} left" if result.verdict == "open" else f"{round_duration(margin, '>')} left"
+    )
 
 
 def _find_margin(result: ChainResult) -> Fraction | None:
-    """Return what is left of the deadline in ns; None where nothing can be said."""
-    deadline = result.deadline.value if result.deadline else None
-    # What is missed for sure is missed by its best case; an overload has neither figure.
-    reached = result.best.value if _is_missed_at_best(result) else result.bound.value
-    if deadline is None or reached is None or (result.verdict != "met" and reached == deadline):
-        return None
-    margin = deadline - reached
+    """Return what is left of the deadline in ns, negative where it is exceeded; None where nothing can be said."""
+    late, deadline = find_lateness(result), result.deadline.value if result.deadline else None
+    if late:
+        return -late.excess
     # A verdict that rests on something else (no bound was found, an overload) has no figure for how much.
-    return None if (result.verdict in {"missed", "not proven"}) != (margin < 0) else margin
-
-
-def _is_missed_at_best(result: ChainResult) -> bool:
-    """Whether even the best case is too late: otherwise a run was seen in which it is, or there is an overload."""
-    deadline, best = result.deadline.value if result.deadline else None, result.best.value
-    return result.verdict == "missed" and deadline is not None and best is not None and best > deadline
+    if deadline is None or result.bound.value is None or result.verdict in {"missed", "not proven"}:
+        return None
+    margin = deadline - result.bound.value
+    return margin if margin or result.verdict == "met" else None
 
 
 def round_duration(nanoseconds: Fraction, sign: str = "") -> str:

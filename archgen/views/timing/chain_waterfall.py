@@ -8,7 +8,7 @@ from typing import Literal
 
 from archgen.frozen import dataclass, replace
 from archgen.timing.analysis import ChainResult, ChainTerm
-from archgen.timing.chains.chain_advice import advise_on_chain
+from archgen.timing.chains.chain_advice import advise_on_chain, find_deciding_term, sum_known_parts
 from archgen.timing.figures.figure_wording import format_duration
 from archgen.timing.figures.timing_values import TimingValue, sum_fractions
 from archgen.views import element_references, inline_text
@@ -67,7 +67,7 @@ def make_waterfall(lookup: Lookup, timing_lookup: TimingLookup, result: ChainRes
     advice = advise_on_chain(timing_lookup.analysis, result)
     lead = advice.lateness if advice else chain_charts.describe_chain_verdict(result, timing_lookup)
     total, deadline = (
-        sum_fractions(map(chain_charts.sum_known_parts, result.terms)),
+        sum_fractions(map(sum_known_parts, result.terms)),
         result.deadline.value if result.deadline else None,
     )
     axis = _make_axis(result.terms, total)
@@ -78,7 +78,7 @@ def make_waterfall(lookup: Lookup, timing_lookup: TimingLookup, result: ChainRes
         tuple(_make_total(result, total, whole)),
         tuple(_make_labels(result, total, whole)),
         (float(deadline / whole) if deadline is not None else None, step_limit),
-        f"deadline {_format_time(deadline)}" if deadline is not None else "",
+        f"deadline {_format_time(deadline, '>')}" if deadline is not None else "",
         tuple(_make_ticks(axis)),
         tuple(_make_steps(lookup, timing_lookup, result.terms, axis)),
         _describe_cut(axis),
@@ -100,8 +100,8 @@ def _describe_cut(axis: _CutAxis) -> str:
     )
 
 
-def _format_time(time: Fraction) -> str:
-    return chain_status.round_duration(time) if time else "0"
+def _format_time(time: Fraction, sign: str = "<") -> str:
+    return chain_status.round_duration(time, sign) if time else "0"
 
 
 def _list_parts(term: ChainTerm) -> Iterator[tuple[PieceKind, str, TimingValue]]:
@@ -151,7 +151,7 @@ def list_known_kinds(result: ChainResult) -> Iterator[tuple[PieceKind, Fraction,
 
 def _make_labels(result: ChainResult, total: Fraction, whole: Fraction) -> Iterator[tuple[float, str]]:
     yield 0.0, "0"
-    yield float(total / whole), f"{_format_time(total)}{'' if result.bound.complete else ' known'}"
+    yield float(total / whole), _format_time(total) if result.bound.complete else f"{_format_time(total, '>')} known"
 
 
 def _make_ticks(axis: _CutAxis) -> Iterator[tuple[float, str]]:
@@ -227,23 +227,7 @@ def _describe_step(term: ChainTerm) -> str:
 def _list_owners(lookup: Lookup, timing_lookup: TimingLookup, activity_id: str) -> tuple[str, ...]:
     """Return who owns what an activity belongs to."""
     activity = timing_lookup.analysis.system.activities.get(activity_id)
-    return list_node_owners(lookup, activity.node) if activity else ()
-
-
-def list_node_owners(lookup: Lookup, node_id: str) -> tuple[str, ...]:
-    """Return who owns a node: those that it names, else the owners of what it implements."""
-    node = lookup.architecture.nodes.get(node_id)
-    if node is None:
-        return ()
-    names = tuple(
-        dict.fromkeys(
-            owner
-            for component in node.implements
-            if component in lookup.architecture.components
-            for owner in lookup.architecture.components[component].owners
-        )
-    )
-    return node.owners or names
+    return element_references.list_node_owners(lookup.architecture, activity.node) if activity else ()
 
 
 def _make_figures(lookup: Lookup, result: ChainResult) -> Iterator[KeyFigure]:
@@ -286,11 +270,9 @@ def _list_steps(lookup: Lookup, timing_lookup: TimingLookup, result: ChainResult
     advice = advise_on_chain(timing_lookup.analysis, result)
     if advice is None:
         return
-    missing_terms = [term for term in result.terms if term.activity in result.bound.missing]
-    largest_term = max(result.terms, key=chain_charts.sum_known_parts)
+    largest_term = max(result.terms, key=sum_known_parts)
     if advice.first_step:
-        subject = missing_terms[0] if missing_terms else largest_term
-        yield _join_step(lookup, timing_lookup, advice.first_step, subject)
+        yield _join_step(lookup, timing_lookup, advice.first_step, find_deciding_term(result))
     yield _join_step(lookup, timing_lookup, advice.largest_parts, largest_term)
 
 

@@ -10,11 +10,13 @@ from archgen.timing.analysis import ChainResult
 from archgen.timing.chains.chain_advice import advise_on_chain
 from archgen.timing.figures.response_tier import ResponseTier
 from archgen.timing.figures.timing_values import TimingValue
+from archgen.timing.figures.value_arithmetic import list_assumptions
 from archgen.timing.system.timing_system import Activity
 from archgen.views import element_references, inline_text
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import Block, Fact, Figure, Inlines, Table, Text, make_columns, show_facts
 from archgen.views.timing import chain_charts, load_charts, timing_tables, use_tables, value_format
+from archgen.views.timing.flow_tables import list_activities
 from archgen.views.timing.late_run_charts import make_late_run_figures
 from archgen.views.timing.timing_lookup import TimingLookup
 
@@ -57,7 +59,7 @@ def make_chain_blocks(
         Fact(
             "earliest",
             "At the earliest",
-            timing_tables.figure_cell(value_format.display_lower_bound(result.best), result.best),
+            timing_tables.lower_bound_cell(result.best),
         ),
         Fact(
             "",
@@ -128,7 +130,7 @@ def describe_assumptions(timing_lookup: TimingLookup, result: ChainResult) -> It
     # These texts must equal the assumptions that the timing analysis writes, or both versions appear in the report.
     redundant_words = {f"the response of {name} is as declared" for name in activities_by_tier.get("declared", ())}
     redundant_words |= {"assuming a dedicated core"} if "dedicated" in activities_by_tier else set()
-    yield from (word for word in result.bound.assumptions if word not in redundant_words)
+    yield from (word for word in list_assumptions(result.bound) if word not in redundant_words)
     yield from (
         f"{timing_tables.TIER_WORDS[tier]}: {', '.join(dict.fromkeys(names))}"
         for tier, names in activities_by_tier.items()
@@ -199,13 +201,7 @@ def make_rate_fact(lookup: Lookup, nodes: Iterable[Node], component_id: str) -> 
     timing_lookup = lookup.timing
     if timing_lookup is None:
         return ()
-    short_name = component_id.rsplit(".", 1)[-1]
-    node_activities = [activity for node in nodes for activity in timing_lookup.activities_of_node.get(node.id, ())]
-    # A node may implement several components, and an activity names its component by full id, by short name, or not at
-    # all.
-    matching_activities = [
-        activity for activity in node_activities if activity.component in {None, short_name, component_id}
-    ]
+    matching_activities = list_activities(lookup, nodes, component_id)
     lines = []
     for activity in matching_activities:
         pace = timing_lookup.analysis.paces.get(activity.id)

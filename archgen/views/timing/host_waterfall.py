@@ -8,7 +8,7 @@ from typing import Literal
 
 from archgen.timing.analysis import ChainResult, HostLoad
 from archgen.timing.figures.timing_values import TimingValue
-from archgen.views import inline_text
+from archgen.views import element_references, inline_text
 from archgen.views.lookup import Lookup
 from archgen.views.shapes import (
     Column,
@@ -25,7 +25,7 @@ from archgen.views.shapes import (
     make_columns,
 )
 from archgen.views.timing import chain_status, load_charts, value_format
-from archgen.views.timing.chain_waterfall import list_known_kinds, list_node_owners
+from archgen.views.timing.chain_waterfall import list_known_kinds
 from archgen.views.timing.timing_lookup import TimingLookup
 
 _MAX_SCALE = Fraction(2)
@@ -179,7 +179,9 @@ def _make_steps(
         node = lookup.architecture.nodes.get(name)
         yield WaterfallStep(
             inline_text.node_link(node) if node else Text(name),
-            inline_text.owner_links(lookup.architecture, list_node_owners(lookup, name)),
+            inline_text.owner_links(
+                lookup.architecture, element_references.list_node_owners(lookup.architecture, name)
+            ),
             tuple(_make_pieces(position, end, total, room, is_known=share.complete)),
             value_format.display_share(share),
         )
@@ -242,7 +244,7 @@ def _make_partner_rows(lookup: Lookup, shares: dict[str, TimingValue]) -> Iterat
     """Yield a row for each partner, or partners together, whose nodes run on the host; the largest load first."""
     names_by_owners: dict[tuple[str, ...], list[str]] = {}
     for name in shares:
-        names_by_owners.setdefault(list_node_owners(lookup, name), []).append(name)
+        names_by_owners.setdefault(element_references.list_node_owners(lookup.architecture, name), []).append(name)
     sums = [(owners, names, _add_shares(shares[name] for name in names)) for owners, names in names_by_owners.items()]
     for owners, names, share in sorted(sums, key=lambda entry: -(entry[2].value or Fraction(0))):
         title = inline_text.owner_links(lookup.architecture, owners) or (Text("nobody yet", muted=True),)

@@ -40,13 +40,11 @@ def make_late_run_charts(lookup: Lookup, timing_lookup: TimingLookup) -> Iterato
 def make_late_run_figures(lookup: Lookup, timing_lookup: TimingLookup, result: ChainResult) -> tuple[Block, ...]:
     """Return the picture of a chain's late run, and how to see it again; empty where there is none."""
     schedule = timing_lookup.late_runs.get(result.id)
-    if schedule is None:
+    if schedule is None or result.late_run is None:
         return ()
     name, title = f"chains/{result.id}.late", lookup.architecture.chains[result.id].title
-    command = (
-        f"archgen simulate --chain {result.id} --seed {schedule.seed} --seconds {schedule.seconds} --trace late.json"
-    )
-    lead = f"A simulated run in which it took {format_duration(schedule.longest)}; for https://ui.perfetto.dev:"
+    command = f"{result.late_run.write_command(result.id)} --trace late.json"
+    lead = f"A simulated run in which it took {format_duration(result.late_run.longest)}; for https://ui.perfetto.dev:"
     figure = Figure(f"figure:{name}", name, f"{title}: a run in which it is late", describe_orders(schedule.orders))
     return Paragraph((Text(f"{lead} "), Text(command, code=True))), figure
 

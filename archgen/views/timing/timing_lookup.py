@@ -13,6 +13,7 @@ from archgen.views.timing import chain_status, value_format
 
 if TYPE_CHECKING:
     from archgen.simulation.schedule_log import LateSchedule
+    from archgen.timing.chains.element_flows import FlowFinder
     from archgen.timing.chains.fused_inputs import FusedInputs
     from archgen.timing.chains.use_case_times import UseCaseTimes, WholeBound
 
@@ -34,6 +35,8 @@ class TimingLookup:
     """The worst ways through composed components that say how long they take, by id."""
     use_cases: Mapping[str, UseCaseTimes] = field(default_factory=dict)
     """How long the steps of use cases take, by id."""
+    flows: FlowFinder | None = None
+    """What elements take in and give out; None in a lookup of a test."""
     late_runs: Mapping[str, LateSchedule] = field(default_factory=dict)
     """The runs in which chains were late, by chain."""
 
@@ -76,33 +79,30 @@ def complete_with_chains(analysis: Analysis | None, architecture: Architecture) 
 
 def bound_chains(analysis: Analysis, architecture: Architecture) -> TimingLookup:
     """Build the look-ups of a timing analysis, with the bounds of all chains, and of the composed components that have limits."""
-    from archgen.timing.chains.chain_bounds import bound_all_chains
+    from archgen.simulation.chain_witnesses import judge_chains
+    from archgen.timing.chains.element_flows import FlowFinder
     from archgen.timing.chains.use_case_times import bound_use_cases, bound_wholes
 
-    lookup = make_timing_lookup(analysis, bound_all_chains(analysis, architecture).values())
+    lookup = make_timing_lookup(analysis, judge_chains(analysis, architecture).values())
     return replace(
-        lookup, whole_bounds=bound_wholes(analysis, architecture), use_cases=bound_use_cases(analysis, architecture)
+        lookup,
+        whole_bounds=bound_wholes(analysis, architecture),
+        use_cases=bound_use_cases(analysis, architecture),
+        flows=FlowFinder(analysis, architecture, lookup.chains),
     )
 
 
 def add_late_runs(lookup: TimingLookup) -> TimingLookup:
-    """Look for runs in which chains are late that are not proven, as `archgen timing` does: these are missed."""
+    """Record what happened in the runs that show chains late."""
+    late_runs = [(result.id, result.through, result.late_run) for result in lookup.chains if result.late_run]
+    if not late_runs:
+        return lookup
     from archgen.simulation.analysis_bounds import find_publish_pauses
-    from archgen.simulation.chain_evidence import apply_witnesses
-    from archgen.simulation.chain_witnesses import find_witnesses
     from archgen.simulation.schedule_log import record_schedule
 
-    analysis, results = lookup.analysis, {result.id: result for result in lookup.chains}
-    witnesses = find_witnesses(analysis, lookup.chains)
-    if not witnesses:
-        return lookup
+    analysis = lookup.analysis
     pauses = find_publish_pauses(analysis)
     schedules = {
-        key: record_schedule(analysis.system, results[key].through, witness.seed, witness.seconds, pauses)
-        for key, witness in witnesses.items()
+        key: record_schedule(analysis.system, through, run.seed, run.seconds, pauses) for key, through, run in late_runs
     }
-    return replace(
-        lookup,
-        chains=chain_status.rank_chains(apply_witnesses(results, witnesses).values()),
-        late_runs={key: schedule for key, schedule in schedules.items() if schedule},
-    )
+    return replace(lookup, late_runs={key: schedule for key, schedule in schedules.items() if schedule})

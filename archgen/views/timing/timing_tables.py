@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from archgen.frozen import replace
 from archgen.timing.analysis import ChainResult, EventPace, HostLoad
 from archgen.timing.figures.figure_wording import format_duration
 from archgen.timing.figures.timing_values import TimingValue
@@ -59,6 +60,11 @@ def figure_cell(text: str, value: TimingValue) -> Inlines:
     return (Text(text, sort_number=None if value.value is None else str(value.value)),) if text else ()
 
 
+def lower_bound_cell(value: TimingValue) -> Inlines:
+    """Return a table cell for a duration that is at least so much: a best case, a deadline."""
+    return tuple(replace(run, is_lower=True) for run in figure_cell(value_format.display_lower_bound(value), value))
+
+
 def duration_cell(value: TimingValue) -> Inlines:
     """Return a table cell for the upper bound of a duration."""
     return figure_cell(value_format.display_duration(value), value)
@@ -66,7 +72,7 @@ def duration_cell(value: TimingValue) -> Inlines:
 
 def deadline_cell(result: ChainResult) -> Inlines:
     """Return a table cell for all deadlines of a chain: `400 ms, 95 % in 150 ms`."""
-    always = duration_cell(result.deadline) if result.deadline else ()
+    always = lower_bound_cell(result.deadline) if result.deadline else ()
     shares = ", ".join(f"{each.name} in {format_duration(each.limit)}" for each in result.shares)
     return (*always, Text(f"{', ' if always else ''}{shares}")) if shares else always
 

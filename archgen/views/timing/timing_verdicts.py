@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 
 from archgen.timing.analysis import ChainResult
-from archgen.timing.chains.chain_advice import advise_on_chain
+from archgen.timing.chains.chain_advice import advise_on_chain, sum_known_parts
 from archgen.timing.chains.chain_verdicts import VERDICT_MEANINGS
 from archgen.timing.chains.unfound_bounds import UnfoundPlace, group_by_host
 from archgen.timing.figures.timing_values import TimingValue
@@ -131,7 +131,7 @@ def make_bound_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | Non
         (
             inline_text.to_inlines(Text(lookup.architecture.chains[result.id].title, ref=f"chain:{result.id}")),
             timing_tables.duration_cell(result.bound),
-            timing_tables.figure_cell(value_format.display_lower_bound(result.best), result.best),
+            timing_tables.lower_bound_cell(result.best),
             _largest_step(timing_lookup, result),
             timing_tables.deadline_cell(result),
             chain_status.margin_cell(result),
@@ -161,7 +161,7 @@ def make_bound_table(lookup: Lookup, timing_lookup: TimingLookup) -> Table | Non
 
 def _largest_step(timing_lookup: TimingLookup, result: ChainResult) -> Inlines:
     """Name the step with the largest part of a chain's bound: the first one to look at."""
-    sums = [(chain_charts.sum_known_parts(term), term.activity) for term in result.terms]
+    sums = [(sum_known_parts(term), term.activity) for term in result.terms]
     largest_sum = max((value for value, _ in sums), default=Fraction(0))
     if not largest_sum:
         return ()

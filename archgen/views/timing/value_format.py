@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from decimal import ROUND_HALF_UP, Decimal
+from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_UP, Decimal
 from fractions import Fraction
-from functools import lru_cache
+from functools import lru_cache, partial
 
 from archgen.diagnostics.common_wording import join_first
 from archgen.frozen import replace
@@ -35,8 +35,8 @@ _UNBOUNDED_WORDS = {
 
 
 @lru_cache(8192)
-def display_number(value: Fraction, decimals: int = _DEFAULT_DIGITS) -> str:
-    """Format a number with at most `decimals` decimals, rounded half up.
+def display_number(value: Fraction, decimals: int = _DEFAULT_DIGITS, rounding: str = ROUND_HALF_UP) -> str:
+    """Format a number with at most `decimals` decimals, rounded half up unless `rounding` says otherwise.
 
     Numbers below one get as many significant digits instead.
     """
@@ -45,7 +45,7 @@ def display_number(value: Fraction, decimals: int = _DEFAULT_DIGITS) -> str:
     # Decimal, not float: otherwise "half up" would depend on how a half is represented in binary.
     exact = Decimal(value.numerator) / Decimal(value.denominator)
     places = decimals if abs(value) >= 1 else decimals - 1 - exact.adjusted()
-    rounded = exact.quantize(Decimal(1).scaleb(-places), ROUND_HALF_UP)
+    rounded = exact.quantize(Decimal(1).scaleb(-places), rounding)
     text = f"{rounded:f}"
     # Only behind a decimal point: the zeros of 100 are part of the number.
     return text.rstrip("0").rstrip(".") if "." in text else text
@@ -59,24 +59,23 @@ def display_duration(value: TimingValue) -> str:
     """
     is_partial = not value.complete and value.side != "at most"
     return _format_value(
-        replace(value, side="at least" if is_partial else "exact", complete=not is_partial), _format_time
+        replace(value, side="at least" if is_partial else "exact", complete=not is_partial),
+        partial(_format_time, rounding=ROUND_FLOOR if is_partial else ROUND_CEILING),
     )
 
 
 def display_lower_bound(value: TimingValue) -> str:
     """Format the lower bound of a duration (in ns)."""
     # Without `complete` and `side`: a lower bound stays one, whatever was left out of it.
-    return _format_value(TimingValue(value.value, assumptions=value.assumptions), _format_time)
+    lower_bound = TimingValue(value.value, assumptions=value.assumptions)
+    return _format_value(lower_bound, partial(_format_time, rounding=ROUND_FLOOR))
 
 
 @lru_cache(8192)  # a large architecture has few different figures, each on several pages and pictures
-def _format_time(nanoseconds: Fraction) -> str:
+def _format_time(nanoseconds: Fraction, rounding: str) -> str:
     """Format nanoseconds as ms or s."""
-    return (
-        f"{display_number(nanoseconds / 10**6)} ms"
-        if nanoseconds < _SECONDS_FROM
-        else f"{display_number(nanoseconds / 10**9)} s"
-    )
+    factor, unit = (10**6, "ms") if nanoseconds < _SECONDS_FROM else (10**9, "s")
+    return f"{display_number(nanoseconds / factor, rounding=rounding)} {unit}"
 
 
 def display_rate(value: TimingValue) -> str:
@@ -128,7 +127,7 @@ def display_period(value: TimingValue) -> str:
     if not value.value:
         return ""
     inverse_sign = {"at least": "<= ", "at most": ">= "}.get(bound_sign(value) and _bound_side(value), "")
-    return inverse_sign + _format_time(10**9 / value.value)
+    return inverse_sign + _format_time(10**9 / value.value, ROUND_HALF_UP)
 
 
 def _bound_side(value: TimingValue) -> str:

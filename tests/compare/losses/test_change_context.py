@@ -204,7 +204,9 @@ def test_fields(compared: Compared, old: str, new: str, said: str) -> None:
 def result(verdict: str, bound: int | None, *, terms: bool = True) -> Any:  # noqa: ANN401 - stands for a result
     limits = SimpleNamespace(value=None if bound is None else bound * 10**6, complete=True)
     deadline = SimpleNamespace(value=5 * 10**6, complete=True)
-    return SimpleNamespace(id="c", verdict=verdict, bound=limits, deadline=deadline, terms=(1,) if terms else ())
+    return SimpleNamespace(
+        id="c", verdict=verdict, bound=limits, deadline=deadline, late_run=None, terms=(1,) if terms else ()
+    )
 
 
 MISSES = "makes the chain `c` miss its deadline of 5 ms"

@@ -56,6 +56,7 @@ CROWDED = (
     )
 )
 LATE = "takes away the proof that the chain `react` meets its deadline of 250 ms"
+SEEN = "makes the chain `react` miss its deadline of 250 ms"
 RATE = ("rate: 10 Hz", "rate: 4 Hz")
 ALL = "`eye` of CERTH, `mind` of SSSA and `feet` of TUM are on it"
 EVERYBODY = ("certh", "sssa", "tum")
@@ -74,7 +75,7 @@ TABLE = {
         [
             *both(
                 "sensing.camera/timing.rate",
-                LATE + " (129 ms → 279 ms); `mind` of SSSA and `feet` of TUM are on it",
+                SEEN + " (129 ms → 279 ms); `mind` of SSSA and `feet` of TUM are on it",
                 "sssa",
                 "tum",
             ),
@@ -103,7 +104,7 @@ TABLE = {
         [("deadline: 250 ms", "deadline: 100 ms")],
         both(
             "react/deadline",
-            "takes away the proof that the chain `react` meets its deadline of 100 ms (it takes 129 ms); `eye` of CERTH, `mind` of SSSA and `feet` of TUM are on it",
+            "makes the chain `react` miss its deadline of 100 ms (it takes 129 ms); `eye` of CERTH, `mind` of SSSA and `feet` of TUM are on it",
             "certh",
             "sssa",
             "tum",
@@ -294,7 +295,7 @@ TABLE = {
         [("tracker]", "tracker, planner]")],
         both(
             "react/through",
-            "takes away the proof that the chain `react` meets its deadline of 125 ms (122 ms → 129 ms); `eye` of CERTH, `mind` of SSSA and `feet` of TUM are on it",
+            "makes the chain `react` miss its deadline of 125 ms (122 ms → 129 ms); `eye` of CERTH, `mind` of SSSA and `feet` of TUM are on it",
             "certh",
             "sssa",
             "tum",

@@ -47,6 +47,7 @@ NODE_OWNED = ("owner: sssa", "title: T"), ("mind: {", "mind: {owner: sssa, ")
 
 MET = "chain `react`, which met its deadline of 250 ms with"
 ALL = "`eye` of CERTH, `mind` of SSSA and `feet` of TUM are on it"
+SEEN = "makes the chain `react` miss its deadline of 250 ms"
 LATE = "takes away the proof that the chain `react` meets its deadline of 250 ms"
 CASES = {
     "who is fired by another host": (
@@ -72,7 +73,7 @@ CASES = {
     "the link on the way": (
         ROBOT,
         [("worst: 2 ms", "worst: 200 ms")],
-        both("lan/latency.worst", f"{LATE} (129 ms → 337 ms); {ALL}", "certh", "sssa", "tum"),
+        both("lan/latency.worst", f"{SEEN} (129 ms → 337 ms); {ALL}", "certh", "sssa", "tum"),
     ),
     "a source more": (
         FIRED,
@@ -120,7 +121,7 @@ CASES = {
     "a node of a partner for a component of nobody": (
         ROBOT.replace(*NODE_OWNED[0]).replace(*NODE_OWNED[1]),
         [("rate: 10 Hz", "rate: 4 Hz")],
-        both("sensing.camera/timing.rate", f"{LATE} (129 ms → 279 ms); `mind` of SSSA and `feet` of TUM are on it", "sssa", "tum"),
+        both("sensing.camera/timing.rate", f"{SEEN} (129 ms → 279 ms); `mind` of SSSA and `feet` of TUM are on it", "sssa", "tum"),
     ),
     "a node of a partner that is cut off, for a component of nobody": (
         SCREEN.replace(*NODE_OWNED[0]).replace(*NODE_OWNED[1]),

@@ -179,6 +179,6 @@ def test_figures_are_short_and_tips_keep_all_digits() -> None:
     step = ChartBar("camera", (BarSegment(2621.667, "response", "2621.667 ms"),), ">= 2621.667 ms")
     chart = bars(step, conclusion="Met: at the latest after 2621.667 ms.", limit=(8000.0, "deadline 8000 ms"))
     attributes = "\n".join(str(part.attributes) for part in scene(chart).parts)
-    assert all(text in attributes for text in ("≥ 2.62 s", "after 2.62 s.", "deadline 8 s"))
+    assert all(text in attributes for text in ("≥ 2.62 s", "after 2.63 s.", "deadline 8 s"))
     assert "2621.667 ms" in attributes
     assert ">= 2" not in attributes

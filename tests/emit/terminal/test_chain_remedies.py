@@ -7,7 +7,8 @@ from fractions import Fraction
 import pytest
 
 from archgen.emit.terminal import chain_gaps, chain_remedies
-from archgen.simulation.seeded_runs import LateRun
+from archgen.frozen import replace
+from archgen.timing.analysis import LateRun
 from archgen.timing.search.change_trials import TriedChange
 from archgen.timing.search.proposals import Proposal, TriedConfiguration
 from tests.timing.search.trials import bound_with
@@ -27,10 +28,13 @@ def test_what_is_left_of_a_deadline(deadline: str, text: str) -> None:
 
 
 def test_a_witness_is_told_with_the_command_that_repeats_it() -> None:
-    assert chain_gaps.describe_witness("c", LateRun(17, 60, 163 * MS)) == (
-        "seen in `archgen simulate --seed 17 --chain c --seconds 60`: 163 ms"
+    result = bound_with(
+        read_sketch({"a @p": "period: 96 ms"}, "", "hosts: {p: {cores: 1}}\nchains: {c: {through: [a]}}")
+    )["c"]
+    assert chain_gaps.describe_late_run(replace(result, late_run=LateRun(17, 60, 163 * MS))) == (
+        "seen in `archgen simulate --chain c --seed 17 --seconds 60`: 163 ms"
     )
-    assert chain_gaps.describe_witness("c", None) == ""
+    assert not chain_gaps.describe_late_run(result)
 
 
 def _propose(bounds: list[dict[str, int | None]], hopeless: dict[str, Fraction] | None = None) -> Proposal:

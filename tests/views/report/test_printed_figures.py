@@ -14,7 +14,7 @@ from archgen.views.shapes import Column, Section, Table, Text
         ("<= 10.004 Hz · >= 99.96 ms", "≤ 10.1\u202fHz · ≥ 99.9\u202fms"),
         (
             "7954.667 ms, 7045.333 ms before the deadline of 15 s",
-            "7.95\u202fs, 7.05\u202fs before the deadline of 15\u202fs",
+            "7.96\u202fs, 7.05\u202fs before the deadline of 15\u202fs",
         ),
         ("0.0024 Hz · 416.667 s", "0.0024\u202fHz · 417\u202fs"),
         ("execution 50 us to 200 us", "execution 50\u202fµs to 200\u202fµs"),

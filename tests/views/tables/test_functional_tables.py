@@ -83,7 +83,7 @@ def test_findings_are_listed_gravest_first(checked: CheckedProject, lookup: Look
     rows = read_cells(finding_tables.make_finding_table(lookup, [*checked.findings, gravest]))
     assert [row[0] for row in rows] == ["error", *["warning"] * 4, *["note"] * 3]
     assert rows[0][1].startswith("the last is first")
-    assert [row[2:] for row in rows if row[4] == "unmapped-type"] == [["nobody yet", "robot.yaml:11", "unmapped-type"]]
+    assert [row[2:] for row in rows if row[4] == "unmapped-type"] == [["Lab", "robot.yaml:11", "unmapped-type"]]
 
 
 def test_a_rule_with_a_state_of_its_own_shows_it(checked: CheckedProject) -> None:

@@ -114,7 +114,7 @@ def test_one_core_is_held_against_both_bounds(view: Lookup) -> None:
 def test_what_is_late_comes_first_with_why(view: Lookup) -> None:
     assert view.timing is not None
     (late,) = read(timing_verdicts.list_late_elements(view, view.timing))
-    assert str(late).startswith("Seen and shown. Not proven. It may take up to ")
+    assert str(late).startswith("Seen and shown. Missed. In a simulated run it took ")
     table = timing_verdicts.make_bound_table(view, view.timing)
     assert table is not None
     head, *rows = read([table])

@@ -47,18 +47,22 @@ def _view(folder: Path, costs: str, cores: str, limit: str) -> tuple[Lookup, tup
         ),
         (
             ("wcet: 1 ms, bcet: 1 ms", "cores: 1", "100 ms"),
-            "Not proven: up to 103 ms, 3 ms after the deadline of 100 ms.",
-            "unproven",
+            "Missed. In a simulated run it took 103 ms, 3 ms longer than its deadline of 100 ms allows; it never takes more than 103 ms.",
+            "missed",
         ),
         (
             ("wcet: 1 ms, bcet: 1 ms", "cores: 1", "2 ms"),
-            "Missed: at the earliest after 3 ms, 1 ms after the deadline of 2 ms.",
+            "Missed. It takes at least 3 ms, 1 ms longer than its deadline of 2 ms allows.",
             "missed",
         ),
-        (("wcet: 40 ms, bcet: 40 ms", "cores: 1", "1 s"), "Missed: pc is overloaded.", None),
+        (
+            ("wcet: 40 ms, bcet: 40 ms", "cores: 1", "1 s"),
+            "Missed. It may take any time, whatever its deadline: more is to be done on pc than can be.",
+            None,
+        ),
         (
             ("wcet: 20 ms, bcet: 20 ms, jitter: 1 us", "cores: 1", "1 s"),
-            "Not proven: no bound was found on pc at a load of 60 % (in any order), for the deadline of 1000 ms.",
+            "Not proven. Nothing says whether it meets its deadline of 1000 ms: no bound was found on pc at a load of 60 % (in any order).",
             "unproven",
         ),
         (

@@ -1,0 +1,318 @@
+"""What an element takes in and gives out, a row a flow; the chains through it; what no chain says; whom to talk to.
+
+Site, cards and documents read the same rows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from fractions import Fraction
+
+from archgen.diagnostics.common_wording import join_words
+from archgen.frozen import NamedTuple
+from archgen.model.node import Node
+from archgen.timing.analysis import ChainResult
+from archgen.timing.chains.chain_advice import sum_known_parts
+from archgen.timing.chains.element_flows import ElementFlow, UnjudgedWay
+from archgen.timing.figures.timing_values import TimingValue, sum_fractions
+from archgen.timing.figures.value_arithmetic import sum_bounds
+from archgen.timing.system.timing_system import Activity
+from archgen.views import element_references, inline_text
+from archgen.views.lookup import Lookup
+from archgen.views.shapes import Block, Bullets, Inlines, Markdown, Paragraph, Section, Table, Text, make_columns
+from archgen.views.timing import chain_status, timing_tables, value_format
+from archgen.views.timing.timing_lookup import TimingLookup
+
+
+class FlowRow(NamedTuple):
+    """What is said of a flow: `port` of the element, `other` at the other end with its partner and the way of travel."""
+
+    port: str
+    other: Inlines
+    topic: Inlines
+    rate: Inlines
+    gap: Inlines
+    age: Inlines
+    since_sensing: Inlines
+    read: Inlines
+    reading: str
+    deadlines: Inlines
+
+
+def list_activities(lookup: Lookup, nodes: Iterable[Node], component_id: str = "") -> list[Activity]:
+    """Return the activities of nodes; of a component alone those that work for it."""
+    if lookup.timing is None:
+        return []
+    activities = [each for node in nodes for each in lookup.timing.activities_of_node.get(node.id, ())]
+    # A node may implement several components, and an activity names its component by full id, by short name, or not at
+    # all.
+    names = {None, component_id, component_id.rsplit(".", 1)[-1]}
+    return [each for each in activities if not component_id or each.component in names]
+
+
+def list_flow_rows(lookup: Lookup, activities: Sequence[Activity]) -> tuple[list[FlowRow], list[FlowRow]]:
+    """Return the rows of what activities take in, and of what they give out."""
+    taken, given = _list_flows(lookup, activities)
+    return (
+        [_make_row(lookup, lookup.timing, flow, is_taken=True) for flow in taken if lookup.timing],
+        [_make_row(lookup, lookup.timing, flow, is_taken=False) for flow in given if lookup.timing],
+    )
+
+
+def _list_flows(lookup: Lookup, activities: Sequence[Activity]) -> tuple[list[ElementFlow], list[ElementFlow]]:
+    finder, names = lookup.timing.flows if lookup.timing else None, [each.id for each in activities]
+    return (finder.list_taken(names), finder.list_given(names)) if finder else ([], [])
+
+
+def _make_row(lookup: Lookup, timing_lookup: TimingLookup, flow: ElementFlow, *, is_taken: bool) -> FlowRow:
+    arc = flow.arc
+    own, other = (arc.target, arc.source) if is_taken else (arc.source, arc.target)
+    pace = flow.pace
+    is_data = arc.role == "data"
+    return FlowRow(
+        _port_name(arc.input if is_taken else arc.output),
+        _describe_end(lookup, timing_lookup, own, other, arc.link),
+        _describe_topic(lookup, arc.topic),
+        timing_tables.figure_cell(value_format.display_rate(pace.rate), pace.rate) if is_data else (),
+        timing_tables.duration_cell(pace.gap) if is_data else (),
+        timing_tables.duration_cell(flow.age) if is_data else (),
+        timing_tables.duration_cell(flow.since_sensing) if is_data else (),
+        timing_tables.duration_cell(sum_bounds((flow.since_sensing, flow.wait))) if is_data else (),
+        _describe_reading(flow),
+        inline_text.join_inlines(_link_chain(lookup, chain) for chain in flow.chains),
+    )
+
+
+def _describe_end(lookup: Lookup, timing_lookup: TimingLookup, own_id: str, other_id: str, link: str | None) -> Inlines:
+    """Return the element at the other end, its partner where that is another one, and whether a link lies between."""
+    architecture, activities = lookup.architecture, timing_lookup.analysis.system.activities
+    own, other = activities[own_id], activities[other_id]
+    node = architecture.nodes.get(other.node)
+    components = [
+        name for name in (node.implements if node else ()) if other.component in {None, name, name.rpartition(".")[2]}
+    ]
+    component = architecture.components.get(components[0]) if len(components) == 1 else None
+    own_partners = element_references.list_node_owners(architecture, own.node)
+    owners = [
+        each for each in element_references.list_node_owners(architecture, other.node) if each not in own_partners
+    ]
+    name = inline_text.component_link(component) if component else Text(other.node, ref=f"node:{other.node}", code=True)
+    link_title = architecture.links[link].title if link and link in architecture.links else link
+    travel = f"by {link_title}" if link_title else "same host" if own.host and own.host == other.host else ""
+    notes = [inline_text.owner_links(architecture, owners)] if owners else []
+    notes += [inline_text.to_inlines(Text(travel, muted=True))] if travel else []
+    return inline_text.join_lines(((name,), *((inline_text.join_inlines(notes, " · "),) if notes else ())))
+
+
+def _describe_topic(lookup: Lookup, topic_name: str) -> Inlines:
+    topic = lookup.architecture.topics.get(topic_name)
+    if topic is None:
+        return (Text(topic_name, code=True),)
+    messages = inline_text.join_inlines((element_references.message_link(name),) for name in topic.messages)
+    return inline_text.join_lines(((inline_text.topic_link(topic_name),), *((messages,) if messages else ())))
+
+
+def _describe_reading(flow: ElementFlow) -> str:
+    """Say whether a flow fires its reader or is read when that works, and what is left out or read again."""
+    if flow.arc.role == "request":
+        return "called"
+    fit = flow.fit
+    words = ["triggers" if flow.triggers else "sampled"]
+    if fit and fit.loss.value:
+        words.append(f"{value_format.display_share(fit.loss)} never read")
+    if fit and fit.rereads.value and fit.rereads.value > 1:
+        words.append(f"each read about {value_format.display_number(fit.rereads.value, 1)} times")
+    if fit and flow.arc.depth and fit.queue.value and fit.queue.value > flow.arc.depth:
+        waiting = value_format.display_number(fit.queue.value)
+        words.append(f"up to {waiting} may wait, the queue holds {flow.arc.depth}")
+    return "; ".join(words)
+
+
+def _link_chain(lookup: Lookup, chain: ChainResult) -> Inlines:
+    title = lookup.architecture.chains[chain.id].title
+    return (Text(title, ref=f"chain:{chain.id}"), Text(" "), *timing_tables.deadline_cell(chain))
+
+
+def make_flow_blocks(lookup: Lookup, element_id: str, title: str, activities: Sequence[Activity]) -> Iterator[Block]:
+    """Yield the tables of what an element takes in and gives out."""
+    tables = zip(("in", "out"), ("takes in", "gives out"), list_flow_rows(lookup, activities), strict=True)
+    for key, words, rows in tables:
+        if rows:
+            columns = make_columns(
+                ("Input" if key == "in" else "Output", 0.9),
+                ("From" if key == "in" else "To", 1.5),
+                ("Topic", 1.9),
+                ("Rate", 0.7, "right"),
+                ("Largest gap", 0.8, "right"),
+                ("Age on arrival", 0.8, "right"),
+                ("From sensor to arrival", 0.9, "right"),
+                ("To being read", 0.8, "right"),
+                ("How it is read", 1.3),
+                ("Deadlines on it", 1.3),
+            )
+            cells = tuple(
+                (
+                    (Text("internal", muted=True) if row.port.startswith("/") else Text(row.port, code=True),),
+                    *row[1:8],
+                    inline_text.to_inlines(row.reading),
+                    row.deadlines or (Text("none", muted=True),),
+                )
+                for row in rows
+            )
+            table = Table(f"table:flows-{key}/{element_id}", f"{title} {words}", columns, cells, wide=True)
+            yield timing_tables.drop_blank_columns(table)
+
+
+def make_chain_share_table(lookup: Lookup, element_id: str, title: str, activities: Sequence[Activity]) -> Table | None:
+    """List the chains that run through an element: what passes before it, in it and after it, and how they stand."""
+    if lookup.timing is None:
+        return None
+    rows = [
+        (
+            inline_text.to_inlines(Text(lookup.architecture.chains[result.id].title, ref=f"chain:{result.id}")),
+            chain_status.chain_meter(result),
+            # Of a chain with gaps this is what is known.
+            *(timing_tables.duration_cell(TimingValue(each, result.bound.complete)) for each in sums),
+            timing_tables.duration_cell(result.bound),
+            timing_tables.deadline_cell(result),
+            chain_status.chain_chip(result),
+        )
+        for result, sums in _list_chains_through(lookup, {each.id for each in activities})
+    ]
+    columns = make_columns(
+        ("Chain", 1.6),
+        ("Of the deadline", 1),
+        ("Before it", 0.8, "right"),
+        ("Here", 0.8, "right"),
+        ("After it", 0.8, "right"),
+        ("At the latest", 0.9, "right"),
+        ("Deadline", 0.8, "right"),
+        ("Verdict", 1.1),
+    )
+    table = Table(f"table:chains-through/{element_id}", f"Chains through {title}", columns, tuple(rows))
+    return table if rows else None
+
+
+def _list_chains_through(lookup: Lookup, own_ids: Collection[str]) -> Iterator[tuple[ChainResult, list[Fraction]]]:
+    """Yield the chains that run through activities, with what is known of the time (ns) before, in and after these."""
+    for result in lookup.timing.chains if lookup.timing else ():
+        places = [index for index, term in enumerate(result.terms) if term.activity in own_ids]
+        if places and result.id in lookup.architecture.chains:
+            first, last = places[0], places[-1] + 1
+            parts = (result.terms[:first], result.terms[first:last], result.terms[last:])
+            yield result, [sum_fractions(map(sum_known_parts, terms)) for terms in parts]
+
+
+def list_unjudged_lines(lookup: Lookup, activities: Sequence[Activity]) -> list[tuple[UnjudgedWay, str]]:
+    """Return what no chain says of the inputs of activities, each with its sentence."""
+    finder = lookup.timing.flows if lookup.timing else None
+    ways = finder.list_unjudged(_list_flows(lookup, activities)[0]) if finder else ()
+    return [
+        (
+            way,
+            (
+                f"`{_port_name(way.flow.arc.input)}`: {value_format.display_duration(way.duration)}"
+                f"{' at most' if way.duration.complete else ', as far as it is known,'} from what `{way.through[0]}` senses "
+                f"until `{way.through[-1]}` has acted on it ({' > '.join(way.through)})"
+            ),
+        )
+        for way in ways
+        if way.duration.value is not None
+    ]
+
+
+def make_unjudged_blocks(lookup: Lookup, activities: Sequence[Activity]) -> Iterator[Block]:
+    """Yield what no chain says of the inputs of an element, and the lines that would make a chain of each."""
+    found = list_unjudged_lines(lookup, activities)
+    if not found:
+        return
+    lead = "On these inputs no deadline rests. What a chain from the farthest sensor would say:"
+    yield Paragraph(inline_text.to_inlines(lead))
+    yield Bullets(tuple(element_references.link_names(lookup.architecture, f"{text}.") for _, text in found))
+    ways_by_name: dict[str, UnjudgedWay] = {}
+    for way, _ in found:
+        name = f"{way.through[0]}_to_{way.through[-1]}".replace(".", "_")
+        ways_by_name[f"{name}_by_{_port_name(way.flow.arc.input)}" if name in ways_by_name else name] = way
+    lines = [line for name, way in ways_by_name.items() for line in _write_chain(lookup, name, way)]
+    yield Paragraph(
+        inline_text.message_to_inlines("The lines that make chains of them; a `deadline` is yours to choose:")
+    )
+    yield Markdown("```yaml\nchains:\n" + "\n".join(lines) + "\n```")
+
+
+def _write_chain(lookup: Lookup, name: str, way: UnjudgedWay) -> Iterator[str]:
+    activities = lookup.timing.analysis.system.activities if lookup.timing else {}
+    yield f"  {name}:"
+    yield "    through:"
+    yield from (f"      - {activities[each].node}" for each in way.through)
+
+
+def _port_name(key: str) -> str:
+    return key.rpartition(".")[2]
+
+
+def list_flow_lines(lookup: Lookup, activities: Sequence[Activity]) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Yield what the tables say, in lines for a card: what an element takes in, gives out, its chains, what no chain says."""
+    for name, arrow, rows in zip(
+        ("takes in", "gives out"), ("<-", "->"), list_flow_rows(lookup, activities), strict=True
+    ):
+        yield name, tuple(_write_line(row, arrow) for row in rows)
+    results = _list_chains_through(lookup, {each.id for each in activities})
+    yield "chains", tuple(f"{each.id}: {_read(chain_status.chain_chip(each))}" for each, _ in results)
+    yield "what no chain says", tuple(text.replace("`", "") for _, text in list_unjudged_lines(lookup, activities))
+
+
+def _write_line(row: FlowRow, arrow: str) -> str:
+    figures = (
+        ("", row.rate),
+        ("largest gap ", row.gap),
+        ("age on arrival ", row.age),
+        ("from sensor to arrival ", row.since_sensing),
+        ("to being read ", row.read),
+    )
+    texts = [f"{label}{_read(cell)}" for label, cell in figures if cell]
+    deadlines = f"deadlines: {_read(row.deadlines) or 'none'}"
+    return f"{row.port} {arrow} {_read(row.other)}: {'; '.join(filter(None, (_read(row.topic), ', '.join(texts), row.reading, deadlines)))}"
+
+
+def _read(cell: Inlines) -> str:
+    """Return the text of a cell on one line."""
+    return "".join(f", {run.text}" if run.line_break else run.text for run in cell)
+
+
+def make_partner_bullets(lookup: Lookup, activities: Sequence[Activity]) -> Bullets | None:
+    """List the other partners with what passes between them and an element: whom to talk to."""
+    architecture = lookup.architecture
+    all_activities = lookup.timing.analysis.system.activities if lookup.timing else {}
+    own = {owner for each in activities for owner in element_references.list_node_owners(architecture, each.node)}
+    ports: dict[str, tuple[dict[str, None], dict[str, None]]] = {}
+    for side, flows in enumerate(_list_flows(lookup, activities)):
+        for flow in flows:
+            other, port = (flow.arc.target, flow.arc.output) if side else (flow.arc.source, flow.arc.input)
+            for owner in element_references.list_node_owners(architecture, all_activities[other].node):
+                if owner not in own:
+                    ports.setdefault(owner, ({}, {}))[side][_port_name(port)] = None
+    items = []
+    for owner, (given, taken) in ports.items():
+        verbs = ("gives", given), ("takes", taken)
+        words = " and ".join(f"{verb} {join_words([f'`{each}`' for each in names])}" for verb, names in verbs if names)
+        items.append(
+            (
+                *inline_text.owner_links(architecture, (owner,)),
+                *element_references.link_names(architecture, f" {words}"),
+            )
+        )
+    return Bullets(tuple(items)) if items else None
+
+
+def make_flow_sections(lookup: Lookup, element_id: str, title: str, activities: Sequence[Activity]) -> list[Section]:
+    """Return the sections on a page about what an element takes in and gives out, chains through it, and whom to talk to."""
+    chains = make_chain_share_table(lookup, element_id, title, activities)
+    partners = make_partner_bullets(lookup, activities)
+    parts: list[tuple[str, str, tuple[Block, ...]]] = [
+        ("flows", "Takes in and gives out", tuple(make_flow_blocks(lookup, element_id, title, activities))),
+        ("chains-through", "Chains through it", (chains,) if chains else ()),
+        ("unjudged", "What no chain says", tuple(make_unjudged_blocks(lookup, activities))),
+        ("partners-of", "Who to talk to", (partners,) if partners else ()),
+    ]
+    return [Section(f"{kind}:{element_id}", heading, blocks) for kind, heading, blocks in parts if blocks]

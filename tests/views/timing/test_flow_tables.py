@@ -1,0 +1,120 @@
+"""The page of a node: its flows with partner, age and deadlines, the chains through it, what no chain says, whom to talk to."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import yaml
+
+from archgen import pipeline
+from archgen.views.elements.element_card import make_card
+from archgen.views.lookup import Lookup, make_lookup
+from archgen.views.pages.report_outline import DocumentEdition
+from archgen.views.pages.site_pages import make_pages
+from archgen.views.shapes import Inlines, Markdown, Section, Table
+from archgen.views.timing.flow_tables import list_activities, list_flow_rows, make_flow_sections, make_unjudged_blocks
+from archgen.views.timing.timing_lookup import analyse_with_chains
+
+ROBOT = """\
+partners: {p: Partner P, q: Partner Q}
+groups:
+  see: {owner: p, components: {camera: {inputs: {light: {external: light, medium: physical}}, outputs: {picture: Image}}}}
+  act: {owner: q, components: {stop: {inputs: {picture: camera.picture, pose: odometry.pose}, outputs: {halt: {type: Halt, medium: physical, external: wheels}}},
+                               odometry: {inputs: {ticks: {external: ticks, medium: physical}}, outputs: {pose: Pose}}}}
+types: {Image: sensor_msgs/msg/Image, Pose: geometry_msgs/msg/Pose}
+nodes:
+  camera: {implements: camera, host: h, timing: {rate: 50 Hz, wcet: 2 ms}}
+  stop: {implements: stop, host: k, timing: {rate: 10 Hz, wcet: 5 ms}}
+  odometry: {implements: odometry, host: k, timing: {rate: 100 Hz, wcet: 1 ms}}
+hosts: {h: {cores: 1}, k: {cores: 1}}
+links: {lan: {title: Cable, connects: [h, k], latency: {best: 1 ms, worst: 4 ms}}}
+chains: {see: {title: Sees and stops, through: [camera, stop], deadline: 400 ms}}
+"""
+
+
+def _look_up(folder: Path, text: str = ROBOT) -> Lookup:
+    (folder / "robot.yaml").write_text(text, encoding="utf-8")
+    checked = pipeline.check_project(folder / "robot.yaml")
+    assert not checked.has_errors
+    return make_lookup(checked.architecture, checked.findings, timing_lookup=analyse_with_chains(checked.architecture))
+
+
+def _read(cell: Inlines) -> str:
+    return "".join(f" / {run.text}" if run.line_break else run.text for run in cell)
+
+
+def test_a_row_says_who_gives_it_how_old_it_is_and_what_rests_on_it(tmp_path: Path) -> None:
+    lookup = _look_up(tmp_path)
+    taken, given = list_flow_rows(lookup, list_activities(lookup, (lookup.architecture.nodes["stop"],)))
+    assert given == []
+    cells = [[_read(cell) if isinstance(cell, tuple) else cell for cell in row] for row in taken]
+    assert cells == [
+        ["picture", "Camera / Partner P · by Cable", "/see/camera/picture / sensor_msgs/msg/Image", "50 Hz", "22 ms", "6 ms", "6 ms", "107 ms", "sampled; 80 % never read", "Sees and stops 400 ms"],
+        ["pose", "Odometry / same host", "/act/odometry/pose / geometry_msgs/msg/Pose", "100 Hz", "16 ms", "6 ms", "6 ms", "107 ms", "sampled; 90 % never read; up to 12 may wait, the queue holds 10", ""],
+    ]  # fmt: skip
+
+
+def test_the_page_has_chains_what_no_chain_says_and_whom_to_talk_to(tmp_path: Path) -> None:
+    lookup = _look_up(tmp_path)
+    sections = make_flow_sections(lookup, "stop", "stop", list_activities(lookup, (lookup.architecture.nodes["stop"],)))
+    assert [section.title for section in sections] == [
+        "Takes in and gives out",
+        "Chains through it",
+        "What no chain says",
+        "Who to talk to",
+    ]
+    (chains,) = sections[1].blocks
+    assert isinstance(chains, Table)
+    assert [_read(cell) for cell in chains.rows[0]][2:] == [
+        "22 ms",
+        "111 ms",
+        "0 ms",
+        "133 ms",
+        "400 ms",
+        "met · 267 ms left",
+    ]
+    assert chains.rows[0][1][0].meter is not None
+    assert "Partner P gives picture" in str([_read(item) for item in sections[3].blocks[0].items])  # type: ignore[union-attr]
+
+
+def test_the_lines_make_a_chain_that_says_what_the_page_says(tmp_path: Path) -> None:
+    lookup = _look_up(tmp_path)
+    blocks = list(make_unjudged_blocks(lookup, list_activities(lookup, (lookup.architecture.nodes["stop"],))))
+    text = next(block.text for block in blocks if isinstance(block, Markdown))
+    lines = text.removeprefix("```yaml\n").removesuffix("\n```")
+    assert yaml.safe_load(lines) == {"chains": {"odometry_to_stop": {"through": ["odometry", "stop"]}}}
+    told = next(_read(item) for block in blocks if hasattr(block, "items") for item in block.items)
+    longer = _look_up(tmp_path, ROBOT.replace("chains: {", "chains: {odometry_to_stop: {through: [odometry, stop]}, "))
+    assert longer.timing is not None
+    (result,) = (each for each in longer.timing.chains if each.id == "odometry_to_stop")
+    assert (
+        told
+        == f"pose: {(result.bound.value or 0) / 10**6} ms at most from what odometry senses until stop has acted on it (odometry > stop)."
+    )
+
+
+def test_site_pages_and_cards_have_the_same_rows(tmp_path: Path) -> None:
+    lookup = _look_up(tmp_path)
+    pages = {page.anchor: page for page in make_pages(lookup, DocumentEdition())}
+    tables = [_list_flows(pages[anchor].section) for anchor in ("node:stop", "component:act.stop")]
+    assert tables[0] == tables[1]
+    assert len(tables[0]) == 2
+    for kind, name in (("node", "stop"), ("component", "act.stop")):
+        lists = dict(make_card(lookup, kind, name).lists)
+        assert [line.partition(" <-")[0] for line in lists["takes in"]] == [row[0] for row in tables[0]]
+        assert all(row[5] in line for row, line in zip(tables[0], lists["takes in"], strict=True))
+        assert lists["chains"] == ("see: met · 267 ms left",)
+        assert lists["what no chain says"][0].startswith("pose: ")
+
+
+def _list_flows(section: Section) -> list[list[str]]:
+    flows = next(each for each in section.sections if each.title == "Takes in and gives out")
+    (table,) = flows.blocks
+    assert isinstance(table, Table)
+    return [[_read(cell) for cell in row] for row in table.rows]
+
+
+def test_without_timing_there_is_nothing(tmp_path: Path) -> None:
+    lookup = make_lookup(_look_up(tmp_path).architecture)
+    assert list_flow_rows(lookup, ()) == ([], [])
+    assert make_flow_sections(lookup, "stop", "stop", ()) == []
