@@ -70,7 +70,7 @@ def find_by_key(
     if key in _ELEMENT_FINDERS:
         return _ELEMENT_FINDERS[key](architecture, value)
     if key == "finding":
-        return _hit_of_findings(
+        return find_elements_of(
             architecture, [element for rule in findings if matches_wildcard(value, rule) for element in findings[rule]]
         )
     component_values, node_values = _COMPONENT_KEYS.get(key), _NODE_KEYS.get(key)
@@ -215,7 +215,7 @@ def _find_by_property(architecture: Architecture, text: str) -> SelectorHit:
     return SelectorHit(met_components, met_nodes)
 
 
-def _hit_of_findings(architecture: Architecture, element_ids: Iterable[str]) -> SelectorHit:
+def find_elements_of(architecture: Architecture, element_ids: Iterable[str]) -> SelectorHit:
     """Return the components and nodes that findings are about; a finding on a group is about all of its components."""
     components, nodes = set[str](), set[str]()
     for element_id in (_find_holder(architecture, each) for each in element_ids):

@@ -218,6 +218,8 @@ class ReadingState:
     skipped_folders: frozenset[str] = frozenset()
     """Folders in the project's own that are libraries: nothing in them is a source."""
     library_files: list[str] = field(default_factory=list)
+    unread_names: dict[str, frozenset[str]] = field(default_factory=dict)
+    """What slices declare that are not read, by their files."""
 
     def is_library_file(self, file: str) -> bool:
         """Whether a file lies in a library inside of the project's folder."""
