@@ -312,10 +312,12 @@ class ReferenceResolver:
             ids = self.names.ids_ending_in(kind, reference.text) if kind not in kinds else ()
             if ids:
                 self.suspect_ids.update(ids)
+                is_sure = kind == "output" and "component" in kinds and len(ids) == 1
+                sure_help = f"did you mean `{ids[0].rpartition('.')[0]}`?" if is_sure else help_line
                 message = f"no {kind_phrase} named `{reference.text}`: it is {'an' if kind == 'output' else 'a'} {kind}"
                 labels = (Label(self.spans[kind][ids[0]], f"the {kind}"),)
                 return Diagnostic(
-                    "unknown-reference", message, reference.span, labels=labels, help=help_line, element=element_id
+                    "unknown-reference", message, reference.span, labels=labels, help=sure_help, element=element_id
                 )
         return None
 

@@ -133,7 +133,7 @@ _SECTION_LINE = re.compile(
     ),
     re.MULTILINE,
 )
-_TOOL_FOLDERS = (".git/", ".hg/", ".svn/")
+_TOOL_FOLDERS = (".git/", ".hg/", ".svn/", ".archgen/")
 _TOOL_FILES = frozenset({"HEAD", "pyvenv.cfg", "CACHEDIR.TAG"})
 """Files that tell folders of tools: repositories, environments of Python, caches."""
 

@@ -85,12 +85,8 @@ def _read_listed_slices(state: ReadingState, patterns: SequenceNode, ignored_fil
     for pattern in patterns.items:
         text = pattern.text if isinstance(pattern, ScalarNode) else ""
         for file in expand_source_pattern(state, pattern, unmatched_patterns):
-            if file in state.seen_files or state.is_library_file(file):
-                continue
-            if text.startswith("*"):  # wherever it is: as without `sources`
-                _read_found_slice(state, file, ignored_files)
-            else:
-                _read_listed_slice(state, file, is_named=text == file, ignored_files=ignored_files)
+            if file not in state.seen_files and not state.is_library_file(file):
+                _read_listed_slice(state, file, text, ignored_files)
     _read_agreements(state)
     # Last, when it is known which files no pattern names.
     report_missing_sources(state, unmatched_patterns)
@@ -107,24 +103,32 @@ def _read_agreements(state: ReadingState) -> None:
     )
     for file in (*map(agreement_file, partner_ids), *signed):
         if file not in state.seen_files and state.files.has_path(file):
-            _read_listed_slice(state, file, is_named=False)
+            _read_listed_slice(state, file, SIGNATURE_FOLDER, [])
 
 
-def _read_listed_slice(
-    state: ReadingState, file: str, *, is_named: bool, ignored_files: list[IgnoredFile] | None = None
-) -> None:
-    """Read a file that `sources` names; one that only a wildcard found is left out if it is no slice."""
+def _read_listed_slice(state: ReadingState, file: str, pattern: str, ignored_files: list[IgnoredFile]) -> None:
+    """Read a file that a pattern of `sources` names; one that only a wildcard found is left out if it is no slice."""
     state.seen_files.add(file)
     parsed_slice = parse_file(state, file)
-    if not is_named and ignored_files is not None and _is_strange(parsed_slice):
+    if pattern == file:
+        _keep_slice(state, parsed_slice)
+    elif _is_strange(parsed_slice, is_anywhere=pattern.startswith("**")):
         ignored_files.append((file, None))
-    elif is_named or not (_is_other_file(state, parsed_slice) or _is_pass(parsed_slice)):
+    elif not (_is_other_file(state, parsed_slice) or _is_pass(parsed_slice)):
         _keep_slice(state, parsed_slice)
 
 
-def _is_strange(parsed_slice: Slice) -> bool:
-    """Whether a file is another program's, though it has sections that are called like ours."""
-    return parsed_slice.document is not None and resembles_slice(parsed_slice.document.root) is False
+def _is_strange(parsed_slice: Slice, *, is_anywhere: bool = False) -> bool:
+    """Whether a file is another program's, though it has sections that are called like ours; among files that were found
+    anywhere, also one without sections.
+    """
+    if parsed_slice.document is None:
+        is_known = parsed_slice.diagnostics[0].rule == "too-large" or _looks_like_slice(parsed_slice)
+        return is_anywhere and not is_known
+    if resembles_slice(parsed_slice.document.root) is False:
+        return True
+    has_section = not parsed_slice.sections or not list_sections().isdisjoint(parsed_slice.sections)
+    return is_anywhere and not has_section and not _is_meant_as_slice(parsed_slice.document)
 
 
 def _is_other_file(state: ReadingState, parsed_slice: Slice) -> bool:
@@ -161,7 +165,7 @@ def _read_found_slice(state: ReadingState, file: str, ignored_files: list[Ignore
     # A repository holds other YAML as well, some of it templates that no parser reads. A broken file is an error
     # only if it seems to be meant as a slice.
     if parsed_slice.document is None:
-        if parsed_slice.diagnostics[0].rule == "too-large" or _looks_like_slice(parsed_slice, known_sections):
+        if parsed_slice.diagnostics[0].rule == "too-large" or _looks_like_slice(parsed_slice):
             _keep_slice(state, parsed_slice)
         else:
             ignored_files.append((file, None))
@@ -210,7 +214,7 @@ def read_library_slices(state: ReadingState, folder: str) -> None:
         ):
             continue
         if parsed_slice.document is None:
-            if _looks_like_slice(parsed_slice, known_sections):
+            if _looks_like_slice(parsed_slice):
                 _keep_slice(state, parsed_slice)
         elif not _is_strange(parsed_slice) and (
             not known_sections.isdisjoint(parsed_slice.sections) or _is_meant_as_slice(parsed_slice.document)
@@ -278,12 +282,12 @@ _FOREIGN_TEXT = re.compile(r"^(?:apiVersion|kind):|\{\{|\{%", re.MULTILINE)
 """What manifests of clusters and templates have, and slices never."""
 
 
-def _looks_like_slice(parsed_slice: Slice, known_sections: frozenset[str]) -> bool:
+def _looks_like_slice(parsed_slice: Slice) -> bool:
     """Whether a file that cannot be parsed was meant as a slice: a line begins a section, or its text is unknown."""
     text = parsed_slice.text
     if not text:
         return True
-    sections = "|".join(sorted(known_sections))
+    sections = "|".join(sorted(list_sections() - COMMON_SECTIONS))
     section = re.search(rf"^[^\w\n]*+(?:{sections})[^\w\n:]*+:", text, re.MULTILINE)
     if section is None or _FOREIGN_TEXT.search(text):
         return False

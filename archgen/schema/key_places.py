@@ -47,6 +47,9 @@ _POLICY_KEYS = {
     "require": dict.fromkeys(("from", "to"), _REQUIRED_ENDS),
 }
 """Help for the keys that one kind of policy has and the other has not."""
+_PORT_USES = {"inputs": "subscribes", "outputs": "publishes"}
+"""Ports, and the key at a node below which their topics stand."""
+_NODE_DEPTH = 2
 _PORT_HOMES = ("type", "topic_use", "timing", "node")
 """The order at an input or an output: its message is that of its type, its topic and QoS are the node's."""
 _NAMED_ELEMENTS = {"node": "nodes", "nodes": "nodes", "type": "types", "host": "hosts", "chain": "chains"}
@@ -59,7 +62,8 @@ def find_key_home(key: str, path: KeyPath, kind: str) -> str | None:
     is_policy = path[:1] == ("policies",) and key in _POLICY_KEYS.get(str(path[-1]), {})
     if is_policy or (path[:1] == ("variants",) and path[2:] == ("changes",)):
         return _POLICY_KEYS[str(path[-1])][key] if is_policy else _find_changes_help(key)
-    parent = _find_parent(key, kind)
+    port_use = _PORT_USES.get(key) if path[:1] == ("nodes",) and len(path) == _NODE_DEPTH else None
+    parent = _find_parent(key, kind) if port_use is None else None
     if parent is not None or key in TELLING_NOTHING:
         return f"write it below `{parent}`: `{parent}: {{{key}: ...}}`" if parent else None
     if key in _READER_KEYS and kind != "Input":
@@ -69,8 +73,12 @@ def find_key_home(key: str, path: KeyPath, kind: str) -> str | None:
     # Beside the sections stands what should have a group around it: its `components` are meant, not those of a component.
     homes = _PORT_HOMES if is_port else tuple(_HOMES) if path else ("group", *_HOMES)
     home = _find_kind(key, homes)
-    if home is None:
-        return _find_section_help(key, path)
+    if home is None or port_use:
+        return (
+            f"{key} stand at the component; the topic of one stands at the node below `{port_use}`"
+            if port_use
+            else _find_section_help(key, path)
+        )
     component = _find_component(path)
     place = _HOMES[home].format(
         key=key,
@@ -89,6 +97,10 @@ def find_sibling_help(entry: MappingEntry, path: KeyPath, kind: str) -> str | No
         return f"put it below `{section}:`, indented" if section else None
     is_component, section_kind = _looks_like(entry.value, "component"), _ELEMENT_SECTIONS.get(str(path[0]))
     match path:
+        case ("groups", element_id) if looks_like_part(entry.value, load_schema()["$defs"]["group"]) and _holds(
+            entry, "components"
+        ):
+            return f"it looks like a group of its own: begin it in the column of `{element_id}`"
         case ("groups", element_id) if is_component:
             return f"it looks like a component: indent it below `components:` of `{element_id}`"
         case ("groups", _, "components", element_id) if is_component:
@@ -96,6 +108,10 @@ def find_sibling_help(entry: MappingEntry, path: KeyPath, kind: str) -> str | No
         case (_, element_id) if section_kind and _looks_like(entry.value, section_kind):
             return f"it looks like {add_article(kind)} of its own: begin it in the column of `{element_id}`"
     return None
+
+
+def _holds(entry: MappingEntry, key: str) -> bool:
+    return isinstance(entry.value, MappingNode) and key in entry.value.entries
 
 
 def find_section_of(entry: MappingEntry) -> str | None:

@@ -294,7 +294,7 @@ def test_files_of_a_project_show_what_lies_in_them(run: Run, robot: Path, monkey
     )
     ran = run("check", "sensing.yaml", "archgen.yaml")
     assert (ran.status, ran.out, ran.err) == (0, "no findings there\n", "not shown: 1 error\n")
-    assert json.loads(run("check", "sensing.yaml", "--format", "json").out)["findings"] == []
+    assert json.loads(run("check", "sensing.yaml", "--format", "json").out)["diagnostics"] == []
     (robot / "alone.txt").write_text("hosts: {pc: {}}\n", encoding="utf-8")
     ran = run("check", "alone.txt", "-q")
     assert ran.err.splitlines()[0] == "warning: alone.txt is no part of the project in .: it is checked by itself"
