@@ -45,6 +45,11 @@ _MAX_CURED_LINES = 20
     metavar="WORDS",
     help="Show only what is about the selected components and nodes: `owner:certh`, `sensing`, `tag:safety -x`.",
 )
+@click.option(
+    "--fix",
+    is_flag=True,
+    help="Mend what can mean only one thing (quotes, case, separators, odd signs), and show what is left.",
+)
 @shared_options.strict_option
 @click.option("-q", "--quiet", is_flag=True, help="Show only what makes the check fail, and count the rest.")
 @click.option(
@@ -63,6 +68,7 @@ def command(  # noqa: PLR0913 - one for each option
     form: str,
     variant: str | None,
     select: str | None,
+    fix: bool,
     strict: bool,
     quiet: bool,
     baseline: Path | None,
@@ -82,18 +88,17 @@ def command(  # noqa: PLR0913 - one for each option
     if update_baseline:
         _refuse_partial_baseline(
             {"--format": form != "text", "--changed-since": changed_since, "--variant": variant, "--select": select}
-            | {"FILE": files}
+            | {"FILE": files, "--fix": fix}
         )
         _update_baseline(command_support.check_or_exit(project), baseline)
-    if baseline is not None and not os.path.lexists(baseline):
-        msg = f"there is no baseline {baseline}: `archgen check --update-baseline --baseline {baseline}` writes one"
-        raise click.UsageError(msg)
+    _refuse_wrong_use(fix=fix, form=form, baseline=baseline)
     from archgen.pipeline import VersionCache
     from archgen.products import check_findings
 
     # A single check is the quicker for what need not be kept for another one.
     version_cache = VersionCache()
-    checked_project, names = _check_asked(project, files, None if changed_since is None else version_cache)
+    kept_versions = None if changed_since is None else version_cache
+    checked_project, names = _check_asked(project, files, kept_versions, fix=fix)
     if variant is not None:
         checked_project = _keep_variants(checked_project, variant)
     earlier_project = None if changed_since is None else _check_at_revision(project, changed_since, version_cache)
@@ -148,7 +153,7 @@ def _find_asked_files(paths: tuple[Path, ...], project: Path | None) -> tuple[Pa
 
 
 def _check_asked(
-    project: Path | None, files: tuple[Path, ...], version_cache: VersionCache | None
+    project: Path | None, files: tuple[Path, ...], version_cache: VersionCache | None, *, fix: bool
 ) -> tuple[CheckedProject, frozenset[str]]:
     """Check a project; return it with the files that are asked for, as it calls them. Those that it does not read are named.
 
@@ -168,7 +173,35 @@ def _check_asked(
         if len(files) > 1:
             sys.exit(0)
         checked_project = command_support.check_or_exit(files[0], version_cache)
-    return checked_project, read_names
+    return _apply_fixes(checked_project, read_names) if fix else checked_project, read_names
+
+
+_MAX_ROUNDS = 20
+"""So often a project is checked again by --fix: a syntax error hides what comes behind it."""
+
+
+def _apply_fixes(checked_project: CheckedProject, names: frozenset[str]) -> CheckedProject:
+    """Write the fixes that are certain; return the project with them."""
+    from archgen import pipeline
+    from archgen.edit.certain_fixes import plan_certain_fixes
+
+    for _ in range(_MAX_ROUNDS):
+        planned = list(plan_certain_fixes(checked_project, names))
+        if not planned:
+            break
+        for edit, count in planned:
+            command_support.write_edit(checked_project.root, edit, f"{count} fix{'es' * (count > 1)}")
+        checked_project = pipeline.check_project(checked_project.root / checked_project.loaded_project.first_file)
+    return checked_project
+
+
+def _refuse_wrong_use(*, fix: bool, form: str, baseline: Path | None) -> None:
+    if fix and form != "text":
+        msg = "--fix says what it wrote: no --format"
+        raise click.UsageError(msg)
+    if baseline is not None and not os.path.lexists(baseline):
+        msg = f"there is no baseline {baseline}: `archgen check --update-baseline --baseline {baseline}` writes one"
+        raise click.UsageError(msg)
 
 
 def _refuse_partial_baseline(options: Mapping[str, object]) -> None:

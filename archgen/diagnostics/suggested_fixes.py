@@ -74,8 +74,8 @@ def _replace_word(finding: Diagnostic, sources: SourceTexts, match: re.Match[str
 
 
 def _fold(word: str) -> str:
-    """Return a word without what people write otherwise without meaning anything by it: case and separators."""
-    return re.sub(r"[-_ ]", "", word.casefold())
+    """Return a word without what people write otherwise without meaning anything by it: case, separators and signs."""
+    return re.sub(r"[\W_]+", "", word.casefold())
 
 
 def _write_value(finding: Diagnostic, sources: SourceTexts, match: re.Match[str]) -> SuggestedFix | None:
@@ -95,7 +95,9 @@ def _write_value(finding: Diagnostic, sources: SourceTexts, match: re.Match[str]
         if key is None:
             return None
         span = span._replace(column=key.start() + 1)
-    return SuggestedFix((TextEdit(span, meant),), is_certain=other_key is None)
+    # Of data, bits and bytes are told apart by case alone.
+    is_certain = _fold(_read_span(span, sources)) == _fold(meant) and "KiB" not in str(finding.help)
+    return SuggestedFix((TextEdit(span, meant),), is_certain)
 
 
 def _rename_key(finding: Diagnostic, sources: SourceTexts, match: re.Match[str]) -> SuggestedFix | None:

@@ -317,3 +317,18 @@ def test_a_partner_asks_for_his_own_findings(run: Run, robot: Path) -> None:
     # What cannot be read may be anybody's.
     (robot / "arm.yaml").write_text(f"{_ARM}a: [\n", encoding="utf-8")
     assert run("check", robot, "--select", "sensing").status == 1
+
+
+def test_fixes_are_written_and_what_is_left_is_shown(run: Run, robot: Path) -> None:
+    text = _CAMERA.replace("outputs:", "Outputs:", 1)
+    (robot / "sensing.yaml").write_text(text, encoding="utf-8")
+    (diagnostic, *_) = json.loads(run("check", robot, "--format", "json").out)["diagnostics"]
+    (edit,) = diagnostic["fixes"][0]["edits"]
+    assert (diagnostic["fixes"][0]["certain"], edit["text"]) == (True, "outputs")
+    (result, *_) = json.loads(run("check", robot, "--format", "sarif").out)["runs"][0]["results"]
+    assert result["fixes"][0]["artifactChanges"][0]["replacements"][0]["insertedContent"] == {"text": "outputs"}
+    ran = run("check", robot, "--fix")
+    assert ran.out.splitlines()[0].endswith("sensing.yaml (1 fix)")
+    assert (robot / "sensing.yaml").read_text(encoding="utf-8") == _CAMERA
+    assert _rules(run, robot) == ["unread-output"]
+    assert run("check", robot, "--fix", "--format", "json").status == 2
