@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import sys
+import threading
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
@@ -15,7 +17,7 @@ from archgen.diagnostics.safe_text import make_visible
 from archgen.frozen import replace
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from archgen.diagnostics.diagnostic import Diagnostic
     from archgen.pipeline import CheckedProject, VersionCache
@@ -50,6 +52,7 @@ _MAX_CURED_LINES = 20
     is_flag=True,
     help="Mend what can mean only one thing (quotes, case, separators, odd signs), and show what is left.",
 )
+@click.option("--watch", is_flag=True, help="Check again whenever a file is saved, until Ctrl-C.")
 @shared_options.strict_option
 @click.option("-q", "--quiet", is_flag=True, help="Show only what makes the check fail, and count the rest.")
 @click.option(
@@ -69,6 +72,7 @@ def command(  # noqa: PLR0913 - one for each option
     variant: str | None,
     select: str | None,
     fix: bool,
+    watch: bool,
     strict: bool,
     quiet: bool,
     baseline: Path | None,
@@ -88,10 +92,61 @@ def command(  # noqa: PLR0913 - one for each option
     if update_baseline:
         _refuse_partial_baseline(
             {"--format": form != "text", "--changed-since": changed_since, "--variant": variant, "--select": select}
-            | {"FILE": files, "--fix": fix}
+            | {"FILE": files, "--fix": fix, "--watch": watch}
         )
         _update_baseline(command_support.check_or_exit(project), baseline)
-    _refuse_wrong_use(fix=fix, form=form, baseline=baseline)
+    _refuse_wrong_use({"--fix": fix, "--watch": watch}, form=form, baseline=baseline)
+    check_once = functools.partial(
+        _check_once,
+        *(project, files),
+        form=form,
+        variant=variant,
+        select=select,
+        fix=fix,
+        strict=strict,
+        quiet=quiet,
+        baseline=baseline,
+        changed_since=changed_since,
+    )
+    if watch:
+        _watch(project, check_once)
+    else:
+        sys.exit(check_once())
+
+
+def _watch(project: Path | None, check_once: Callable[[], int]) -> None:
+    """Check, and check again whenever a file below the project is saved."""
+    from archgen.project.project_search import ProjectNotFoundError, find_project
+    from archgen.serve import file_watch
+
+    with command_support.explain_wrong_usage(ProjectNotFoundError):
+        places = file_watch.WatchedPlaces((find_project(project)[0],))
+
+    def check_again() -> None:
+        click.echo(click.style("--- a file was saved", dim=True))
+        try:
+            check_once()
+        except click.ClickException as error:  # a selector that names nothing by now, for instance
+            error.show()
+
+    check_once()
+    file_watch.watch_files(lambda: places, check_again, threading.Event())
+
+
+def _check_once(  # noqa: PLR0913 - one for each option
+    project: Path | None,
+    files: tuple[Path, ...],
+    *,
+    form: str,
+    variant: str | None,
+    select: str | None,
+    fix: bool,
+    strict: bool,
+    quiet: bool,
+    baseline: Path | None,
+    changed_since: str | None,
+) -> int:
+    """Check a project, print what is asked for, and return the exit status."""
     from archgen.pipeline import VersionCache
     from archgen.products import check_findings
 
@@ -125,9 +180,7 @@ def command(  # noqa: PLR0913 - one for each option
         _print_hidden(all_findings, shown_findings)
     _renew_editor_schema(checked_project)
     # With --strict a cured finding fails, so that the baseline is updated and the fault cannot come back unseen.
-    sys.exit(
-        command_support.exit_status(reported.findings, strict=strict) or int(strict and bool(reported.cured_entries))
-    )
+    return command_support.exit_status(reported.findings, strict=strict) or int(strict and bool(reported.cured_entries))
 
 
 def _find_asked_files(paths: tuple[Path, ...], project: Path | None) -> tuple[Path | None, tuple[Path, ...]]:
@@ -195,9 +248,10 @@ def _apply_fixes(checked_project: CheckedProject, names: frozenset[str]) -> Chec
     return checked_project
 
 
-def _refuse_wrong_use(*, fix: bool, form: str, baseline: Path | None) -> None:
-    if fix and form != "text":
-        msg = "--fix says what it wrote: no --format"
+def _refuse_wrong_use(told_options: Mapping[str, bool], *, form: str, baseline: Path | None) -> None:
+    told = [name for name, is_given in told_options.items() if is_given]
+    if told and form != "text":
+        msg = f"{told[0]} is for people: no --format"
         raise click.UsageError(msg)
     if baseline is not None and not os.path.lexists(baseline):
         msg = f"there is no baseline {baseline}: `archgen check --update-baseline --baseline {baseline}` writes one"

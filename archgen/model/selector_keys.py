@@ -119,6 +119,27 @@ _NODE_KEYS: Mapping[str, Callable[[Node], Iterable[str | None]]] = {
 }
 
 
+def list_key_values(architecture: Architecture, key: str) -> set[str]:
+    """Return what a key could be followed by, as the elements have it; nothing for keys of conditions and types."""
+    if key == "tag":
+        kinds = (
+            architecture.components,
+            architecture.groups,
+            architecture.nodes,
+            architecture.requirements,
+            architecture.hosts,
+        )
+        return {tag for elements in kinds for element in elements.values() for tag in element.tags}
+    if key in {"requirement", "use_case", "variant"}:
+        return {*getattr(architecture, f"{key}s")}
+    list_values, node_values = _COMPONENT_KEYS.get(key), _NODE_KEYS.get(key)
+    known = [
+        value for each in architecture.components.values() if list_values for value in list_values(architecture, each)
+    ]
+    known += [value for each in architecture.nodes.values() if node_values for value in node_values(each)]
+    return {*filter(None, known), *({*architecture.partners} if key == "owner" else ())}
+
+
 def _find_tagged(architecture: Architecture, pattern: str) -> SelectorHit:
     """Find what has a tag itself, through its group, through a requirement that it serves, or through its host."""
     groups = {g.id for g in architecture.groups.values() if _matches_any(pattern, g.tags)}
