@@ -59,8 +59,11 @@ def test_everything_below_by_default(tmp_path: Path) -> None:
     )
     loaded = load_project(tmp_path)
     assert names(loaded) == ["archgen.yaml", "b/a.yaml", "b/c.yaml", "b.yaml", "readme.yml", "z.yaml"]
+    hidden = "`.hidden/x.yaml`, `.x.yaml`, `archgen-out/packed.yaml` and `backends/x.yaml`"
     assert findings(loaded) == [
-        "packed.yaml:1:1 ignored-file: `archgen:` makes this file a project of its own: it is no part of this one"
+        "packed.yaml:1:1 ignored-file: `archgen:` makes this file a project of its own: it is no part of this one",
+        f"archgen.yaml:1:1 ignored-file: {hidden} hold a part of an architecture and are not read: hidden files, outputs and the folder `backends` are not searched",
+        "archgen.yaml:1:1 ignored-file: `other/` is no part of this project: archgen.yaml there makes a project of its own",
     ]
 
 
@@ -71,7 +74,7 @@ def test_files_without_a_section_are_listed_in_one_note(tmp_path: Path) -> None:
     loaded = load_project(tmp_path)
     assert names(loaded) == ["archgen.yaml", "s.yaml"]
     assert findings(loaded) == [
-        "archgen.yaml:1:1 ignored-file: `ci/x.yaml`, `params.yaml` hold no section of the language and are not read"
+        "archgen.yaml:1:1 ignored-file: `ci/x.yaml`, `params.yaml` hold no element of the language and are not read"
     ]
 
 
@@ -91,8 +94,17 @@ def test_a_broken_slice_is_reported_and_the_others_are_read(tmp_path: Path) -> N
 
 def test_sources_in_their_order(tmp_path: Path) -> None:
     text = 'archgen: 1\nsources: [z.yaml, "g/*.yaml", "**/t.yaml", "g/b?[0-9].yaml", nothing.yaml, ../x.yaml, /etc/x.yaml]\n'
-    write(tmp_path, {"archgen.yaml": text, "a.yaml": "hosts: {no: }", "z.yaml": "hosts: {z: }"})
-    write(tmp_path, {"g/b.yaml": "hosts: {b: }", "g/a.yaml": "", "g/h/t.yaml": "", "t.yaml": "", "g/bx1.yaml": ""})
+    write(tmp_path, {"archgen.yaml": text, "a.yaml": "", "z.yaml": "hosts: {z: }"})
+    write(
+        tmp_path,
+        {
+            "g/b.yaml": "hosts: {b: }",
+            "g/a.yaml": "",
+            "g/h/t.yaml": "",
+            "t.yaml": "",
+            "g/bx1.yaml": "",
+        },
+    )
     loaded = load_project(tmp_path)
     assert names(loaded) == ["archgen.yaml", "z.yaml", "g/a.yaml", "g/b.yaml", "g/bx1.yaml", "g/h/t.yaml", "t.yaml"]
     assert findings(loaded) == [
@@ -103,7 +115,10 @@ def test_sources_in_their_order(tmp_path: Path) -> None:
 
 
 def test_a_packed_file_is_left_out_unless_it_is_named(tmp_path: Path) -> None:
-    write(tmp_path, {"archgen.yaml": 'archgen: 1\nsources: ["*.yaml"]', "packed.yaml": "archgen: 1", "a.yaml": ""})
+    write(
+        tmp_path,
+        {"archgen.yaml": 'archgen: 1\nsources: ["*.yaml"]', "packed.yaml": "archgen: 1", "a.yaml": "hosts: {h: }"},
+    )
     assert names(load_project(tmp_path)) == ["archgen.yaml", "a.yaml"]
     write(tmp_path, {"archgen.yaml": "archgen: 1\nsources: [packed.yaml]"})
     assert names(load_project(tmp_path)) == ["archgen.yaml", "packed.yaml"]
@@ -204,7 +219,7 @@ def test_an_unreadable_marker_hides_nothing_else(tmp_path: Path) -> None:
     [
         ("node: {n: {implements: a.b, package: p}}", "unknown-key: no section is called `node`"),
         ("perception: {components: {c: Camera}}", "unknown-key: no section is called `perception`"),
-        ("host: {a: {title: x, port: 3}}\nserver: {host: x, threads: 3}", "ignored-file: `b.yaml` holds no section of the language and is not read"),
+        ("host: {a: {title: x, port: 3}}\nserver: {host: x, threads: 3}", "ignored-file: `b.yaml` holds no element of the language and is not read"),
     ],
 )  # fmt: skip
 def test_a_file_whose_only_section_is_misspelt_is_a_slice_and_other_yaml_is_none(
@@ -231,7 +246,7 @@ def test_a_pattern_without_files_is_an_error_where_files_are_called_nearly_so(
         {"archgen.yaml": f"archgen: 1\nsources: ['{pattern}']\n", "groups/a.yaml": "groups: {g: {components: {c: }}}"},
     )
     loaded = load_project(tmp_path)
-    (missing,) = loaded.diagnostics
+    (missing,) = (finding for finding in loaded.diagnostics if finding.rule == "missing-source")
     assert (missing.rule, missing.severity == "error", loaded.partial) == ("missing-source", bool(guess), bool(guess))
     assert missing.help == (f"did you mean `{guess}`?" if guess else "paths are relative to the folder of archgen.yaml")
     assert loaded.lost_keys == (frozenset({"groups", "g", "components", "c"}) if guess else frozenset())

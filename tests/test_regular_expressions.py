@@ -39,6 +39,7 @@ MADE = {
     "archgen/schema/list_wording.py:split_ids": SCHEMA,
     "archgen/schema/schema_wording.py:_describe_wrong_value": SCHEMA,
     "archgen/schema/schema_wording.py:_find_list_help": SCHEMA,
+    "archgen/schema/schema_wording.py:_find_value_help": SCHEMA,
     "archgen/schema/schema_wording.py:_suggest_message": SCHEMA,
     "archgen/syntax/file_patterns.py:_character_class": "one set of characters",
     "archgen/syntax/file_patterns.py:_compile_path": "tests/syntax/test_file_patterns.py tries what is slow elsewhere",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 
 from archgen.derivation.wire.name_expansion import expand_name, find_name_fault, find_node_name_fault
@@ -69,7 +70,12 @@ def _judge_container(container: Container, *, ros_1: bool) -> Iterator[Diagnosti
 
 def _report_invalid_name(node: Node | Container, kind: str, name: str, span: Span, fault: str) -> Diagnostic:
     message = f"`{name}` cannot be the name of {kind}: {fault}"
-    return Diagnostic("invalid-ros-name", message, node.at if span == NO_SPAN else span, element=node.id)
+    better_name = re.sub(r"/{2,}", "/", re.sub(r"[-.]+", "_", re.sub(r"(?<=/)[-.]+", "", name))).removesuffix("/")
+    is_better = better_name not in {"", name} and find_name_fault(better_name, ros_1=False) is None
+    help_line = f"did you mean `{better_name}`?" if is_better else None
+    return Diagnostic(
+        "invalid-ros-name", message, node.at if span == NO_SPAN else span, help=help_line, element=node.id
+    )
 
 
 def _name_span(node: Node | Container) -> Span:

@@ -215,9 +215,15 @@ def _report_unset(architecture: Architecture, node: Node, names: list[str]) -> D
         f"nobody gives a value to {words} of the node `{node.id}`",
         node.at,
         labels=(Label(declarations[names[0]].at, "declared here"),),
-        help=f"write it at the node: `parameters: {{{names[0]}: ...}}`",
+        help=f"write it at the {_find_writer(architecture, node)}: `parameters: {{{names[0]}: ...}}`",
         element=node.id,
     )
+
+
+def _find_writer(architecture: Architecture, node: Node) -> str:
+    """Return where the parameters of a node are written: at the component that brings it along, else at itself."""
+    components = [architecture.components[name] for name in node.implements if name in architecture.components]
+    return "component" if any(component.at == node.at for component in components) else "node"
 
 
 def unused_parameter_file(architecture: Architecture) -> Iterator[Diagnostic]:

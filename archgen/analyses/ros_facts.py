@@ -96,7 +96,7 @@ def unchecked_message(architecture: Architecture) -> Iterator[Diagnostic]:
             "unchecked-message",
             f"cannot tell whether the {_FLOW_NOUNS[flow_of(message)]} `{message}` exists: {_explain_unchecked(message, interfaces)}",
             span,
-            help=_suggest_near_package(message, interfaces) or _suggest_definition_file(message),
+            help=_suggest_near_package(message, interfaces) or _suggest_source(message, interfaces),
             element=element,
         )
 
@@ -134,9 +134,13 @@ def _suggest_interface(message: str, interfaces: Interfaces) -> str | None:
 
 
 def _suggest_near_package(message: str, interfaces: Interfaces) -> str | None:
-    """Suggest an interface whose package has nearly the same name, else nothing: the name may well be right."""
+    """Suggest an interface of the same name that a package of the distribution has, or of a package with nearly the same
+    name; else nothing: the name may well be right.
+    """
     guess = interfaces.find_nearest(message)
-    is_near = guess and find_closest(message.partition("/")[0], [guess.partition("/")[0]])
+    package, _, name = message.partition("/")
+    is_elsewhere = guess is not None and package in interfaces.known_packages() and guess.endswith(f"/{name}")
+    is_near = guess and (is_elsewhere or find_closest(package, [guess.partition("/")[0]]))
     return f"did you mean `{guess}`?" if is_near else None
 
 
@@ -147,6 +151,13 @@ def _suggest_definition(message: str, interfaces: Interfaces) -> str:
     if package in interfaces.project_packages:
         return f"add its definition, `{package}/{kind}/{name}.{kind}`, to the others; {planned_hint}"
     return planned_hint
+
+
+def _suggest_source(message: str, interfaces: Interfaces) -> str:
+    """Suggest where to look a message up; nobody defines one anew in a package of the distribution."""
+    if message.partition("/")[0] in interfaces.known_packages() and not interfaces.holding_distros.get(message):
+        return f"look it up on a machine that has it: `ros2 interface show {message}`"
+    return _suggest_definition_file(message)
 
 
 def _suggest_definition_file(message: str) -> str:

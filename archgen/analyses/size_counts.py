@@ -170,8 +170,11 @@ def count_mapped_connections(architecture: Architecture) -> int:
     return sum(bool(c.outputs) and named_outputs.issuperset(c.outputs) for c in architecture.connections)
 
 
-def measure_progress(architecture: Architecture) -> tuple[ProgressCounts, ...]:
-    """Count for the project, each group, each partner, and (if there are partners) the components without an owner."""
+def measure_progress(architecture: Architecture, selected: frozenset[str] | None = None) -> tuple[ProgressCounts, ...]:
+    """Count for the project, each group, each partner, and (if there are partners) the components without an owner.
+
+    `selected` are the ids of the components that count, None for all.
+    """
     # For each component, one entry for each of its written nodes: whether that node has a timing for it.
     nodes_of = defaultdict[str, list[bool]](list)
     for node in architecture.nodes.values():
@@ -183,7 +186,7 @@ def measure_progress(architecture: Architecture) -> tuple[ProgressCounts, ...]:
     def measure_set(
         scope: Literal["project", "group", "partner"], scope_id: str, title: str, components: Iterable[Component]
     ) -> ProgressCounts:
-        members = tuple(components)
+        members = tuple(c for c in components if selected is None or c.id in selected)
         return ProgressCounts(
             scope,
             scope_id,

@@ -49,10 +49,13 @@ def judge_merged_project(
         is_partial=loaded_project.partial,
     )
     rule_options, option_findings = rule_table.settle_rule_options(loaded_project.rule_options, index_all_rules())
+    link_findings = linked_project.link_findings
+    if loaded_project.unread_names and link_findings:
+        from archgen.project.unread_slices import blame_unread_files
+
+        link_findings = tuple(blame_unread_files(link_findings, loaded_project.unread_names))
     all_diagnostics = (
-        *add_title_guesses(
-            (*loaded_project.diagnostics, *linked_project.link_findings), architecture, loaded_project.sources
-        ),
+        *add_title_guesses((*loaded_project.diagnostics, *link_findings), architecture, loaded_project.sources),
         *merged_project.diagnostics,
         *linked_project.interface_findings,
         *content_findings,

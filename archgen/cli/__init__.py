@@ -6,40 +6,57 @@ import importlib
 
 import click
 
-VERBS = {
-    "check": "Find mistakes in the architecture.",
-    "conform": "Hold the project against the robot: its workspace, its running graph, recordings.",
-    "build": "Make everything: report, site, diagrams, packed file.",
-    "report": "Write the Word report.",
-    "site": "Write the static web site.",
-    "serve": "Show the site while its files are edited.",
-    "diagram": "Draw the diagrams.",
-    "pack": "Write one validated YAML file that holds the whole project.",
-    "transform": "Write the project as passes make it: types written out, hierarchy taken away.",
-    "generate": "Make a workspace by a backend of the project.",
-    "export": "Make a single file by a backend of the project.",
-    "diff": "Compare two revisions, folders or files: what changed, and what it means.",
-    "stats": "Show size and progress.",
-    "timing": "Show rates, latency of chains, load; why, what if, what decides.",
-    "show": "Show an element: ports, readers, nodes, place in the files.",
-    "list": "List elements, connections or backends, as text, CSV or JSON.",
-    "interfaces": "Write what flows between two partners, to be signed by both.",
-    "sign": "Sign what flows between two partners, so that reviews hold changes against it.",
-    "owners": "Show who owns what, or write CODEOWNERS.",
-    "start": "Show the plan of the start-up: steps, commands, what each waits for.",
-    "simulate": "Simulate the timing: what was seen beside the bounds.",
-    "explain": "Explain a rule: why it is there, a bad and a good example.",
-    "init": "Start a project, or take one over from a spreadsheet.",
-    "import": "Take requirements over from ReqIF: of Doors, Polarion and their like.",
+VERB_GROUPS: dict[str, dict[str, str]] = {
+    "write": {
+        "init": "Start a project, or take one over from a spreadsheet.",
+        "new": "Add a group, a component, an instance, a node, a partner, ...: `archgen new --help`.",
+        "import": "Take over from ROS, tables, ReqIF, XMI, AADL, ...: `archgen import --help`.",
+        "serve": "Show the site while its files are edited.",
+    },
+    "check": {
+        "check": "Find mistakes in the architecture; --fix mends slips of form.",
+        "conform": "Hold the project against the robot: its workspace, its running graph, recordings.",
+        "explain": "Explain a rule: why it is there, a bad and a good example.",
+        "timing": "Show rates, latency of chains, load; why, what if, what decides.",
+        "simulate": "Simulate the timing: what was seen beside the bounds.",
+    },
+    "look": {
+        "show": "Show an element: ports, readers, nodes, place in the files.",
+        "list": "List elements, connections or backends, as text, CSV or JSON.",
+        "stats": "Show size and progress.",
+        "start": "Show the plan of the start-up: steps, commands, what each waits for.",
+    },
+    "publish": {
+        "build": "Make everything: report, site, diagrams, packed file.",
+        "report": "Write the report as Word, PDF or workbook.",
+        "site": "Write the static web site.",
+        "diagram": "Draw the diagrams.",
+    },
+    "agree": {
+        "diff": "Compare two revisions, folders or files: what changed, and what it means.",
+        "review": "Make all that the review of a change needs, in one folder.",
+        "merge-check": "Say what would be wrong if open branches were merged.",
+        "owners": "Show who owns what, or write CODEOWNERS.",
+        "interfaces": "Write what flows between two partners, to be signed by both.",
+        "sign": "Sign what flows between two partners, so that reviews hold changes against it.",
+    },
+    "exchange": {
+        "pack": "Write one validated YAML file that holds the whole project.",
+        "transform": "Write the project as passes make it: types written out, hierarchy taken away.",
+        "generate": "Make a workspace: packages, launch files, code.",
+        "export": "Make a single file for another tool.",
+    },
+}
+"""The verbs that people use, with their lines in the help, by what they are for."""
+PLUMBING = {
     "schema": "Write the JSON Schema with which editors offer the project's own names.",
-    "new": "Add a group, a component or a node.",
-    "review": "Make all that the review of a change needs, in one folder.",
-    "merge-check": "Say what would be wrong if open branches were merged.",
-    "check-requests": "Hold the open requests of a repository against each other; for CI.",
     "merge-driver": "Merge two versions of a file by what they say; for git.",
+    "check-requests": "Hold the open requests of a repository against each other; for CI.",
     "comment": "Put a text on the pull request, as one comment that is kept current.",
     "completion": "Print the set-up of shell completion.",
 }
+"""The verbs that git, editors, shells and workflows call: the help names them without their lines."""
+VERBS = {**{verb: line for group in VERB_GROUPS.values() for verb, line in group.items()}, **PLUMBING}
 """Every verb with its line in the help. Each is a module of this package (`verb_module`) with a function `command`."""
 
 
@@ -67,7 +84,14 @@ class VerbGroup(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Guess what a mistyped verb meant."""
+        """Guess what a mistyped verb meant; `help` and `version` are words that people try."""
+        if args[:1] == ["help"]:
+            args = [*args[1:2], "--help"]
+            if args == ["--help"]:
+                click.echo(ctx.get_help())
+                ctx.exit()
+        elif args == ["version"]:
+            _print_version(ctx, None, is_requested=True)
         if args and args[0] not in VERBS and not args[0].startswith("-"):
             from archgen.diagnostics.suggestions import did_you_mean
 
@@ -77,11 +101,18 @@ class VerbGroup(click.Group):
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002 - the same
         """List the verbs without importing them."""
-        with formatter.section("Verbs"):
-            formatter.write_dl(list(VERBS.items()))
+        for group, verbs in VERB_GROUPS.items():
+            with formatter.section(group.capitalize()):
+                # Of all groups one column.
+                formatter.write_dl([(verb.ljust(_VERB_WIDTH), line) for verb, line in verbs.items()])
+        with formatter.section("For git, editors, shells and workflows"):
+            formatter.write_text(", ".join(PLUMBING))
 
 
-def _print_version(ctx: click.Context, _parameter: click.Parameter, is_requested: bool) -> None:  # noqa: FBT001 - click's signature
+_VERB_WIDTH = max(len(verb) for group in VERB_GROUPS.values() for verb in group)
+
+
+def _print_version(ctx: click.Context, _parameter: click.Parameter | None, is_requested: bool) -> None:  # noqa: FBT001 - click's signature
     if is_requested and not ctx.resilient_parsing:
         from archgen.cli.version_text import format_versions
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import sys
+import threading
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
@@ -15,7 +17,7 @@ from archgen.diagnostics.safe_text import make_visible
 from archgen.frozen import replace
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from archgen.diagnostics.diagnostic import Diagnostic
     from archgen.pipeline import CheckedProject, VersionCache
@@ -26,7 +28,8 @@ _MAX_CURED_LINES = 20
 
 
 @click.command("check")
-@shared_options.project_argument
+@click.argument("paths", metavar="[PROJECT | FILE...]", nargs=-1, type=click.Path(path_type=Path))
+@shared_options.project_option
 @click.option(
     "--format",
     "form",
@@ -39,6 +42,17 @@ _MAX_CURED_LINES = 20
     metavar="NAMES",
     help="Show only what holds in these variants: `simulation`, `base,home`; `base` is the project itself.",
 )
+@click.option(
+    "--select",
+    metavar="WORDS",
+    help="Show only what is about the selected components and nodes: `owner:certh`, `sensing`, `tag:safety -x`.",
+)
+@click.option(
+    "--fix",
+    is_flag=True,
+    help="Mend what can mean only one thing (quotes, case, separators, odd signs), and show what is left.",
+)
+@click.option("--watch", is_flag=True, help="Check again whenever a file is saved, until Ctrl-C.")
 @shared_options.strict_option
 @click.option("-q", "--quiet", is_flag=True, help="Show only what makes the check fail, and count the rest.")
 @click.option(
@@ -52,46 +66,104 @@ _MAX_CURED_LINES = 20
 )
 def command(  # noqa: PLR0913 - one for each option
     *,
+    paths: tuple[Path, ...],
     project: Path | None,
     form: str,
     variant: str | None,
+    select: str | None,
+    fix: bool,
+    watch: bool,
     strict: bool,
     quiet: bool,
     baseline: Path | None,
     update_baseline: bool,
     changed_since: str | None,
 ) -> None:
-    """Find mistakes in the architecture of PROJECT.
+    """Find mistakes in the architecture of PROJECT, or in those FILEs of it.
 
-    PROJECT is a folder or a single file; left out, it is the project around the current folder. The exit status is 0
+    PROJECT is a folder or a single file; left out, it is the project around the current folder. Of files of a project, the
+    whole project is checked, and what lies in these files is shown; --select shows what is about some components and
+    nodes, and errors that keep a file from being read. The exit status goes by what is shown: 0
     without errors, 1 with errors (with --strict also with warnings, and with findings of the baseline that are cured),
     2 for wrong usage. A project with variants is checked in each of them; a finding that does not hold in all of them says
     in which. --update-baseline writes the --baseline, or archgen-baseline.yaml in the project.
     """
+    project, files = _find_asked_files(paths, project)
     if update_baseline:
-        if form != "text" or changed_since is not None:
-            msg = (
-                "--update-baseline takes in all findings of now and says what it wrote: no --format, no --changed-since"
-            )
-            raise click.UsageError(msg)
-        if variant is not None:
-            msg = "--update-baseline takes in the findings of all variants: no --variant"
-            raise click.UsageError(msg)
+        _refuse_partial_baseline(
+            {"--format": form != "text", "--changed-since": changed_since, "--variant": variant, "--select": select}
+            | {"FILE": files, "--fix": fix, "--watch": watch}
+        )
         _update_baseline(command_support.check_or_exit(project), baseline)
-    if baseline is not None and not os.path.lexists(baseline):
-        msg = f"there is no baseline {baseline}: `archgen check --update-baseline --baseline {baseline}` writes one"
-        raise click.UsageError(msg)
+    _refuse_wrong_use({"--fix": fix, "--watch": watch}, form=form, baseline=baseline)
+    check_once = functools.partial(
+        _check_once,
+        *(project, files),
+        form=form,
+        variant=variant,
+        select=select,
+        fix=fix,
+        strict=strict,
+        quiet=quiet,
+        baseline=baseline,
+        changed_since=changed_since,
+    )
+    if watch:
+        _watch(project, check_once)
+    else:
+        sys.exit(check_once())
+
+
+def _watch(project: Path | None, check_once: Callable[[], int]) -> None:
+    """Check, and check again whenever a file below the project is saved."""
+    from archgen.project.project_search import ProjectNotFoundError, find_project
+    from archgen.serve import file_watch
+
+    with command_support.explain_wrong_usage(ProjectNotFoundError):
+        places = file_watch.WatchedPlaces((find_project(project)[0],))
+
+    def check_again() -> None:
+        click.echo(click.style("--- a file was saved", dim=True))
+        try:
+            check_once()
+        except click.ClickException as error:  # a selector that names nothing by now, for instance
+            error.show()
+
+    check_once()
+    file_watch.watch_files(lambda: places, check_again, threading.Event())
+
+
+def _check_once(  # noqa: PLR0913 - one for each option
+    project: Path | None,
+    files: tuple[Path, ...],
+    *,
+    form: str,
+    variant: str | None,
+    select: str | None,
+    fix: bool,
+    strict: bool,
+    quiet: bool,
+    baseline: Path | None,
+    changed_since: str | None,
+) -> int:
+    """Check a project, print what is asked for, and return the exit status."""
     from archgen.pipeline import VersionCache
     from archgen.products import check_findings
 
     # A single check is the quicker for what need not be kept for another one.
     version_cache = VersionCache()
-    checked_project = command_support.check_or_exit(project, None if changed_since is None else version_cache)
+    kept_versions = None if changed_since is None else version_cache
+    checked_project, names = _check_asked(project, files, kept_versions, fix=fix)
     if variant is not None:
         checked_project = _keep_variants(checked_project, variant)
     earlier_project = None if changed_since is None else _check_at_revision(project, changed_since, version_cache)
 
     reported = check_findings.report_findings(checked_project, baseline, earlier_project)
+    selection = command_support.select_or_exit(checked_project, select)
+    all_findings = reported.findings
+    is_part = bool(names or selection)
+    if is_part:
+        reported = check_findings.keep_findings(reported, checked_project, names, selection)
     lowest_severity = "warning" if strict else "error"
     shown_findings = [d for d in reported.findings if not quiet or d.severity in {lowest_severity, "error"}]
     if form != "text":
@@ -99,17 +171,98 @@ def command(  # noqa: PLR0913 - one for each option
     elif shown_findings:
         command_support.print_findings(shown_findings, checked_project, sys.stdout)
     elif not quiet:
-        click.echo("no new findings" if reported.known_findings or reported.earlier_findings else "no findings")
+        known = " new" if reported.known_findings or reported.earlier_findings else ""
+        click.echo(f"no{known} findings{' there' if is_part else ''}")
     if not quiet:
         _print_known(reported, baseline)
         _print_earlier(reported, changed_since)
-    else:
-        _print_hidden(reported.findings, shown_findings)
+    if is_part or (quiet and shown_findings):
+        _print_hidden(all_findings, shown_findings)
     _renew_editor_schema(checked_project)
     # With --strict a cured finding fails, so that the baseline is updated and the fault cannot come back unseen.
-    sys.exit(
-        command_support.exit_status(reported.findings, strict=strict) or int(strict and bool(reported.cured_entries))
-    )
+    return command_support.exit_status(reported.findings, strict=strict) or int(strict and bool(reported.cured_entries))
+
+
+def _find_asked_files(paths: tuple[Path, ...], project: Path | None) -> tuple[Path | None, tuple[Path, ...]]:
+    """Return the project that is asked for, and the files of it whose findings alone are; none for all."""
+    if not paths:
+        return project, ()
+    if project is not None:
+        other_paths = [path for path in paths if not os.path.isfile(path)]  # noqa: PTH113 - Path.is_file may raise
+        if other_paths:
+            msg = f"the project is named twice: {other_paths[0]} and -C {project}"
+            raise click.UsageError(msg)
+        return project, paths
+    from archgen.project.project_search import PROJECT_FILE, find_project_of_slice
+
+    if len(paths) == 1:
+        folder = find_project_of_slice(paths[0])
+        return folder or paths[0], paths if folder else ()
+    folders = [path.resolve().parent if path.name == PROJECT_FILE else find_project_of_slice(path) for path in paths]
+    if folders[0] is None or any(folder != folders[0] for folder in folders):
+        msg = f"these are not files of one project: {', '.join(map(str, paths))}"
+        raise click.UsageError(msg)
+    return folders[0], paths
+
+
+def _check_asked(
+    project: Path | None, files: tuple[Path, ...], version_cache: VersionCache | None, *, fix: bool
+) -> tuple[CheckedProject, frozenset[str]]:
+    """Check a project; return it with the files that are asked for, as it calls them. Those that it does not read are named.
+
+    A single one that the project does not read is a project by itself.
+    """
+    checked_project = command_support.check_or_exit(project, version_cache)
+    root = os.path.realpath(checked_project.root)
+    names = {os.path.relpath(os.path.realpath(file), root).replace(os.sep, "/"): file for file in files}
+    known_files = {*checked_project.sources.file_names(), *checked_project.loaded_project.broken_files}
+    for name in sorted(names.keys() - known_files):
+        command_support.print_warning(
+            f"{names[name]} is no part of the project in {command_support.shorten_path(checked_project.root)}: "
+            + ("it is checked by itself" if len(files) == 1 else "it is not checked")
+        )
+    read_names = frozenset(names.keys() & known_files)
+    if files and not read_names:
+        if len(files) > 1:
+            sys.exit(0)
+        checked_project = command_support.check_or_exit(files[0], version_cache)
+    return _apply_fixes(checked_project, read_names) if fix else checked_project, read_names
+
+
+_MAX_ROUNDS = 20
+"""So often a project is checked again by --fix: a syntax error hides what comes behind it."""
+
+
+def _apply_fixes(checked_project: CheckedProject, names: frozenset[str]) -> CheckedProject:
+    """Write the fixes that are certain; return the project with them."""
+    from archgen import pipeline
+    from archgen.edit.certain_fixes import plan_certain_fixes
+
+    for _ in range(_MAX_ROUNDS):
+        planned = list(plan_certain_fixes(checked_project, names))
+        if not planned:
+            break
+        for edit, count in planned:
+            command_support.write_edit(checked_project.root, edit, f"{count} fix{'es' * (count > 1)}")
+        checked_project = pipeline.check_project(checked_project.root / checked_project.loaded_project.first_file)
+    return checked_project
+
+
+def _refuse_wrong_use(told_options: Mapping[str, bool], *, form: str, baseline: Path | None) -> None:
+    told = [name for name, is_given in told_options.items() if is_given]
+    if told and form != "text":
+        msg = f"{told[0]} is for people: no --format"
+        raise click.UsageError(msg)
+    if baseline is not None and not os.path.lexists(baseline):
+        msg = f"there is no baseline {baseline}: `archgen check --update-baseline --baseline {baseline}` writes one"
+        raise click.UsageError(msg)
+
+
+def _refuse_partial_baseline(options: Mapping[str, object]) -> None:
+    refused = [name for name, value in options.items() if value]
+    if refused:
+        msg = f"--update-baseline takes in all findings of now and says what it wrote: no {', no '.join(refused)}"
+        raise click.UsageError(msg)
 
 
 def _keep_variants(checked_project: CheckedProject, text: str) -> CheckedProject:
@@ -171,10 +324,10 @@ def _print_findings(
 
 
 def _print_hidden(findings: Sequence[Diagnostic], shown_findings: Sequence[Diagnostic]) -> None:
-    """Count on the error stream what does not make a check fail that fails for something else."""
+    """Count on the error stream what there is besides."""
     known_findings = {*shown_findings}
     hidden_findings = [finding for finding in findings if finding not in known_findings]
-    if shown_findings and hidden_findings:
+    if hidden_findings:
         click.echo(f"not shown: {command_support.summarise_counts(hidden_findings)}", err=True)
 
 

@@ -17,6 +17,23 @@ SHIPPED_LIBRARY = "builtin"
 _COLUMNS = ("type", "title", "functionality", "inputs", "outputs", "package")
 
 
+def check_no_project(project: Path | None) -> CheckedProject | None:
+    """Return an empty project where none is named and none is around the current folder; None where there is one."""
+    from archgen import pipeline
+    from archgen.project.project_loading import load_from_files
+    from archgen.project.project_search import PROJECT_FILE, ProjectNotFoundError, find_project
+    from archgen.syntax.project_files import OverlaidFiles
+
+    try:
+        find_project(project)
+    except ProjectNotFoundError:
+        if project is None:
+            return pipeline.judge_project(
+                load_from_files(OverlaidFiles(Path(), {PROJECT_FILE: b"archgen: 1\n"}), PROJECT_FILE)
+            )
+    return None
+
+
 def list_component_types(
     checked_project: CheckedProject, asked_library: str | None
 ) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:

@@ -18,7 +18,7 @@ _TYPES_BACKEND = "xmi"
 
 
 @click.command("export")
-@click.argument("name", shell_complete=shared_options.complete_backends("file"))
+@shared_options.backend_argument("file")
 @click.option(
     "-o",
     "--output",

@@ -27,7 +27,7 @@ def render_findings(
 
     folder = folder_in_repository(checked_project.root)
     if format_name == "json":
-        return findings_data.format_findings_json(reported_findings.findings)
+        return findings_data.format_findings_json(reported_findings.findings, checked_project.sources)
     if format_name == "github":
         return "".join(
             f"{line}\n" for line in findings_data.format_github_commands(reported_findings.findings, folder=folder)
@@ -43,7 +43,12 @@ def render_findings(
         return "".join(f"{line}\n" for line in lines)
     file = checked_project.yaml_files[0] if checked_project.yaml_files else PROJECT_FILE
     sarif_scan = sarif_document.SarifScan(
-        checked_project.architecture.project.id, file, folder, __version__, is_compared=reported_findings.was_compared
+        checked_project.architecture.project.id,
+        file,
+        folder,
+        __version__,
+        is_compared=reported_findings.was_compared,
+        sources=checked_project.sources,
     )
     rules = {**index_all_rules(), **index_rules(COMPARISON_RULES)}
     return sarif_document.format_sarif(reported_findings.findings, rules, sarif_scan)

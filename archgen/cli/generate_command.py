@@ -23,7 +23,7 @@ _CONFLICT_HELP = {
 
 
 @click.command("generate")
-@click.argument("name", shell_complete=shared_options.complete_backends("workspace"))
+@shared_options.backend_argument("workspace")
 @shared_options.output_option("The folder", "NAME")
 @shared_options.select_option
 @click.option("--host", metavar="ID", help="Only what runs on this host.")

@@ -224,10 +224,9 @@ def _import_tables(tables: tuple[Path, ...], distro: str, heading_map: Mapping[s
 
 def _write_project(target: Path, answers: StartAnswers, imported: ImportedTables | None) -> None:
     from archgen.emit import new_files
-    from archgen.start.project_plan import example_files, has_other_yaml, imported_files, judge_files, plan_files
+    from archgen.start.project_plan import example_files, imported_files, judge_files, plan_files
 
-    other_files = has_other_yaml(target)
-    files = imported_files(answers, imported.data, other_files) if imported else example_files(answers, other_files)
+    files = imported_files(answers, imported.data) if imported else example_files(answers)
     checked_project = judge_files(files, answers.id)
     project_plan = plan_files(target, answers, files, checked_project)
     _refuse_replacing_slices(project_plan, target, files)

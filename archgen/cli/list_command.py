@@ -41,6 +41,7 @@ _SELECTED_KINDS = frozenset(
 
 @click.command("list")
 @click.argument("selector", nargs=-1)
+@click.option("--select", metavar="WORDS", help="The same as SELECTOR.")
 @click.option(
     "--of", "sort", type=click.Choice(LISTABLE_KINDS), default="components", show_default=True, help="What to list."
 )
@@ -52,7 +53,9 @@ _SELECTED_KINDS = frozenset(
 @click.option("--format", "form", type=click.Choice(["text", "csv", "json"]), default="text", show_default=True)
 @shared_options.project_option
 @shared_options.variant_option
-def command(selector: tuple[str, ...], sort: str, library: str | None, form: str, project: Path | None) -> None:
+def command(  # noqa: PLR0913 - one for each option
+    *, selector: tuple[str, ...], select: str | None, sort: str, library: str | None, form: str, project: Path | None
+) -> None:
     """List what SELECTOR names; without one, everything.
 
     Put a selector that begins with `-` behind `--`. `archgen list --of connections --format csv` is the table of all
@@ -62,9 +65,12 @@ def command(selector: tuple[str, ...], sort: str, library: str | None, form: str
     from archgen.cli import component_type_listing
     from archgen.emit.terminal import list_formats
 
-    checked_project = command_support.check_or_exit(project)
+    # What ships is looked at before there is a project.
+    checked_project = (
+        component_type_listing.check_no_project(project) if library == component_type_listing.SHIPPED_LIBRARY else None
+    ) or command_support.check_or_exit(project)
     command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
-    selector_text = " ".join(selector)
+    selector_text = " ".join((*selector, *([select] if select else [])))
     if selector_text and sort not in _SELECTED_KINDS:
         msg = f"a selector names elements: `--of {sort}` takes none"
         raise click.UsageError(msg)

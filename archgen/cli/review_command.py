@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import sys
 from collections.abc import Iterator
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from archgen.cli import command_support, finding_documents
+from archgen.cli import command_support, finding_documents, shared_options
 from archgen.diagnostics.diagnostic import Severity, sort_gravest_first
 from archgen.diagnostics.safe_text import make_visible
 from archgen.frozen import replace
@@ -26,7 +27,7 @@ REVIEW_FOLDER = "archgen-out/review"
 
 
 @click.command("review")
-@click.argument("project", required=False, type=click.Path(path_type=Path), envvar="ARCHGEN_PROJECT")
+@functools.partial(shared_options.project_argument, envvar="ARCHGEN_PROJECT")
 @click.option(
     "--base",
     metavar="REV",

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import click
+from click.core import ParameterSource
 
 CommandFunction = Callable[..., Any]
 
@@ -17,20 +18,31 @@ project_option = click.option("-C", "--project", type=click.Path(path_type=Path)
 """The project of a verb whose words by position mean something else."""
 
 
-def project_argument(function: CommandFunction) -> CommandFunction:
-    """Take the project by position or as `-C`, so that `-C` goes with every verb that reads a project."""
+def project_argument(function: CommandFunction, envvar: str | None = None) -> CommandFunction:
+    """Take the project by position or as `-C`, so that `-C` goes with every verb that reads a project.
+
+    `-C` counts where a variable of the environment, `envvar`, names another one.
+    """
 
     @functools.wraps(function)
     def call(*, project: Path | None, named_project: Path | None, **others: object) -> object:
+        context = click.get_current_context()
+        if context.get_parameter_source("project") is ParameterSource.ENVIRONMENT and named_project is not None:
+            project = None
         if project is not None and named_project is not None:
             msg = f"the project is named twice: {project} and -C {named_project}"
+            if not project.exists():
+                msg = f"{project} is no folder: what stands here is the project, which -C names already"
+                options = {"--why", "--select"} & {option for each in context.command.params for option in each.opts}
+                msg += f"; elements are named behind {' or '.join(sorted(options))}" if options else ""
             raise click.UsageError(msg)
         return function(project=project or named_project, **others)
 
     option = click.option(
         "-C", "--project", "named_project", type=click.Path(path_type=Path), help="The same as PROJECT."
     )
-    return click.argument("project", required=False, type=click.Path(path_type=Path))(option(call))
+    argument = click.argument("project", required=False, type=click.Path(path_type=Path), envvar=envvar)
+    return argument(option(call))
 
 
 select_option = click.option(
@@ -133,6 +145,18 @@ def complete_backends(makes: str) -> Callable[[click.Context, click.Parameter, s
     return lambda _context, _parameter, incomplete: [
         name for name in _list_backend_ids(makes) if name.startswith(incomplete)
     ]
+
+
+def backend_argument(makes: str) -> Callable[[CommandFunction], CommandFunction]:
+    """Take the name of a backend that makes this; without one, say which there are."""
+
+    def ask(_context: click.Context, _parameter: click.Parameter, name: str | None) -> str:
+        if name is None:
+            msg = f"name what to make: {', '.join(sorted(_list_backend_ids(makes)))}; `archgen list --of backends` says what each is"
+            raise click.UsageError(msg)
+        return name
+
+    return click.argument("name", required=False, callback=ask, shell_complete=complete_backends(makes))
 
 
 def complete_products(_context: click.Context, _parameter: click.Parameter, incomplete: str) -> list[str]:

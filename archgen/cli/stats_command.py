@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 @click.command("stats")
 @shared_options.project_argument
 @shared_options.variant_option
+@click.option(
+    "--select", metavar="WORDS", help="Count only the selected components: `owner:certh`, `sensing`, `tag:safety -x`."
+)
 @click.option("--format", "form", type=click.Choice(["text", "json", "csv"]), default="text", show_default=True)
 @click.option("--history", is_flag=True, help="Show how size, progress and findings grew, from git's history.")
 @click.option(
@@ -31,7 +34,7 @@ if TYPE_CHECKING:
     type=click.Choice(["revision", "month"]),
     help="Each revision, or the last of each month.  [default: revision]",
 )
-def command(project: Path | None, form: str, by: HistoryInterval | None, *, history: bool) -> None:
+def command(project: Path | None, select: str | None, form: str, by: HistoryInterval | None, *, history: bool) -> None:
     """Show how large PROJECT is and how far along: as a whole, for each group and for each partner.
 
     Described: it has a functionality. Typed: each output has a type. Mapped: a node that somebody wrote implements it.
@@ -39,34 +42,45 @@ def command(project: Path | None, form: str, by: HistoryInterval | None, *, hist
 
     With --history: the same at each revision that changed the project, along the first parents of git's HEAD.
     """
+    if history and select is not None:
+        msg = "--history counts the whole project: no --select"
+        raise click.UsageError(msg)
     if history:
         _print_history(project, form, by or "revision")
         return
     if by or form == "csv":
         msg = "--by and --format csv belong to --history"
         raise click.UsageError(msg)
-    _print_current(project, form)
+    _print_current(project, form, select)
 
 
-def _print_current(project: Path | None, form: str) -> None:
+def _print_current(project: Path | None, form: str, select: str | None) -> None:
     from archgen.analyses.size_counts import measure_progress, measure_size
 
     checked_project = command_support.check_or_exit(project)
     command_support.print_findings_above(checked_project, lowest_severity=Severity.ERROR)
-    project_size, rows = measure_size(checked_project.architecture), measure_progress(checked_project.architecture)
+    selection = command_support.select_or_exit(checked_project, select)
+    project_size = measure_size(checked_project.architecture)
+    rows = measure_progress(checked_project.architecture, selection.components if selection else None)
+    if selection:
+        # How large a project is says nothing of a part: only how far that is.
+        rows = tuple(row for row in rows if row.components)
     if form == "json":
         plain = {key: float(v) if isinstance(v, Fraction) else v for key, v in asdict(project_size).items()}
+        size = {} if selection else {**plain, "files": len(checked_project.yaml_files)}
         data = {
             "version": 1,
-            **plain,
-            "files": len(checked_project.yaml_files),
+            **size,
             "progress": [asdict(row) for row in rows],
         }
         click.echo(format_json(data), nl=False)
     else:
         click.echo(
             _format_statistics(
-                checked_project.architecture.project.title, project_size, rows, len(checked_project.yaml_files)
+                checked_project.architecture.project.title,
+                None if selection else project_size,
+                rows,
+                len(checked_project.yaml_files),
             ),
             nl=False,
         )
@@ -97,14 +111,17 @@ def _print_history(project: Path | None, form: str, by: HistoryInterval) -> None
         click.echo(history_text.format_history(project_history, find_width(sys.stdout)), nl=False)
 
 
-def _format_statistics(title: str, project_size: ArchitectureSize, rows: tuple[ProgressCounts, ...], files: int) -> str:
+def _format_statistics(
+    title: str, project_size: ArchitectureSize | None, rows: tuple[ProgressCounts, ...], files: int
+) -> str:
     from archgen.views.tables.statistics_tables import PROGRESS_STEPS, format_figures
 
     width = find_width(sys.stdout)
     lines = [*wrap_line(make_visible(title), width), ""]
-    figures = [*((label, value) for _, label, value in format_figures(project_size)), ("Files", str(files))]
-    lines += [line for label, value in figures for line in wrap_line(f"  {label:42}{value:>8}", width)]
-    lines.append("")
+    if project_size is not None:
+        figures = [*((label, value) for _, label, value in format_figures(project_size)), ("Files", str(files))]
+        lines += [line for label, value in figures for line in wrap_line(f"  {label:42}{value:>8}", width)]
+        lines.append("")
     populated_rows = [
         (
             row.title,

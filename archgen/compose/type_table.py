@@ -188,9 +188,15 @@ class TypeTable:
             "unknown-reference",
             f"no component type named `{expression.name}`",
             reference.span,
-            help=guess or "write it below `component_types`, or describe the component itself",
+            help=guess or _suggest_place(library, own_names),
             element=element_id,
         )
+
+
+def _suggest_place(library: str | None, own_names: list[str]) -> str:
+    if library and own_names:
+        return f"`archgen list --of component_types --library {library}` lists those that it has"
+    return "write it below `component_types`, or describe the component itself"
 
 
 def _is_inside(inner: Span, outer: Span) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Sequence
 
 from archgen.diagnostics.common_wording import join_words
@@ -45,6 +46,9 @@ class PathGuesser:
         """
         if not self._guesses_left:
             return None
+        plain_path = re.sub(r"::|/", ".", dotted_path)
+        if plain_path != dotted_path and self.names.resolve_path(plain_path, kinds).unique_element:
+            return plain_path
         length = dotted_path.count(".") + 1
         fitting_kinds = [kind for kind in kinds if _PATH_LENGTHS[kind] + self.extra_depth >= length]
         last = dotted_path.rpartition(".")[2]

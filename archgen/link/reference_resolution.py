@@ -301,8 +301,15 @@ class ReferenceResolver:
             guess,
             self._span_of(guessed_element) if guessed_element else NO_SPAN,
             element_id,
+            known_names=self._list_outputs(dotted_path) if "output" in kinds else (),
             asked_name=AskedName("part"),
         )
+
+    def _list_outputs(self, dotted_path: str) -> tuple[str, ...]:
+        """Return the outputs of the component that a path leads to but for its last part."""
+        component = self.names.resolve_path(dotted_path.rpartition(".")[0], ("component",)).unique_element
+        prefix = f"{component.id}." if component else ""
+        return tuple(name for name in self.spans["output"] if prefix and name.startswith(prefix))
 
     def _diagnose_other_kind(
         self, reference: ScalarNode, kinds: Sequence[str], kind_phrase: str, element_id: str
@@ -312,10 +319,12 @@ class ReferenceResolver:
             ids = self.names.ids_ending_in(kind, reference.text) if kind not in kinds else ()
             if ids:
                 self.suspect_ids.update(ids)
+                is_sure = kind == "output" and "component" in kinds and len(ids) == 1
+                sure_help = f"did you mean `{ids[0].rpartition('.')[0]}`?" if is_sure else help_line
                 message = f"no {kind_phrase} named `{reference.text}`: it is {'an' if kind == 'output' else 'a'} {kind}"
                 labels = (Label(self.spans[kind][ids[0]], f"the {kind}"),)
                 return Diagnostic(
-                    "unknown-reference", message, reference.span, labels=labels, help=help_line, element=element_id
+                    "unknown-reference", message, reference.span, labels=labels, help=sure_help, element=element_id
                 )
         return None
 

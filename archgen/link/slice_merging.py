@@ -71,6 +71,9 @@ def _merge_entries(same_entries: list[MappingEntry], path: KeyPath, diagnostics:
     # A mapping and a leaf at one path conflict whatever comes first; the mappings among them are merged all the same.
     if isinstance(first_entry.value, MappingNode) and not _is_parameter(path):
         mappings = [entry.value for entry in same_entries if isinstance(entry.value, MappingNode)]
+        if path[0] == "nodes" and len(path) == _NODE_DEPTH and (twin := _find_twin(same_entries)):
+            diagnostics.append(_diagnose_twin(first_entry, twin))
+            return first_entry
         diagnostics.extend(
             _diagnose_conflict(entry, first_entry, path)
             for entry in same_entries
@@ -79,6 +82,32 @@ def _merge_entries(same_entries: list[MappingEntry], path: KeyPath, diagnostics:
         return first_entry.with_value(_merge_mappings(mappings, path, diagnostics))
     diagnostics.extend(_diagnose_conflict(entry, first_entry, path) for entry in same_entries[1:])
     return first_entry
+
+
+_NODE_DEPTH = 2
+
+
+def _find_twin(entries: list[MappingEntry]) -> MappingEntry | None:
+    """Return the second of two nodes that were meant to have ids of their own: both say what they implement, and more."""
+    bodies = [entry.value.entries.keys() if isinstance(entry.value, MappingNode) else set() for entry in entries]
+    twins = (
+        entry
+        for entry, keys in zip(entries[1:], bodies[1:], strict=True)
+        if "implements" in keys and len(keys & bodies[0]) >= _FEW_KEYS and "implements" in bodies[0]
+    )
+    return next(twins, None)
+
+
+_FEW_KEYS = 3
+"""So many keys that two files write of one node, what it implements among them, make two nodes of it."""
+
+
+def _diagnose_twin(first_entry: MappingEntry, twin: MappingEntry) -> Diagnostic:
+    message = f"two places describe a node `{twin.key}`"
+    help_line = "rename one of them; if it is one node, each value stands in one place"
+    return diagnose_repetition(
+        "conflicting-values", message, twin.key_span, first_entry.key_span, help_line=help_line, element=twin.key
+    )
 
 
 def _is_parameter(path: KeyPath) -> bool:

@@ -15,7 +15,7 @@ from archgen.model import flow_graph
 from archgen.model.architecture import Architecture
 from archgen.model.graph_search import find_reachable
 from archgen.model.path_resolver import ElementRef, PathResolver
-from archgen.model.selector_keys import SelectorHit, find_by_key, matches_wildcard
+from archgen.model.selector_keys import SelectorHit, find_by_key, list_key_values, matches_wildcard
 from archgen.model.selector_parser import ALL_STEPS, SelectorAtom, SelectorProblem, SelectorWord, parse_selector
 
 __all__ = ["Selection", "SelectorEvaluator", "SelectorProblem", "evaluate_selector", "parse_selector"]
@@ -189,7 +189,9 @@ class SelectorEvaluator:
             # Only a warning, unlike a path that names nothing: a tag may be selected before anything has it.
             if not hit.components and not hit.nodes:
                 message = f"nothing has `{atom.key}:{atom.value}`"
-                problems.append(SelectorProblem(message, atom.start, atom.end, "warning"))
+                guess = find_closest(atom.value, list_key_values(self.architecture, atom.key))
+                help_line = f"did you mean `{atom.key}:{guess}`?" if guess and guess != atom.value else None
+                problems.append(SelectorProblem(message, atom.start, atom.end, "warning", help_line))
             return hit
         if atom.value.endswith(_ALL_BELOW) and "*" not in atom.value.removesuffix(_ALL_BELOW):
             path = atom.value.removesuffix(_ALL_BELOW)

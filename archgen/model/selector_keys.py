@@ -70,7 +70,7 @@ def find_by_key(
     if key in _ELEMENT_FINDERS:
         return _ELEMENT_FINDERS[key](architecture, value)
     if key == "finding":
-        return _hit_of_findings(
+        return find_elements_of(
             architecture, [element for rule in findings if matches_wildcard(value, rule) for element in findings[rule]]
         )
     component_values, node_values = _COMPONENT_KEYS.get(key), _NODE_KEYS.get(key)
@@ -117,6 +117,27 @@ _NODE_KEYS: Mapping[str, Callable[[Node], Iterable[str | None]]] = {
     "behaviour": lambda node: (timing.behaviour for timing in node.timing.values()),
     "node": lambda node: (node.id,),
 }
+
+
+def list_key_values(architecture: Architecture, key: str) -> set[str]:
+    """Return what a key could be followed by, as the elements have it; nothing for keys of conditions and types."""
+    if key == "tag":
+        kinds = (
+            architecture.components,
+            architecture.groups,
+            architecture.nodes,
+            architecture.requirements,
+            architecture.hosts,
+        )
+        return {tag for elements in kinds for element in elements.values() for tag in element.tags}
+    if key in {"requirement", "use_case", "variant"}:
+        return {*getattr(architecture, f"{key}s")}
+    list_values, node_values = _COMPONENT_KEYS.get(key), _NODE_KEYS.get(key)
+    known = [
+        value for each in architecture.components.values() if list_values for value in list_values(architecture, each)
+    ]
+    known += [value for each in architecture.nodes.values() if node_values for value in node_values(each)]
+    return {*filter(None, known), *({*architecture.partners} if key == "owner" else ())}
 
 
 def _find_tagged(architecture: Architecture, pattern: str) -> SelectorHit:
@@ -215,7 +236,7 @@ def _find_by_property(architecture: Architecture, text: str) -> SelectorHit:
     return SelectorHit(met_components, met_nodes)
 
 
-def _hit_of_findings(architecture: Architecture, element_ids: Iterable[str]) -> SelectorHit:
+def find_elements_of(architecture: Architecture, element_ids: Iterable[str]) -> SelectorHit:
     """Return the components and nodes that findings are about; a finding on a group is about all of its components."""
     components, nodes = set[str](), set[str]()
     for element_id in (_find_holder(architecture, each) for each in element_ids):

@@ -7,15 +7,20 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Hashable, Iterable, Iterator, Mapping
+from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from archgen import pipeline, project
 from archgen.diagnostics.diagnostic import Diagnostic, Rule, Severity, settle_diagnostics
 from archgen.diagnostics.finding_identity import BaselineEntry, IdRenamer, identify_finding, match_findings
-from archgen.frozen import dataclass
+from archgen.frozen import dataclass, replace
 from archgen.pipeline import CheckedProject, VersionCache, index_all_rules
 from archgen.project import baseline_reading as reading
+
+if TYPE_CHECKING:
+    from archgen.model.architecture import Architecture
+    from archgen.model.selector_evaluation import Selection
 
 BASELINE_FILE = "archgen-baseline.yaml"
 """The baseline of a project, unless another file is named."""
@@ -95,6 +100,42 @@ def report_findings(
         healed_findings=healed_findings if is_complete else (),
         was_compared=baseline_file is not None or earlier_project is not None,
     )
+
+
+def keep_findings(
+    reported: ReportedFindings, checked_project: CheckedProject, files: Collection[str], selection: Selection | None
+) -> ReportedFindings:
+    """Keep the findings that lie in some files (empty for all), and that are about some components and nodes.
+
+    Errors that keep something from being read are about everybody. What is cured is not told of a part.
+    """
+    # Imported here: only who asks for a part needs it.
+    from archgen.model.selector_keys import find_elements_of
+
+    def is_asked(finding: Diagnostic) -> bool:
+        if files and finding.span.file not in files:
+            return False
+        if selection is None or (finding.element is None and find_reading_error([finding])):
+            return True
+        architecture = checked_project.architecture
+        hit = find_elements_of(architecture, _list_concerned(architecture, finding.element or ""))
+        return not (selection.components.isdisjoint(hit.components) and selection.nodes.isdisjoint(hit.nodes))
+
+    return replace(
+        reported,
+        findings=tuple(filter(is_asked, reported.findings)),
+        known_findings=tuple(filter(is_asked, reported.known_findings)),
+        earlier_findings=tuple(filter(is_asked, reported.earlier_findings)),
+        healed_findings=(),
+        cured_entries=(),
+    )
+
+
+def _list_concerned(architecture: Architecture, element: str) -> list[str]:
+    """Return the elements that a finding on one is about: those on a chain's way, the nodes of a host."""
+    if chain := architecture.chains.get(element):
+        return [point.id for point in chain.through]
+    return [element, *(node.id for node in architecture.nodes.values() if element and node.host == element)]
 
 
 def compare_findings(

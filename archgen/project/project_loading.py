@@ -56,7 +56,7 @@ class LoadedProject:
 
     Nothing is used of the files in `broken_files`. `lost_keys` are the keys in them, and in whatever else was not
     understood: what they may declare is never reported as missing. `partial` is whether that was a whole file or
-    section. `library_files` are the files of libraries, read or not, by their paths from the project's folder.
+    section. `unread_names` is what slices declare that are not read, by their files. `library_files` are the files of libraries, read or not, by their paths from the project's folder.
     """
 
     files: ProjectFiles
@@ -77,6 +77,7 @@ class LoadedProject:
     partial: bool = False
     libraries: tuple[LoadedLibrary, ...] = ()
     library_files: tuple[str, ...] = ()
+    unread_names: Mapping[str, frozenset[str]] = field(default_factory=dict)
 
     @property
     def root(self) -> Path:
@@ -165,6 +166,7 @@ def _finish_loading(state: ReadingState, first_file: str, libraries: tuple[Loade
         partial=state.partial,
         libraries=libraries,
         library_files=tuple(state.library_files),
+        unread_names=state.unread_names,
     )
 
 

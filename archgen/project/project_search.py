@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import os
+import re
 from pathlib import Path
+
+from archgen.syntax.folder_files import FolderFiles
+from archgen.syntax.project_files import read_text_file
 
 PROJECT_FILE = "archgen.yaml"
 
@@ -34,14 +38,30 @@ def find_project(path: Path | None) -> tuple[Path, str]:
     raise ProjectNotFoundError(msg)
 
 
+def find_project_of_slice(file: Path) -> Path | None:
+    """Return the folder of the project around a file that says nothing of being one itself; None where there is none."""
+    real_path = Path(os.path.realpath(file))
+    if real_path.name == PROJECT_FILE or not os.path.isfile(real_path):  # noqa: PTH113 - Path.is_file may raise
+        return None
+    folder = _find_folder_around(real_path.parent)
+    if folder is None:
+        return None
+    text = read_text_file(FolderFiles(real_path.parent), real_path.name).text
+    return None if re.search(r"^archgen[ \t]*+:", text, re.MULTILINE) else folder
+
+
+def _find_folder_around(folder: Path) -> Path | None:
+    return next((each for each in (folder, *folder.parents) if os.path.lexists(each / PROJECT_FILE)), None)
+
+
 def _find_project_around() -> tuple[Path, str]:
     try:
         current_folder = Path.cwd()
     except OSError:
         msg = "the current folder does not exist any more"
         raise ProjectNotFoundError(msg) from None
-    for folder in (current_folder, *current_folder.parents):
-        if os.path.lexists(folder / PROJECT_FILE):
-            return folder, PROJECT_FILE
+    folder = _find_folder_around(current_folder)
+    if folder is not None:
+        return folder, PROJECT_FILE
     msg = f"no {PROJECT_FILE} here or in a folder above: `archgen init` makes one, or name a file"
     raise ProjectNotFoundError(msg)

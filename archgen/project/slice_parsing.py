@@ -118,11 +118,18 @@ def _merge_repetitions(
         else:
             repetitions.append(diagnostic)
     return tuple(repetitions), tuple(
-        replace(d, help=_COLUMN_HELP) if (d.span.line, d.span.column) in causes else d for d in schema_diagnostics
+        replace(d, help=_name_column(parsed_slice.text, d.span)) if (d.span.line, d.span.column) in causes else d
+        for d in schema_diagnostics
     )
 
 
-_COLUMN_HELP = "if this is an element of its own, begin it in the column of the element above it"
+def _name_column(text: str, span: Span) -> str:
+    """Return what helps an element whose first line alone is indented too far: the element above it."""
+    lines_above = re.split(r"\r\n|\r|\n", text)[: span.line - 1]
+    keys = (re.match(r" *([A-Za-z0-9_.-]+):", line) for line in reversed(lines_above))
+    above = next((key[1] for key in keys if key and key.start(1) < span.column - 1), None)
+    place = f"`{above}`" if above else "the element above it"
+    return f"if this is an element of its own, begin it in the column of {place}"
 
 
 def _find_cause(repetition: Diagnostic, unknown_lines: list[int]) -> int:
@@ -218,6 +225,8 @@ class ReadingState:
     skipped_folders: frozenset[str] = frozenset()
     """Folders in the project's own that are libraries: nothing in them is a source."""
     library_files: list[str] = field(default_factory=list)
+    unread_names: dict[str, frozenset[str]] = field(default_factory=dict)
+    """What slices declare that are not read, by their files."""
 
     def is_library_file(self, file: str) -> bool:
         """Whether a file lies in a library inside of the project's folder."""

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import posixpath
+import re
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.suggestions import find_closest
+from archgen.language.language_tables import COMMON_SECTIONS, SECTION_KINDS
+from archgen.project.project_search import PROJECT_FILE
 from archgen.project.slice_parsing import ReadingState, find_written_keys, parse_file
 from archgen.schema import list_sections
 from archgen.syntax import file_patterns
@@ -15,7 +18,7 @@ from archgen.syntax.yaml_tree import ScalarNode
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from archgen.syntax.yaml_tree import YamlNode
+    from archgen.syntax.yaml_tree import MappingEntry, YamlNode
 
 
 SKIPPED_FOLDERS = frozenset({"backends"})
@@ -43,6 +46,7 @@ def report_missing_sources(state: ReadingState, patterns: Iterable[ScalarNode]) 
         if lost_keys.isdisjoint(list_sections()):
             state.diagnostics.append(_diagnose_missing_source(pattern))
             continue
+        state.seen_files.update(meant_files)  # what is said of them is said here
         state.lost_keys.update(lost_keys)
         state.partial = True
         state.diagnostics.append(_diagnose_missing_source(pattern, guess))
@@ -62,6 +66,7 @@ def report_other_endings(state: ReadingState, patterns: Iterable[YamlNode]) -> N
             if other != ending and file_patterns.is_yaml_name(file) and file not in state.seen_files:
                 unread_files.setdefault(other, []).append(file)
         for other, files in unread_files.items():
+            state.seen_files.update(files)  # what is said of them is said here
             names = ", ".join(f"`{file}`" for file in files)
             state.diagnostics.append(
                 Diagnostic(
@@ -114,3 +119,82 @@ def expand_source_pattern(
     elif not matching_files:
         state.diagnostics.append(_diagnose_missing_source(pattern))
     yield from matching_files
+
+
+_MAX_SIBLINGS = 100
+"""A folder with more files of other names is one of data, such as labelled pictures: none is taken for a slice."""
+_OTHER_ENDING = re.compile(
+    r"\.(?:json[c5]?|te?xt|cfg|conf|te?mp|old|bak|orig|save)\Z|\.y[a-z]{0,3}m[a-z]?l?[0-9~]?\Z|ya?ml"
+)
+"""How the name of a slice may end that was exported, copied, renamed by another program, or mistyped."""
+_SECTION_LINE = re.compile(
+    rf"^[ \t{{\-\xEF\xBB\xBF]*+[\"']?(?:{'|'.join(sorted(SECTION_KINDS.keys() - COMMON_SECTIONS))})[\"']?[ \t]*+:".encode(
+        "latin-1"
+    ),
+    re.MULTILINE,
+)
+_TOOL_FOLDERS = (".git/", ".hg/", ".svn/", ".archgen/")
+_TOOL_FILES = frozenset({"HEAD", "pyvenv.cfg", "CACHEDIR.TAG"})
+"""Files that tell folders of tools: repositories, environments of Python, caches."""
+
+
+def report_unread_slices(
+    state: ReadingState, walked: file_patterns.WalkedFiles, sources_entry: MappingEntry | None
+) -> None:
+    """Name the files that may be slices and that nothing reads: for their name, their place, or what `sources` names."""
+    unread_files = [file for file in walked.files if file not in state.seen_files and not state.is_library_file(file)]
+    candidates = {
+        "left_out": filter(file_patterns.is_yaml_name, unread_files),
+        "misnamed": _list_misnamed_files(state, unread_files),
+        "hidden": _list_hidden_files(state, walked.passed_over),
+    }
+    unread_slices = {
+        reason: found
+        for reason, files in candidates.items()
+        if (found := [file for file in files if _has_section_line(state, file)])
+    }
+    projects = [
+        file for file in walked.passed_over if file.endswith(f"/{PROJECT_FILE}") and not state.is_library_file(file)
+    ]
+    if unread_slices or projects:
+        # Imported here: hardly any project has such files.
+        from archgen.project.unread_slices import name_unread_slices
+
+        name_unread_slices(state, unread_slices, projects, sources_entry)
+
+
+def _list_misnamed_files(state: ReadingState, files: Iterable[str]) -> Iterator[str]:
+    """Yield files that are not called as YAML files are, and may be slices all the same."""
+    by_folder: dict[str, list[str]] = {}
+    for file in files:
+        folder, _, name = file.rpartition("/")
+        if not file_patterns.is_yaml_name(name) and ("." not in name or _OTHER_ENDING.search(name.lower())):
+            by_folder.setdefault(folder, []).append(file)
+    for siblings in by_folder.values():
+        # A copy that an editor keeps beside a file of the project is no loss.
+        copied = (re.sub(r"(?<=ml)[^/]*+\Z", "", file) for file in siblings)
+        if len(siblings) <= _MAX_SIBLINGS:
+            yield from (file for file, name in zip(siblings, copied, strict=True) if name not in state.seen_files)
+
+
+def _list_hidden_files(state: ReadingState, passed_over: Iterable[str]) -> Iterator[str]:
+    """Yield the YAML files in what is not searched: hidden files and folders, outputs, backends."""
+    for path in passed_over:
+        if state.is_library_file(path) or path.endswith((f"/{PROJECT_FILE}", *_TOOL_FOLDERS)):
+            continue
+        if not path.endswith("/"):
+            yield from filter(file_patterns.is_yaml_name, (path,))
+            continue
+        if state.files.is_behind_link(path[:-1]):  # it may lead out of the project
+            continue
+        for folder, folders, names in state.files.walk_folders(path[:-1]):
+            if not _TOOL_FILES.isdisjoint(names) or PROJECT_FILE in names:
+                folders.clear()
+                continue
+            paths = (posixpath.join(path, folder, name) for name in names)
+            yield from (file for file in paths if file_patterns.is_yaml_name(file) and file not in state.seen_files)
+
+
+def _has_section_line(state: ReadingState, file: str) -> bool:
+    data = state.files.fetch_bytes(file)
+    return isinstance(data, bytes) and _SECTION_LINE.search(data) is not None

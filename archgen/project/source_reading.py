@@ -21,9 +21,11 @@ from archgen.project.source_patterns import (
     expand_source_pattern,
     report_missing_sources,
     report_other_endings,
+    report_unread_slices,
 )
 from archgen.schema import list_sections
-from archgen.syntax import file_patterns
+from archgen.schema.language_schema import resembles_slice
+from archgen.syntax import file_patterns, yaml_parser
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode, SequenceNode, find_value, list_entries
 
 if TYPE_CHECKING:
@@ -31,6 +33,8 @@ if TYPE_CHECKING:
 
     from archgen.syntax.yaml_tree import YamlDocument
 
+IgnoredFile = tuple[str, str | None]
+"""A file that is not read, and the section that its first key nearly names."""
 PASS_FOLDER = "passes/"  # noqa: S105 - not a password
 """Where a project's own passes stand; a file there whose `rules` are a list is one."""
 _MAX_SECTIONS = 100
@@ -60,20 +64,33 @@ def _keep_slice(state: ReadingState, parsed_slice: Slice) -> None:
 
 
 def read_sources(state: ReadingState) -> None:
-    """Read the files that `sources` names, or all YAML files below where it is not written."""
+    """Read the files that `sources` names, or all YAML files below where it is not written; name what may be lost."""
     sources_entry = state.documents[0].root.entries.get("sources") if state.documents else None
+    ignored_files: list[IgnoredFile] = []
+    walked = file_patterns.walk_project(state.files, SKIPPED_FOLDERS)
     if sources_entry is None:
-        _read_all_slices(state)
+        for file in filter(file_patterns.is_yaml_name, walked.files):
+            if file not in state.seen_files and not state.is_library_file(file):
+                _read_found_slice(state, file, ignored_files)
     elif isinstance(sources_entry.value, SequenceNode):
-        unmatched_patterns = list[ScalarNode]()
-        for pattern in sources_entry.value.items:
-            for file in expand_source_pattern(state, pattern, unmatched_patterns):
-                if file not in state.seen_files and not state.is_library_file(file):
-                    _read_listed_slice(state, file, is_named=isinstance(pattern, ScalarNode) and pattern.text == file)
-        _read_agreements(state)
-        # Last, when it is known which files no pattern names.
-        report_missing_sources(state, unmatched_patterns)
-        report_other_endings(state, sources_entry.value.items)
+        _read_listed_slices(state, sources_entry.value, ignored_files)
+    _report_ignored_files(state, ignored_files)
+    # With a broken archgen.yaml it is unknown whether it has `sources`: what is said of others could be wrong.
+    if PROJECT_FILE not in state.broken_files:
+        report_unread_slices(state, walked, sources_entry)
+
+
+def _read_listed_slices(state: ReadingState, patterns: SequenceNode, ignored_files: list[IgnoredFile]) -> None:
+    unmatched_patterns = list[ScalarNode]()
+    for pattern in patterns.items:
+        text = pattern.text if isinstance(pattern, ScalarNode) else ""
+        for file in expand_source_pattern(state, pattern, unmatched_patterns):
+            if file not in state.seen_files and not state.is_library_file(file):
+                _read_listed_slice(state, file, text, ignored_files)
+    _read_agreements(state)
+    # Last, when it is known which files no pattern names.
+    report_missing_sources(state, unmatched_patterns)
+    report_other_endings(state, patterns.items)
 
 
 def _read_agreements(state: ReadingState) -> None:
@@ -86,15 +103,32 @@ def _read_agreements(state: ReadingState) -> None:
     )
     for file in (*map(agreement_file, partner_ids), *signed):
         if file not in state.seen_files and state.files.has_path(file):
-            _read_listed_slice(state, file, is_named=False)
+            _read_listed_slice(state, file, SIGNATURE_FOLDER, [])
 
 
-def _read_listed_slice(state: ReadingState, file: str, *, is_named: bool) -> None:
-    """Read a file that `sources` names; one that only a wildcard found is left out if it is no slice."""
+def _read_listed_slice(state: ReadingState, file: str, pattern: str, ignored_files: list[IgnoredFile]) -> None:
+    """Read a file that a pattern of `sources` names; one that only a wildcard found is left out if it is no slice."""
     state.seen_files.add(file)
     parsed_slice = parse_file(state, file)
-    if is_named or not (_is_other_file(state, parsed_slice) or _is_pass(parsed_slice)):
+    if pattern == file:
         _keep_slice(state, parsed_slice)
+    elif _is_strange(parsed_slice, is_anywhere=pattern.startswith("**")):
+        ignored_files.append((file, None))
+    elif not (_is_other_file(state, parsed_slice) or _is_pass(parsed_slice)):
+        _keep_slice(state, parsed_slice)
+
+
+def _is_strange(parsed_slice: Slice, *, is_anywhere: bool = False) -> bool:
+    """Whether a file is another program's, though it has sections that are called like ours; among files that were found
+    anywhere, also one without sections.
+    """
+    if parsed_slice.document is None:
+        is_known = parsed_slice.diagnostics[0].rule == "too-large" or _looks_like_slice(parsed_slice)
+        return is_anywhere and not is_known
+    if resembles_slice(parsed_slice.document.root) is False:
+        return True
+    has_section = not parsed_slice.sections or not list_sections().isdisjoint(parsed_slice.sections)
+    return is_anywhere and not has_section and not _is_meant_as_slice(parsed_slice.document)
 
 
 def _is_other_file(state: ReadingState, parsed_slice: Slice) -> bool:
@@ -120,38 +154,46 @@ def _is_pass(parsed_slice: Slice) -> bool:
     return isinstance(parsed_slice.document.root.get("rules"), SequenceNode)
 
 
-def _read_all_slices(state: ReadingState) -> None:
-    """Read every YAML file below that holds a section, and list those that do not in one note."""
-    known_sections, ignored_files = list_sections() - COMMON_SECTIONS, list[tuple[str, str | None]]()
-    for file in file_patterns.list_yaml_files(state.files, skipped_folders=SKIPPED_FOLDERS):
-        if file in state.seen_files or state.is_library_file(file):
-            continue
-        state.seen_files.add(file)
-        parsed_slice = parse_file(state, file)
-        # Tested on the text, since a baseline that a merge broke cannot be parsed.
-        if baseline_reading.is_baseline(parsed_slice.text) or _is_pass(parsed_slice):
-            continue  # broken or not, it is judged where it is used
-        # A repository holds other YAML as well, some of it templates that no parser reads. A broken file is an error
-        # only if it seems to be meant as a slice.
-        if (
-            parsed_slice.document is None
-            and parsed_slice.diagnostics[0].rule != "too-large"
-            and not _looks_like_slice(parsed_slice, known_sections)
-        ):
-            ignored_files.append((file, None))
-        elif parsed_slice.document is None:
+def _read_found_slice(state: ReadingState, file: str, ignored_files: list[IgnoredFile]) -> None:
+    """Read a YAML file that nobody names if it holds a section, or add it to those that are not read."""
+    known_sections = list_sections() - COMMON_SECTIONS
+    state.seen_files.add(file)
+    parsed_slice = parse_file(state, file)
+    # Tested on the text, since a baseline that a merge broke cannot be parsed.
+    if baseline_reading.is_baseline(parsed_slice.text) or _is_pass(parsed_slice):
+        return  # broken or not, it is judged where it is used
+    # A repository holds other YAML as well, some of it templates that no parser reads. A broken file is an error
+    # only if it seems to be meant as a slice.
+    if parsed_slice.document is None:
+        if parsed_slice.diagnostics[0].rule == "too-large" or _looks_like_slice(parsed_slice):
             _keep_slice(state, parsed_slice)
-        elif not known_sections.isdisjoint(parsed_slice.sections) or _is_meant_as_slice(parsed_slice.document):
-            if not _is_other_file(state, parsed_slice):
-                _keep_slice(state, parsed_slice)
-        elif parsed_slice.sections and not (
-            _leave_out_frames(state, parsed_slice.document) or _leave_out_libraries(state, parsed_slice.document)
-        ):
-            # With a guess from the first key that is nearly the name of a section, such as `group:`.
-            ignored_files.append(
-                (file, next(filter(None, (find_closest(key, known_sections) for key in parsed_slice.sections)), None))
-            )
-    named_paths = set(_list_parameter_paths(state))
+        else:
+            ignored_files.append((file, None))
+    elif _is_strange(parsed_slice):
+        ignored_files.append((file, None))
+    elif not known_sections.isdisjoint(parsed_slice.sections) or _is_meant_as_slice(parsed_slice.document):
+        if not _is_other_file(state, parsed_slice):
+            _keep_slice(state, parsed_slice)
+    elif parsed_slice.sections and not (
+        _leave_out_frames(state, parsed_slice.document) or _leave_out_libraries(state, parsed_slice.document)
+    ):
+        # With a guess from the first key that is nearly the name of a section, such as `group:`.
+        ignored_files.append((file, _guess_section(parsed_slice.document, known_sections)))
+
+
+def _guess_section(document: YamlDocument, known_sections: frozenset[str]) -> str | None:
+    from archgen.schema.key_places import may_be_section
+
+    for entry in document.root:
+        guess = find_closest(entry.key, known_sections)
+        if guess and may_be_section(entry, guess):
+            return guess
+    return None
+
+
+def _report_ignored_files(state: ReadingState, ignored_files: list[IgnoredFile]) -> None:
+    """List files that are not read in one note, without those that nodes name as their parameters."""
+    named_paths = set(_list_parameter_paths(state)) if ignored_files else set()
     ignored_files = [
         (file, guess) for file, guess in ignored_files if named_paths.isdisjoint(_list_endings(file, named_paths))
     ]
@@ -172,9 +214,11 @@ def read_library_slices(state: ReadingState, folder: str) -> None:
         ):
             continue
         if parsed_slice.document is None:
-            if _looks_like_slice(parsed_slice, known_sections):
+            if _looks_like_slice(parsed_slice):
                 _keep_slice(state, parsed_slice)
-        elif not known_sections.isdisjoint(parsed_slice.sections) or _is_meant_as_slice(parsed_slice.document):
+        elif not _is_strange(parsed_slice) and (
+            not known_sections.isdisjoint(parsed_slice.sections) or _is_meant_as_slice(parsed_slice.document)
+        ):
             _keep_slice(state, parsed_slice)
 
 
@@ -234,19 +278,33 @@ def _leave_out_libraries(state: ReadingState, document: YamlDocument) -> bool:
     return True
 
 
-def _looks_like_slice(parsed_slice: Slice, known_sections: frozenset[str]) -> bool:
+_FOREIGN_TEXT = re.compile(r"^(?:apiVersion|kind):|\{\{|\{%", re.MULTILINE)
+"""What manifests of clusters and templates have, and slices never."""
+
+
+def _looks_like_slice(parsed_slice: Slice) -> bool:
     """Whether a file that cannot be parsed was meant as a slice: a line begins a section, or its text is unknown."""
-    return (
-        not parsed_slice.text
-        or re.search(rf"^[^\w\n]*+(?:{'|'.join(sorted(known_sections))})[^\w\n:]*+:", parsed_slice.text, re.MULTILINE)
-        is not None
+    text = parsed_slice.text
+    if not text:
+        return True
+    sections = "|".join(sorted(list_sections() - COMMON_SECTIONS))
+    section = re.search(rf"^[^\w\n]*+(?:{sections})[^\w\n:]*+:", text, re.MULTILINE)
+    if section is None or _FOREIGN_TEXT.search(text):
+        return False
+    if parsed_slice.diagnostics[0].rule != "wrong-type":
+        return True
+    # The file is a list: of slices, where an entry resembles one.
+    wrapped, _ = yaml_parser.parse_yaml(parsed_slice.file, f"entries:\n{text}")
+    entries = wrapped.root.get("entries") if wrapped else None
+    return not isinstance(entries, SequenceNode) or any(
+        isinstance(item, MappingNode) and resembles_slice(item) for item in entries.items
     )
 
 
 def _diagnose_ignored_files(ignored_files: list[tuple[str, str | None]]) -> Diagnostic:
     names = ", ".join(f"`{file}`" for file, _ in ignored_files)
     is_plural = len(ignored_files) > 1
-    message = f"{names} {'hold' if is_plural else 'holds'} no section of the language and {'are' if is_plural else 'is'} not read"
+    message = f"{names} {'hold' if is_plural else 'holds'} no element of the language and {'are' if is_plural else 'is'} not read"
     guesses = [f"did you mean `{guess}:` in `{file}`?" for file, guess in ignored_files if guess]
     help_line = (
         guesses[0] if guesses else f"name the project's files in `sources` of {PROJECT_FILE}, and this note goes away"

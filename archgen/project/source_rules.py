@@ -8,7 +8,7 @@ RULES: tuple[Rule, ...] = (
     Rule(
         "ignored-file",
         Severity.NOTE,
-        "A YAML file below the project's folder holds no section of the language and is not read.",
+        "A file below the project's folder that may be a part of it is not read.",
     ),
     Rule("missing-library", Severity.ERROR, "A library that archgen.yaml names cannot be read.", fixed=True),
     Rule("missing-source", Severity.WARNING, "A pattern in `sources` or `ros.interfaces` matches no file."),

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from archgen.diagnostics.suggestions import find_closest
 from archgen.language.language_tables import SECTION_KINDS
-from archgen.schema.language_schema import load_schema, resolve_part
+from archgen.schema.language_schema import TELLING_NOTHING, list_keys, load_schema, resolve_part
 from archgen.schema.schema_wording import add_article
 from archgen.syntax.yaml_tree import MappingNode, ScalarNode
 
@@ -16,8 +15,6 @@ if TYPE_CHECKING:
 
 KeyPath = tuple[str | int, ...]
 
-_TELLING_NOTHING = frozenset({"title", "description"})
-"""Keys that nearly every element has."""
 _SETTING_SECTIONS = frozenset({"component_types", "libraries", "properties"})
 """Sections whose elements have no keys by which they could be told from components, or from data."""
 _ELEMENT_SECTIONS = {section: kind for section, kind in SECTION_KINDS.items() if section not in _SETTING_SECTIONS}
@@ -50,6 +47,9 @@ _POLICY_KEYS = {
     "require": dict.fromkeys(("from", "to"), _REQUIRED_ENDS),
 }
 """Help for the keys that one kind of policy has and the other has not."""
+_PORT_USES = {"inputs": "subscribes", "outputs": "publishes"}
+"""Ports, and the key at a node below which their topics stand."""
+_NODE_DEPTH = 2
 _PORT_HOMES = ("type", "topic_use", "timing", "node")
 """The order at an input or an output: its message is that of its type, its topic and QoS are the node's."""
 _NAMED_ELEMENTS = {"node": "nodes", "nodes": "nodes", "type": "types", "host": "hosts", "chain": "chains"}
@@ -62,8 +62,9 @@ def find_key_home(key: str, path: KeyPath, kind: str) -> str | None:
     is_policy = path[:1] == ("policies",) and key in _POLICY_KEYS.get(str(path[-1]), {})
     if is_policy or (path[:1] == ("variants",) and path[2:] == ("changes",)):
         return _POLICY_KEYS[str(path[-1])][key] if is_policy else _find_changes_help(key)
-    parent = _find_parent(key, kind)
-    if parent is not None or key in _TELLING_NOTHING:
+    port_use = _PORT_USES.get(key) if path[:1] == ("nodes",) and len(path) == _NODE_DEPTH else None
+    parent = _find_parent(key, kind) if port_use is None else None
+    if parent is not None or key in TELLING_NOTHING:
         return f"write it below `{parent}`: `{parent}: {{{key}: ...}}`" if parent else None
     if key in _READER_KEYS and kind != "Input":
         return f"write it at the input that reads it: `inputs: {{INPUT: {{from: ..., {key}: ...}}}}`"
@@ -72,8 +73,12 @@ def find_key_home(key: str, path: KeyPath, kind: str) -> str | None:
     # Beside the sections stands what should have a group around it: its `components` are meant, not those of a component.
     homes = _PORT_HOMES if is_port else tuple(_HOMES) if path else ("group", *_HOMES)
     home = _find_kind(key, homes)
-    if home is None:
-        return _find_section_help(key, path)
+    if home is None or port_use:
+        return (
+            f"{key} stand at the component; the topic of one stands at the node below `{port_use}`"
+            if port_use
+            else _find_section_help(key, path)
+        )
     component = _find_component(path)
     place = _HOMES[home].format(
         key=key,
@@ -92,6 +97,10 @@ def find_sibling_help(entry: MappingEntry, path: KeyPath, kind: str) -> str | No
         return f"put it below `{section}:`, indented" if section else None
     is_component, section_kind = _looks_like(entry.value, "component"), _ELEMENT_SECTIONS.get(str(path[0]))
     match path:
+        case ("groups", element_id) if looks_like_part(entry.value, load_schema()["$defs"]["group"]) and _holds(
+            entry, "components"
+        ):
+            return f"it looks like a group of its own: begin it in the column of `{element_id}`"
         case ("groups", element_id) if is_component:
             return f"it looks like a component: indent it below `components:` of `{element_id}`"
         case ("groups", _, "components", element_id) if is_component:
@@ -99,6 +108,10 @@ def find_sibling_help(entry: MappingEntry, path: KeyPath, kind: str) -> str | No
         case (_, element_id) if section_kind and _looks_like(entry.value, section_kind):
             return f"it looks like {add_article(kind)} of its own: begin it in the column of `{element_id}`"
     return None
+
+
+def _holds(entry: MappingEntry, key: str) -> bool:
+    return isinstance(entry.value, MappingNode) and key in entry.value.entries
 
 
 def find_section_of(entry: MappingEntry) -> str | None:
@@ -113,13 +126,13 @@ def find_other_section(entry: MappingEntry) -> str | None:
     if own_kind is None or not isinstance(entry.value, MappingNode):
         return None
     bodies = [
-        part.value.entries.keys() - _TELLING_NOTHING for part in entry.value if isinstance(part.value, MappingNode)
+        part.value.entries.keys() - TELLING_NOTHING for part in entry.value if isinstance(part.value, MappingNode)
     ]
-    foreign_keys = [key for body in bodies for key in body if key not in _list_keys(own_kind)]
+    foreign_keys = [key for body in bodies for key in body if key not in list_keys(own_kind)]
     # One such key may be a slip in an element of this section.
-    if len(foreign_keys) < 2 or any(body and body <= _list_keys(own_kind) for body in bodies):  # noqa: PLR2004
+    if len(foreign_keys) < 2 or any(body and body <= list_keys(own_kind) for body in bodies):  # noqa: PLR2004
         return None
-    sections = [name for name, kind in _ELEMENT_SECTIONS.items() if all(body <= _list_keys(kind) for body in bodies)]
+    sections = [name for name, kind in _ELEMENT_SECTIONS.items() if all(body <= list_keys(kind) for body in bodies)]
     return sections[0] if len(sections) == 1 else None
 
 
@@ -128,7 +141,7 @@ def may_be_section(entry: MappingEntry, section: str) -> bool:
     kind = _ELEMENT_SECTIONS.get(section)
     if kind is None or not isinstance(entry.value, MappingNode):
         return True
-    known_keys = _list_keys(kind)
+    known_keys = list_keys(kind)
     bodies = [part.value for part in entry.value if isinstance(part.value, MappingNode) and part.value.entries]
     return not bodies or any(not known_keys.isdisjoint(body.entries) for body in bodies)
 
@@ -141,6 +154,8 @@ def is_meant_for_language(entry: MappingEntry) -> bool:
         return False
     if not {"components", "implements"}.isdisjoint(entry.value.entries):
         return find_section_of(entry) is not None
+    if entry.key == "components":
+        return any(_looks_like(part.value, "component") for part in entry.value)
     section = find_closest(entry.key, _ELEMENT_SECTIONS)
     bodies = [part.value for part in entry.value if isinstance(part.value, MappingNode)]
     return section is not None and any(bodies) and all(_looks_like(body, _ELEMENT_SECTIONS[section]) for body in bodies)
@@ -152,16 +167,16 @@ def looks_like_frames(mapping: MappingNode) -> bool:
     bodies = [value for value in values if isinstance(value, MappingNode)]
     parents = [body.get("parent") for body in bodies if "parent" in body.entries]
     parents += [value for value in values if isinstance(value, ScalarNode) and value.text in mapping.entries]
-    return bool(parents) and all(_list_keys("frame").issuperset(body.entries) for body in bodies)
+    return bool(parents) and all(list_keys("frame").issuperset(body.entries) for body in bodies)
 
 
 def find_common_kind(keys: tuple[str, ...]) -> str | None:
     """Return the kind of element that has all of several keys, such as `component` for inputs and outputs; None where none has."""
-    return next((kind for kind in _HOMES if _list_keys(kind).issuperset(keys)), None) if len(keys) > 1 else None
+    return next((kind for kind in _HOMES if list_keys(kind).issuperset(keys)), None) if len(keys) > 1 else None
 
 
 def _find_kind(key: str, kinds: tuple[str, ...]) -> str | None:
-    return next((kind for kind in kinds if key in _list_keys(kind)), None)
+    return next((kind for kind in kinds if key in list_keys(kind)), None)
 
 
 def _find_parent(key: str, kind: str) -> str | None:
@@ -179,7 +194,7 @@ def _find_changes_help(key: str) -> str | None:
     """Return help for a key that no section of a variant's changes has."""
     if key == "components":
         return "components are changed in their group: `groups: {GROUP: {components: {COMPONENT: ...}}}`"
-    if key in _list_keys("variant"):
+    if key in list_keys("variant"):
         return f"`{key}` says something of the variant: begin it in the column of `changes`"
     if key in load_schema()["properties"]:
         return f"no variant changes `{key}`: it says what the project is, and holds in all of them"
@@ -208,11 +223,6 @@ def _find_section_help(key: str, path: KeyPath) -> str | None:
     return None
 
 
-@cache
-def _list_keys(kind: str) -> frozenset[str]:
-    return frozenset(load_schema()["$defs"][kind]["properties"])
-
-
 def _looks_like(node: YamlNode, kind: str) -> bool:
     """Whether a mapping has keys of a kind only, and one that not every kind has."""
     return looks_like_part(node, load_schema()["$defs"][kind])
@@ -224,5 +234,5 @@ def looks_like_part(node: YamlNode, schema_part: dict[str, Any]) -> bool:
     return (
         isinstance(node, MappingNode)
         and all(key in known_keys for key in node.entries)
-        and not _TELLING_NOTHING.issuperset(node.entries)
+        and not TELLING_NOTHING.issuperset(node.entries)
     )

@@ -30,7 +30,7 @@ _TYPE_WORDS = frozenset({"boolean", "integer", "float", "string", "bool", "int",
 _WORDS_OF_OTHERS = {
     **dict.fromkeys(("default", "default_value"), "write the value as `value`"),
     **dict.fromkeys(
-        ("min", "max", "minimum", "maximum", "lower", "upper", "bounds", "validation"),
+        ("min", "max", "minimum", "maximum", "lower", "upper", "bounds", "limits", "validation"),
         "write what it may be as `range: [LOWEST, HIGHEST]` or `choices: [...]`",
     ),
 }
@@ -120,7 +120,10 @@ class _SetExpander:
     def _find_misspelt_key(self, parameter_set: MappingNode, name: str) -> None:
         """Report a key that makes a set of what is meant as a declaration: `{type: float, valeu: 0.5}`."""
         type_node = parameter_set.get("type")
-        if not isinstance(type_node, ScalarNode) or type_node.text.removesuffix("[]") not in _TYPE_WORDS:
+        has_type = isinstance(type_node, ScalarNode) and type_node.text.removesuffix("[]") in _TYPE_WORDS
+        # `{value: 2, limits: [0, 3]}`: all that is no key of a declaration is a word of others for one.
+        others = parameter_set.entries.keys() - {*DECLARATION_KEYS}
+        if not has_type and not ("value" in parameter_set.entries and others <= _WORDS_OF_OTHERS.keys()):
             return
         for entry in parameter_set:
             if entry.key in DECLARATION_KEYS:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
+from archgen.diagnostics.suggestions import find_closest
 from archgen.model import quantity
 
 # A sign, digits with a point or a comma, and whatever follows them as the unit.
@@ -15,10 +16,13 @@ _UNIT_SPELLINGS = {
     "sec": "s", "secs": "s", "second": "s", "seconds": "s", "msec": "ms", "msecs": "ms", "usec": "us", "µs": "us",
     "μs": "us", "nsec": "ns", "m": "min", "mins": "min", "minutes": "min", "hour": "h", "hours": "h", "fps": "Hz",
     "bps": "bit/s", "kbps": "kbit/s", "Mbps": "Mbit/s", "mbps": "Mbit/s", "Gbps": "Gbit/s", "gbps": "Gbit/s",
-    "Mb/s": "Mbit/s", "Gb/s": "Gbit/s", "kb/s": "kbit/s", "b/s": "bit/s", "bytes": "B", "byte": "B",
+    "hertz": "Hz", "millisecond": "ms", "milliseconds": "ms", "microseconds": "us", "nanoseconds": "ns",
+    "kilobytes": "kB", "megabytes": "MB", "gigabytes": "GB", "Mb/s": "Mbit/s", "Gb/s": "Gbit/s", "kb/s": "kbit/s", "b/s": "bit/s", "bytes": "B", "byte": "B",
 }  # fmt: skip
 
 
+_MIN_SPELLING = 4
+"""The letters of a word from which on a slip in it may be guessed: of shorter ones each slip is another unit."""
 _LIKELY_UNITS = {"duration": ("s", "ms"), "frequency": ("Hz",), "size": ("B", "kB"), "bandwidth": ("bit/s", "Mbit/s")}
 """What a number alone may be meant in. ROS writes durations in seconds, and most people theirs in milliseconds: only who
 wrote the number knows, and a thousandth of a time is met by every deadline."""
@@ -76,11 +80,17 @@ _OTHER_KEY = {("rate", unit): "period" for unit in quantity.UNIT_FACTORS["durati
 def _suggest_unit(unit: str, dimension: str) -> str | None:
     units = quantity.UNIT_FACTORS[dimension]
     # A known other spelling first, then the case: `MS` may be meant as ms, and `mbps` is nothing but a spelling.
-    spelled_unit = _UNIT_SPELLINGS.get(unit)
+    spelled_unit = _UNIT_SPELLINGS.get(unit) or _UNIT_SPELLINGS.get(unit.lower())
     if spelled_unit in units:
         return spelled_unit
     folded_units = [known_unit for known_unit in units if known_unit.lower() == unit.lower()]
-    return folded_units[0] if folded_units else None
+    if folded_units or len(unit) < _MIN_SPELLING:
+        return folded_units[0] if folded_units else None
+    word = find_closest(
+        unit,
+        [word for word, known_unit in _UNIT_SPELLINGS.items() if known_unit in units and len(word) >= _MIN_SPELLING],
+    )
+    return _UNIT_SPELLINGS[word] if word else None
 
 
 _MAX_QUOTED_LENGTH = 60

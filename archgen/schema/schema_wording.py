@@ -82,7 +82,8 @@ def diagnose_wrong_value(kind: str, place: ErrorPlace, schema_part: dict[str, An
     span = node.span
     if isinstance(node, MappingNode | SequenceNode) and place.entry is not None and node is place.entry.value:
         span = place.entry.key_span
-    asked_name = _find_asked_name(place, schema_part) if rule == "wrong-value" else None
+    is_guessed = help_line is not None and help_line.startswith("did you mean")
+    asked_name = _find_asked_name(place, schema_part) if rule == "wrong-value" and not is_guessed else None
     return Diagnostic(rule, message, span, help=help_line, element=element_of_path(place.path), asked_name=asked_name)
 
 
@@ -116,7 +117,9 @@ def _describe_wrong_type(name: str, node: YamlNode, schema_part: dict[str, Any])
         return "wrong-type", f"{name} is `{clip_text(node.text)}`{quotes_note or ','} but must be {expected}", help_line
     actual = "a list" if isinstance(node, SequenceNode) else "a mapping"
     is_quantity = dimension and "object" not in schema_part["type"]
-    help_line = schema_part["patternErrorMessage"] if is_quantity else _find_container_help(name, node, schema_part)
+    help_line = _find_lone_entry_help(node, schema_part) or (
+        schema_part["patternErrorMessage"] if is_quantity else _find_container_help(name, node, schema_part)
+    )
     return "wrong-type", f"{name} is {actual}, but must be {expected}", help_line
 
 
@@ -142,7 +145,17 @@ def _find_boolean_help(word: str) -> str | None:
     return f"write `{word}`, without quotes" if word in {"true", "false"} else None
 
 
+def _find_lone_entry_help(node: YamlNode, schema_part: dict[str, Any]) -> str | None:
+    """Return what helps where a value stands in a list of one that takes no list."""
+    if not isinstance(node, SequenceNode) or len(node.items) != 1 or {"object", "array"} & {*_list_types(schema_part)}:
+        return None
+    entry = node.items[0]
+    return f"write `{clip_text(entry.text)}`, without brackets" if isinstance(entry, ScalarNode) else None
+
+
 def _find_container_help(name: str, node: YamlNode, schema_part: dict[str, Any]) -> str | None:
+    if isinstance(node, MappingNode) and name in _LISTS_OF_ELEMENTS:
+        return _find_element_help(name.removeprefix("an entry of "), node)
     if isinstance(node, SequenceNode) and "object" in schema_part.get("type", ()):
         if not node.items:
             return "write `{}` for none"
@@ -151,11 +164,26 @@ def _find_container_help(name: str, node: YamlNode, schema_part: dict[str, Any])
         return (
             f"its keys are {join_quoted(tuple(schema_part['properties']))}" if schema_part.get("properties") else None
         )
-    if isinstance(node, MappingNode) and "array" in schema_part.get("type", ()):
-        return "write a list: [a, b], or one entry a line, each after `- `"
-    if isinstance(node, MappingNode) and node.span.line == node.span.end_line:
-        return "text with braces must be quoted"
+    is_braces = isinstance(node, MappingNode) and node.span.line == node.span.end_line
+    if isinstance(node, MappingNode) and ("array" in schema_part.get("type", ()) or is_braces):
+        is_list_asked = "array" in schema_part.get("type", ())
+        return (
+            "write a list: [a, b], or one entry a line, each after `- `"
+            if is_list_asked
+            else "text with braces must be quoted"
+        )
     return str(schema_part["patternErrorMessage"]) if "patternErrorMessage" in schema_part else None
+
+
+_LISTS_OF_ELEMENTS = frozenset({"an entry of `inputs`", "an entry of `outputs`", "an entry of `components`"})
+
+
+def _find_element_help(name: str, element: MappingNode) -> str:
+    """Return how an entry of a list is written where elements are keyed by id."""
+    first = next(iter(element.entries.values()), None)
+    if first is not None and first.key in {"name", "id"} and isinstance(first.value, ScalarNode):
+        return f"{name} is keyed by id: write `{suggest_ids(first.value.text)[1]}:` instead of `- {first.key}: {clip_text(first.value.text)}`"
+    return f"take the `- ` away: {name} is keyed by id"
 
 
 def _describe_wrong_value(kind: str, name: str, node: YamlNode, schema_part: dict[str, Any]) -> tuple[str, str | None]:
@@ -211,6 +239,7 @@ def _find_list_help(text: str, schema_part: dict[str, Any]) -> str | None:
 def _suggest_message(text: str, pattern: str) -> str | None:
     """Return a message as ROS writes it: `nav_msgs::msg::Odometry` and `nav_msgs/msg/odometry` are others' spellings."""
     package, slash, name = re.sub(r"::|\.|/", "/", text).rpartition("/")
+    package = re.sub(r"/(msg|srv|action)s\Z", r"/\1", package)
     message = f"{package}{slash}{''.join(word[:1].upper() + word[1:] for word in name.split('_'))}"
     return f"did you mean `{message}`?" if re.search(pattern, message) else None
 
@@ -222,6 +251,9 @@ def _find_value_help(kind: str, text: str, schema_part: dict[str, Any], *, is_en
         help_line = _find_pattern_help(text, schema_part, is_entry=is_entry)
         if help_line:
             return help_line
+        lowered = text.lower()
+        if lowered != text and re.search(schema_part["pattern"], lowered) and schema_part["pattern"] == "^[a-z]+$":
+            return f"did you mean `{lowered}`?"
     if kind == "enum":
         options = [option for option in schema_part["enum"] if option is not None]
         return did_you_mean(text, options) or f"it is one of {join_quoted(options)}"

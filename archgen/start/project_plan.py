@@ -23,8 +23,7 @@ from archgen.project import PROJECT_FILE
 from archgen.project.project_loading import load_from_files
 from archgen.start import start_templates
 from archgen.start.start_answers import StartAnswers
-from archgen.syntax import block_documents, file_patterns
-from archgen.syntax.folder_files import FolderFiles
+from archgen.syntax import block_documents
 from archgen.syntax.project_files import OverlaidFiles
 
 
@@ -38,11 +37,6 @@ class ProjectPlan:
     existing_files: tuple[Path, ...]
     repository_folder: Path
     reviewers_missing: bool
-
-
-def has_other_yaml(folder: Path) -> bool:
-    """Return whether there are YAML files below that are not slices of this project: it then has to name its own."""
-    return bool(file_patterns.list_yaml_files(FolderFiles(folder)))
 
 
 def judge_files(files: Mapping[str, bytes], name: str) -> CheckedProject:
@@ -129,11 +123,11 @@ _SECTION_HINTS = {
 }
 
 
-def example_files(answers: StartAnswers, has_other_yaml: bool) -> dict[str, bytes]:  # noqa: FBT001 - what `other_yaml` found
+def example_files(answers: StartAnswers) -> dict[str, bytes]:
     """Return the files of a project that begins with an example."""
     sections = {"requirements": {"R-1": _EXAMPLE_REQUIREMENT}}
     return {
-        PROJECT_FILE: _fill_project_file(answers, sections, has_other_yaml=has_other_yaml),
+        PROJECT_FILE: _fill_project_file(answers, sections),
         **start_templates.fill_group_files(answers),
         **_agreement_files(answers),
     }
@@ -143,9 +137,9 @@ def _agreement_files(answers: StartAnswers) -> dict[str, bytes]:
     return {agreement_file(partner.id): start_templates.fill_agreements(partner.title) for partner in answers.partners}
 
 
-def imported_files(answers: StartAnswers, data: Mapping[str, Any], has_other_yaml: bool) -> dict[str, bytes]:  # noqa: FBT001 - as above
+def imported_files(answers: StartAnswers, data: Mapping[str, Any]) -> dict[str, bytes]:
     """Return the files of a project whose groups, nodes, types and requirements were imported."""
-    files = {PROJECT_FILE: _fill_project_file(answers, data, has_other_yaml=has_other_yaml)}
+    files = {PROJECT_FILE: _fill_project_file(answers, data)}
     for name, group in data.get("groups", {}).items():
         # With the dot, so that the group `arm` does not take the nodes of `arm_left`.
         id_prefix = f"{name}."
@@ -156,7 +150,7 @@ def imported_files(answers: StartAnswers, data: Mapping[str, Any], has_other_yam
     return files | _agreement_files(answers)
 
 
-def _fill_project_file(answers: StartAnswers, data: Mapping[str, Any], *, has_other_yaml: bool) -> bytes:
+def _fill_project_file(answers: StartAnswers, data: Mapping[str, Any]) -> bytes:
     """Return archgen.yaml: the template, and below it the sections that the data have."""
     sections = block_documents.BlockMapping()
     for key, hint in _SECTION_HINTS.items():
@@ -165,7 +159,7 @@ def _fill_project_file(answers: StartAnswers, data: Mapping[str, Any], *, has_ot
             section = sections.add_mapping(key, f"{hint:>{len(hint) + 28 - len(key)}}", is_spaced=True)
             for name, value in data[key].items():
                 section.add_entry(name, value)
-    project_file = start_templates.fill_project_file(answers, sources=has_other_yaml)
+    project_file = start_templates.fill_project_file(answers)
     return project_file + (block_documents.write_document(sections).encode() if sections.content else b"")
 
 

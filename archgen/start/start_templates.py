@@ -62,8 +62,8 @@ def read_plain_file(name: str) -> bytes:
     return resources.resource_path("start", *name.split("/")).read_bytes()
 
 
-def fill_project_file(answers: StartAnswers, *, sources: bool) -> bytes:
-    """Return the beginning of archgen.yaml: with `sources` it names its slices, since other YAML files lie beside them."""
+def fill_project_file(answers: StartAnswers) -> bytes:
+    """Return the beginning of archgen.yaml."""
     return fill_template(
         "archgen.yaml.j2",
         id=answers.id,
@@ -71,7 +71,6 @@ def fill_project_file(answers: StartAnswers, *, sources: bool) -> bytes:
         distro=answers.distro,
         partners=answers.partners,
         foreign=_choose_foreign(answers),
-        sources=sources,
     )
 
 

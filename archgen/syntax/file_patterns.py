@@ -6,8 +6,11 @@ Not `pathlib.glob`: a project may lie in a commit, and some folders are never se
 from __future__ import annotations
 
 import re
+from itertools import compress
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
+
+from archgen.frozen import NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -54,6 +57,21 @@ def expand_pattern(files: ProjectFiles, pattern: str, skipped_folders: frozenset
     )
 
 
+class WalkedFiles(NamedTuple):
+    """The files below a folder, by their paths, and what a search for files passes over."""
+
+    files: tuple[str, ...]
+    passed_over: tuple[str, ...]
+    """Hidden files, folders that are not searched (with a slash behind), and the archgen.yaml of other projects."""
+
+
+def walk_project(files: ProjectFiles, skipped_folders: frozenset[str]) -> WalkedFiles:
+    """Return all files that a wildcard finds, sorted by path, and what it passes over."""
+    passed_over: list[str] = []
+    found = sorted(_walk_files(files, "", skipped_folders, passed_over), key=lambda name: name.split("/"))
+    return WalkedFiles(tuple(found), tuple(sorted(passed_over)))
+
+
 def list_yaml_files(
     files: ProjectFiles, folder: str = "", skipped_folders: frozenset[str] = frozenset(), *, is_deep: bool = True
 ) -> tuple[str, ...]:
@@ -72,15 +90,24 @@ def matches_pattern(pattern: str, file: str) -> bool:
     return is_inside_project(pattern) and _matches_path(_compile_path(PurePosixPath(pattern).parts), file.split("/"))
 
 
-def _walk_files(files: ProjectFiles, top: str, skipped_folders: frozenset[str]) -> Iterator[str]:
+def _walk_files(
+    files: ProjectFiles, top: str, skipped_folders: frozenset[str], passed_over: list[str] | None = None
+) -> Iterator[str]:
+    """Yield the files below a folder; `passed_over` collects what is not searched."""
     for relative_folder, folders, file_names in files.walk_folders(top):
+        path_prefix = f"{relative_folder}/" if relative_folder else ""
         if relative_folder and "archgen.yaml" in file_names:  # a project of its own
             folders.clear()
+            if passed_over is not None:
+                passed_over.append(f"{path_prefix}archgen.yaml")
             continue
-        folders[:] = sorted(
-            name for name in folders if name[0] != "." and name != OUTPUT_FOLDER and name not in skipped_folders
-        )
-        path_prefix = f"{relative_folder}/" if relative_folder else ""
+        is_searched = [name[0] != "." and name != OUTPUT_FOLDER and name not in skipped_folders for name in folders]
+        if passed_over is not None:
+            passed_over += (f"{path_prefix}{name}" for name in file_names if name[0] == ".")
+            passed_over += (
+                f"{path_prefix}{name}/" for name, is_kept in zip(folders, is_searched, strict=True) if not is_kept
+            )
+        folders[:] = sorted(compress(folders, is_searched))
         yield from (f"{path_prefix}{name}" for name in file_names if name[0] != ".")
         # A folder called `x.yaml` is yielded too: reading it then reports that it is a folder, instead of silently
         # leaving out what somebody may take for a file.

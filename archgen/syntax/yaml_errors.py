@@ -11,6 +11,7 @@ from archgen.diagnostics import odd_characters
 from archgen.diagnostics.diagnostic import Diagnostic, Label, diagnose_repetition
 from archgen.diagnostics.source_span import Span
 from archgen.frozen import NamedTuple
+from archgen.language.language_tables import KEYS
 
 LONE_SURROGATE = re.compile("[\ud800-\udfff]")
 """Half of a character beyond U+FFFF (a surrogate), which no text may hold alone. libyaml refuses it by itself."""
@@ -59,7 +60,10 @@ def diagnose_problem(file: str, text: str, problem: ParserProblem) -> Diagnostic
     odd_character = _find_odd_character(file, lines, position[0], problem)
     if odd_character is not None:
         return odd_character
-    error_text = _choose_error_text(lines[position[0]], position[1], problem)
+    slip = _find_slip_in_line(file, lines, position, problem)
+    if slip is not None:
+        return slip
+    error_text = _choose_error_text(lines, position, problem)
     context_start = problem.context_start
     if error_text.at_start and context_start is not None:
         return Diagnostic(
@@ -75,9 +79,76 @@ def diagnose_problem(file: str, text: str, problem: ParserProblem) -> Diagnostic
         if outdented_line is not None:
             start = (outdented_line, _measure_indentation(lines[outdented_line]))
             labels = (Label(_span_at(file, lines, start), "or this line is indented too little"),)
+        column_help = _find_column_help(lines, position[0])
+        if column_help is not None:
+            error_text = error_text._replace(help=column_help)
     return Diagnostic(
         "syntax-error", error_text.message, _span_at(file, lines, position), labels=labels, help=error_text.help
     )
+
+
+_LINE_OF_ENTRY = re.compile(r"( *)(?:- )*+([A-Za-z_][A-Za-z0-9_-]*+)[ \t]*+(?:([:=])[ \t]*+)?(.*)")
+_OPEN_QUOTE = re.compile(r" *(?:- )?(?:[A-Za-z0-9_-]+: +)?(\"[^\"\\]*|'[^']*)\Z")
+_FEW_LINES = 200
+"""So many lines above an error are looked at for what it began with."""
+
+
+def _find_slip_in_line(
+    file: str, lines: list[str], position: tuple[int, int], problem: ParserProblem
+) -> Diagnostic | None:
+    """Report a quote that nobody closed, or an entry without its colon and blank, where the parser stopped only later."""
+    is_key_missing = "could not find expected ':'" in problem.message
+    is_misplaced = "mapping values are not allowed" in problem.message and ": " not in lines[position[0]][: position[1]]
+    if "expected" in problem.message:
+        for number in range(max(0, position[0] - _FEW_LINES), position[0] + 1):
+            quote = _OPEN_QUOTE.match(lines[number])
+            if quote is not None and not _is_closed(lines[number + 1 : position[0]], quote[1][0]):
+                span = Span(file, number + 1, quote.start(1) + 1, number + 1, quote.end(1) + 1)
+                message = "this quote is never closed"
+                return Diagnostic("syntax-error", message, span, help=f"write `{quote[1][0]}` at its end")
+    if is_key_missing and problem.context_start is not None:
+        return _diagnose_entry(file, lines, problem.context_start[0])
+    return _diagnose_entry(file, lines, position[0] - 1) if is_misplaced and position[0] else None
+
+
+def _is_closed(lines: list[str], quote: str) -> bool:
+    """Whether a text in quotes that goes on below ends there: behind the next quote nothing else stands."""
+    line = next((line for line in lines if quote in line), None)
+    return line is not None and not line.rpartition(quote)[2].partition("#")[0].strip(" ,]}")
+
+
+def _diagnose_entry(file: str, lines: list[str], number: int) -> Diagnostic | None:
+    """Report a line such as `owner:wur`, `owner = wur`, `owner wur` or `timing`; None where it may be text."""
+    match = _LINE_OF_ENTRY.match(lines[number].rstrip())
+    if match is None:
+        return None
+    key, sign, value = match[2], match[3], match[4]
+    is_entry = sign == "=" or (sign == ":" and value and lines[number][match.end(3)] not in " \t")
+    if not (is_entry or (not sign and (not value or key in _LANGUAGE_KEYS))) or {*value} & {*"\"'[]{}#"}:
+        return None
+    message = f"the `:` after `{key}` has no blank behind it" if sign == ":" else f"a `:` is missing after `{key}`"
+    span = Span(file, number + 1, match.start(2) + 1, number + 1, match.end() + 1)
+    return Diagnostic("syntax-error", message, span, help=f"write `{f'{key}: {value}'.rstrip()}`")
+
+
+_LANGUAGE_KEYS = frozenset(key for keys in KEYS.values() for key in keys)
+
+
+def _find_column_help(lines: list[str], number: int) -> str | None:
+    """Return the key in whose column a line was most likely meant to begin, one blank from where it does; None if unclear."""
+    own_column, own_key = _measure_indentation(lines[number]), _LINE_OF_ENTRY.match(lines[number])
+    levels: dict[int, str] = {}
+    lowest = len(lines[number]) + 2
+    for line in reversed(lines[max(0, number - _FEW_LINES) : number]):
+        column, entry = _measure_indentation(line), _LINE_OF_ENTRY.match(line)
+        if line.strip() and entry and entry[3] == ":" and "- " not in line[: entry.start(2)]:
+            if column < lowest and column >= own_column - 1:
+                levels.setdefault(column, entry[2])
+            lowest = min(lowest, column)
+    near = [key for column, key in levels.items() if abs(column - own_column) == 1]
+    if own_key and len(near) > 1:
+        near = [key for key in near if (key in _LANGUAGE_KEYS) == (own_key[2] in _LANGUAGE_KEYS)]
+    return f"begin it in the column of `{near[0]}`" if len(near) == 1 else None
 
 
 def _find_outdented_line(lines: list[str], number: int, column: int) -> int | None:
@@ -160,10 +231,11 @@ def _span_at(file: str, lines: list[str], position: tuple[int, int]) -> Span:
     return Span(file, line + 1, column + 1, line + 1, column + 1 + (column < len(lines[line])))
 
 
-def _choose_error_text(line: str, column: int, problem: ParserProblem) -> _ErrorText:
-    message = problem.message
+def _choose_error_text(lines: list[str], position: tuple[int, int], problem: ParserProblem) -> _ErrorText:
+    message, (number, column) = problem.message, position
+    line, line_above = lines[number], lines[number - 1] if number else ""
     if "mapping values are not allowed" in message:
-        return _explain_second_colon(line, column)
+        return _explain_second_colon(line, column, line_above)
     if "cannot start any token" in message:
         return _explain_bad_start(line[column : column + 1])
     if "node content" in message:
@@ -184,9 +256,13 @@ _TAB_TEXT = _ErrorText("a tab cannot stand in the indentation", "indent with bla
 _ESCAPE_TEXT = _ErrorText("an unknown escape in double quotes", "write `\\\\` for a backslash, or use single quotes")
 
 
-def _explain_second_colon(line: str, column: int) -> _ErrorText:
+def _explain_second_colon(line: str, column: int, line_above: str) -> _ErrorText:
     if re.search(r":\s", line[:column]):
         return _ErrorText("a second `: ` in one line: text that holds `: ` must be quoted", QUOTE_HELP)
+    above = _LINE_OF_ENTRY.match(line_above)
+    if above is not None and above[3] == ":" and above[4] and above.start(2) < _measure_indentation(line):
+        help_line = f"begin it in the column of `{above[2]}`"
+        return _ErrorText(f"a key cannot stand here: it is part of the text `{above[2]}`", help_line)
     help_line = "check the indentation, and that the key above ends in `:`"
     return _ErrorText("a key cannot stand here: what is above is text", help_line)
 

@@ -273,3 +273,62 @@ def test_a_baseline_that_promises_the_moon_costs_nothing(run: Run, robot: Path) 
     assert lines[0].startswith("500000000 findings of the baseline are cured: run `archgen check --update-baseline")
     assert lines[1] == "  unread-output: m (1000000 times)"
     assert (len(lines), lines[-1]) == (22, "  and 480 more")
+
+
+_ARM = """\
+groups:
+  arm:
+    owner: tud
+    components:
+      gripper: {inputs: {image: camera.imge}}
+"""
+
+
+def test_files_of_a_project_show_what_lies_in_them(run: Run, robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (robot / "arm.yaml").write_text(_ARM.replace("    owner: tud\n", ""), encoding="utf-8")
+    monkeypatch.chdir(robot)
+    ran = run("check", "arm.yaml")
+    assert (ran.status, _said(ran.out)[0]) == (
+        1,
+        "error[unknown-reference]: no component or output named `camera.imge`",
+    )
+    ran = run("check", "sensing.yaml", "archgen.yaml")
+    assert (ran.status, ran.out, ran.err) == (0, "no findings there\n", "not shown: 1 error\n")
+    assert json.loads(run("check", "sensing.yaml", "--format", "json").out)["diagnostics"] == []
+    (robot / "alone.txt").write_text("hosts: {pc: {}}\n", encoding="utf-8")
+    ran = run("check", "alone.txt", "-q")
+    assert ran.err.splitlines()[0] == "warning: alone.txt is no part of the project in .: it is checked by itself"
+    assert run("check", "alone.txt", robot / "arm.yaml", "-q").status == 1
+    assert run("check", "arm.yaml", "--update-baseline").status == 2
+
+
+def test_a_partner_asks_for_his_own_findings(run: Run, robot: Path) -> None:
+    head = f"{_HEAD}partners: {{tud: Delft, wur: Wageningen}}\nhosts: {{pc: {{cores: 1}}}}\n"
+    (robot / "archgen.yaml").write_text(head, encoding="utf-8")
+    (robot / "arm.yaml").write_text(_ARM, encoding="utf-8")
+    ran = run("check", robot, "--select", "owner:tud")
+    assert (ran.status, _said(ran.out)[0]) == (
+        1,
+        "error[unknown-reference]: no component or output named `camera.imge`",
+    )
+    ran = run("check", robot, "--select", "sensing")
+    assert (ran.status, ran.out, ran.err) == (0, "no findings there\n", "not shown: 1 error\n")
+    assert run("check", robot, "--select", "sensin").status == 2
+    # What cannot be read may be anybody's.
+    (robot / "arm.yaml").write_text(f"{_ARM}a: [\n", encoding="utf-8")
+    assert run("check", robot, "--select", "sensing").status == 1
+
+
+def test_fixes_are_written_and_what_is_left_is_shown(run: Run, robot: Path) -> None:
+    text = _CAMERA.replace("outputs:", "Outputs:", 1)
+    (robot / "sensing.yaml").write_text(text, encoding="utf-8")
+    (diagnostic, *_) = json.loads(run("check", robot, "--format", "json").out)["diagnostics"]
+    (edit,) = diagnostic["fixes"][0]["edits"]
+    assert (diagnostic["fixes"][0]["certain"], edit["text"]) == (True, "outputs")
+    (result, *_) = json.loads(run("check", robot, "--format", "sarif").out)["runs"][0]["results"]
+    assert result["fixes"][0]["artifactChanges"][0]["replacements"][0]["insertedContent"] == {"text": "outputs"}
+    ran = run("check", robot, "--fix")
+    assert ran.out.splitlines()[0].endswith("sensing.yaml (1 fix)")
+    assert (robot / "sensing.yaml").read_text(encoding="utf-8") == _CAMERA
+    assert _rules(run, robot) == ["unread-output"]
+    assert run("check", robot, "--fix", "--format", "json").status == 2

@@ -81,7 +81,7 @@ def test_a_project_that_is_not_there_is_wrong_usage(run: Run, tmp_path: Path, wo
         (("chek",), "there is no verb 'chek'; did you mean `check`?"),
         (("check", "--format", "xml"), "'xml' is not one of 'text', 'json', 'github'"),
         (("check", "--fast"), "No such option '--fast'"),
-        (("check", "a", "b"), "unexpected extra argument"),
+        (("check", "a", "b"), "not files of one project"),
         (("show",), "Missing argument"),
         (("explain", "unread-outputs"), "there is no rule 'unread-outputs'; did you mean `unread-output`?"),
         (("list", "--of", "things"), "'things' is not one of"),

@@ -145,7 +145,7 @@ def test_a_missing_file_is_no_finding(tmp_path: Path) -> None:
 def test_a_file_that_nodes_name_is_not_said_to_be_ignored(tmp_path: Path) -> None:
     files = {"archgen.yaml": PROJECT, "config/a.yaml": "n: {ros__parameters: {gain: 1.0}}", "other.yaml": "x: 1"}
     assert [f.message for f in check(tmp_path, files).findings if f.rule == "ignored-file"] == [
-        "`other.yaml` holds no section of the language and is not read"
+        "`other.yaml` holds no element of the language and is not read"
     ]
 
 

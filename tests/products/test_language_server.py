@@ -216,7 +216,7 @@ def test_there_are_no_false_errors_in_the_examples(root: Path, tmp_path: Path) -
 
 def test_a_new_project_works_at_once_by_its_first_lines(tmp_path: Path) -> None:
     answers = collect_answers("robot", partners=["lab=The Laboratory"])
-    files = project_plan.example_files(answers, has_other_yaml=False)
+    files = project_plan.example_files(answers)
     start = project_plan.plan_files(tmp_path, answers, files, project_plan.judge_files(files, "robot"))
     for path, data in start.files.items():
         path.parent.mkdir(parents=True, exist_ok=True)

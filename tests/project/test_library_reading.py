@@ -147,7 +147,7 @@ def test_a_file_with_nothing_but_libraries_says_where_they_are_named(tmp_path: P
     write(tmp_path, {"archgen.yaml": "archgen: 1\n", **own, **others})
     notes = [f"{d.span}: {d.message}" for d in check_project(tmp_path).findings if d.rule == "ignored-file"]
     assert sorted(notes) == [
-        "archgen.yaml:1:1: `d.yaml`, `e.yaml` hold no section of the language and are not read",
+        "archgen.yaml:1:1: `d.yaml`, `e.yaml` hold no element of the language and are not read",
         "b.yaml:1:1: only archgen.yaml names libraries: this file is not read",
         "c.yaml:1:1: only archgen.yaml names libraries: this file is not read",
     ]

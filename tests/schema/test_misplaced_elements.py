@@ -87,8 +87,8 @@ def test_the_robot_is_sound() -> None:
         (_shift("chains:", "through:", 2),
          "31: `chains` is a section, but stands where a ROS node does; begin it in the column of `nodes`"),
         (_ROBOT.replace("      stop:", "        stop:"),
-         ("10: a component has no key `stop`; if this is an element of its own, begin it in the column of the element "
-          "above it")),
+         ("10: a component has no key `stop`; if this is an element of its own, begin it in the column of "
+         "`lidar`")),
     ],
 )  # fmt: skip
 def test_one_slip_is_one_finding(slip: str, finding: str) -> None:

@@ -44,7 +44,7 @@ ID = "an id is lower-case words joined by `_`, such as `object_recognition`, and
         ("nodes: {n: {timing: {wcet: 12345678901234567890 ms}}}", "1:28 wrong-value: `wcet` has too many digits | at most 18 are read before and after the point"),
         ("links: {l: {bandwidth: 1 Gb/s}}", "1:24 wrong-value: `bandwidth` has no unit `Gb/s` | write `1 Gbit/s`; case counts"),
         ("groups: {g: {components: {c: {role: fliter}}}}", "1:37 wrong-value: `role` cannot be `fliter` | did you mean `filter`?"),
-        ("groups: {g: {title: [x]}}", "1:14 wrong-type: `title` is a list, but must be text | None"),
+        ("groups: {g: {title: [x]}}", "1:14 wrong-type: `title` is a list, but must be text | write `x`, without brackets"),
         ("groups: [x]", "1:1 wrong-type: `groups` is a list, but must be a mapping | `groups` is keyed by id: write `id: ...` lines instead of a list"),
         ("groups: {ObjectState: x}", f"1:10 wrong-value: `ObjectState` cannot be an id | {ID}; write `object_state`"),
         ("groups: {all: x}", "1:10 wrong-value: `all` cannot be an id: it is a word of the language | choose another, such as `all_parts`: `true`, `false`, `null`, `any`, `all`, `none`, `self` mean something else"),

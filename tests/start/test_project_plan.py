@@ -18,7 +18,7 @@ ANSWERS = replace(
 
 
 def _plan(folder: Path, answers: StartAnswers = ANSWERS) -> project_plan.ProjectPlan:
-    files = project_plan.example_files(answers, has_other_yaml=False)
+    files = project_plan.example_files(answers)
     return project_plan.plan_files(folder, answers, files, project_plan.judge_files(files, "robot"))
 
 
@@ -65,10 +65,3 @@ def test_partners_without_reviewers_are_noticed(tmp_path: Path, reviewers: str, 
     plan = _plan(tmp_path, replace(ANSWERS, partners=(PartnerAnswer("certh", "CERTH", reviewers),)))
     assert plan.reviewers_missing is missing
     assert ("CODEOWNERS" in _names(plan)) is not missing
-
-
-def test_other_yaml_files_are_noticed(tmp_path: Path) -> None:
-    assert not project_plan.has_other_yaml(tmp_path)
-    (tmp_path / "launch").mkdir()
-    (tmp_path / "launch" / "params.yaml").touch()
-    assert project_plan.has_other_yaml(tmp_path)

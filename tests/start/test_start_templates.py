@@ -29,7 +29,7 @@ def test_the_example_flows_from_the_first_group_to_the_last(names: tuple[str, ..
         yaml.safe_load(data)["groups"][name]["components"] for name, data in zip(names, files.values(), strict=True)
     ]
     assert [len(each) for each in components] == [len(each) for each in kinds]
-    checked = project_plan.judge_files(project_plan.example_files(answers, has_other_yaml=False), "robot")
+    checked = project_plan.judge_files(project_plan.example_files(answers), "robot")
     assert [finding for finding in checked.findings if finding.severity == "error"] == []
     assert len(checked.architecture.connections) == sum(map(len, kinds)) - 1
 
@@ -37,7 +37,7 @@ def test_the_example_flows_from_the_first_group_to_the_last(names: tuple[str, ..
 @pytest.mark.parametrize("title", ["A: b", "# x", "'", "[[ 7 * 7 ]]", "{% x %}", "a\nb", "機械"])
 def test_any_title_is_text_and_nothing_else(title: str) -> None:
     answers = replace(start_answers.collect_answers("robot"), title=title)
-    data = yaml.safe_load(start_templates.fill_project_file(answers, sources=False))
+    data = yaml.safe_load(start_templates.fill_project_file(answers))
     assert " ".join(data["project"]["title"].split()) == " ".join(title.split())
     assert b"49" not in start_templates.fill_readme(answers)
 

@@ -8,25 +8,37 @@ from typing import Any
 
 from archgen.diagnostics.diagnostic import Diagnostic, Severity, count_by_severity
 from archgen.diagnostics.safe_text import format_json, make_visible
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics.source_span import SourceTexts, Span
+from archgen.diagnostics.suggested_fixes import suggest_fix
 from archgen.findings.variant_findings import phrase_absence
 
 VERSION = 1
 
 
-def format_findings_json(diagnostics: Iterable[Diagnostic]) -> str:
+def format_findings_json(diagnostics: Iterable[Diagnostic], sources: SourceTexts | None = None) -> str:
     """Return settled findings as one JSON document, in their order, with a line end behind it."""
-    return format_json(findings_to_json(diagnostics))
+    return format_json(findings_to_json(diagnostics, sources))
 
 
-def findings_to_json(diagnostics: Iterable[Diagnostic]) -> dict[str, Any]:
-    """Return settled findings as plain data."""
+def findings_to_json(diagnostics: Iterable[Diagnostic], sources: SourceTexts | None = None) -> dict[str, Any]:
+    """Return settled findings as plain data; with the texts of the files, also the edits that their helps ask for."""
     diagnostics = tuple(diagnostics)
     return {
         "version": VERSION,
         "summary": {str(severity): count for severity, count in count_by_severity(diagnostics).items()},
-        "diagnostics": [finding_to_json(diagnostic) for diagnostic in diagnostics],
+        "diagnostics": [
+            finding_to_json(diagnostic) | ({"fixes": _fixes_to_json(diagnostic, sources)} if sources else {})
+            for diagnostic in diagnostics
+        ],
     }
+
+
+def _fixes_to_json(diagnostic: Diagnostic, sources: SourceTexts) -> list[dict[str, Any]]:
+    fix = suggest_fix(diagnostic, sources)
+    if fix is None:
+        return []
+    edits = [{"span": _span_to_json(edit.span), "text": edit.text} for edit in fix.edits]
+    return [{"title": diagnostic.help, "certain": fix.is_certain, "edits": edits}]
 
 
 def finding_to_json(diagnostic: Diagnostic) -> dict[str, Any]:

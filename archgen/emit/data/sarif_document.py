@@ -15,7 +15,8 @@ from urllib.parse import quote_from_bytes
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Rule
 from archgen.diagnostics.finding_identity import number_findings
 from archgen.diagnostics.safe_text import format_json, make_visible
-from archgen.diagnostics.source_span import Span
+from archgen.diagnostics.source_span import SourceTexts, Span
+from archgen.diagnostics.suggested_fixes import suggest_fix
 from archgen.emit.data.findings_data import path_in_repository
 from archgen.findings import rule_pages
 from archgen.findings.variant_findings import phrase_absence
@@ -33,7 +34,8 @@ _MAX_SHOWN, _MAX_RESULTS, _MAX_PACKED_BYTES = 5_000, 25_000, 10_000_000
 @dataclass(frozen=True, slots=True)
 class SarifScan:
     """What was checked: the project's id, the file that findings without a place point at, the project's folder from
-    the repository's root, and archgen's version. `is_compared` says that findings known from before were left out.
+    the repository's root, and archgen's version. `is_compared` says that findings known from before were left out; `sources` are the
+    texts of the files, where the edits that helps ask for are wanted.
     """
 
     project: str
@@ -41,6 +43,7 @@ class SarifScan:
     folder: str
     version: str
     is_compared: bool = False
+    sources: SourceTexts | None = None
 
 
 def format_sarif(diagnostics: Iterable[Diagnostic], rules: Mapping[str, Rule], scan: SarifScan) -> str:
@@ -114,6 +117,13 @@ def _result_to_sarif(diagnostic: Diagnostic, scan: SarifScan) -> dict[str, Any]:
         location["logicalLocations"] = [{"fullyQualifiedName": make_visible(diagnostic.element), "kind": "element"}]
     result: dict[str, Any] = {"level": str(diagnostic.severity), "message": {"text": _message_text(diagnostic, labels)}}
     result["locations"] = [location] if location else []
+    fix = suggest_fix(diagnostic, scan.sources) if scan.sources and location_data else None
+    if fix is not None and location_data:
+        replacements = [
+            {"deletedRegion": _region_of(edit.span), "insertedContent": {"text": edit.text}} for edit in fix.edits
+        ]
+        change = {"artifactLocation": location_data["artifactLocation"], "replacements": replacements}
+        result["fixes"] = [{"description": {"text": _plain_text(diagnostic.help or "")}, "artifactChanges": [change]}]
     if scan.is_compared:
         result["baselineState"] = "new"
     if diagnostic.variants:
@@ -149,11 +159,14 @@ def _location_of(span: Span, folder: str) -> dict[str, Any] | None:
     path = path_in_repository(span.file, folder)
     if path is None:
         return None
-    region = {
+    uri = quote_from_bytes(path.encode("utf-8", "surrogatepass"), safe="/")
+    return {"artifactLocation": {"uri": uri, "uriBaseId": _ROOT_ID}, "region": _region_of(span)}
+
+
+def _region_of(span: Span) -> dict[str, int]:
+    return {
         "startLine": span.line,
         "startColumn": span.column,
         "endLine": span.end_line,
         "endColumn": span.end_column,
     }
-    uri = quote_from_bytes(path.encode("utf-8", "surrogatepass"), safe="/")
-    return {"artifactLocation": {"uri": uri, "uriBaseId": _ROOT_ID}, "region": region}

@@ -49,8 +49,18 @@ def ids_ending_in(ids: Iterable[str], word: str) -> list[str]:
     return [name for name in ids if name == word or name.endswith(f".{word}")]
 
 
+_MIN_PART = 4
+"""The letters of the shortest word that is looked for within longer names."""
+
+
+def _find_longer(word: str, names: Iterable[str]) -> str | None:
+    """Ask for the one name that has a word as one of its parts: `stereo` for `stereo_camera`."""
+    longer_names = sorted({name for name in names if "." not in name and word in name.split("_")})
+    return f"did you mean `{longer_names[0]}`?" if len(longer_names) == 1 and len(word) >= _MIN_PART else None
+
+
 def unknown_name_text(word: str, known_names: Iterable[str]) -> str:
     """Say that a word names nothing, with a guess at what was meant."""
     names = {part: name for name in known_names for part in (name.rpartition(".")[2], name)}
-    guess = did_you_mean(word, names) if find_closest(word, names) else None
+    guess = did_you_mean(word, names) if find_closest(word, names) else _find_longer(word, names)
     return f"nothing is called `{word}`; {guess or NAMES_HELP}"

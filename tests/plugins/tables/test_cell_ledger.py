@@ -108,7 +108,7 @@ def _read_yaml(imported: table_import.TableImport) -> dict[str, Any]:
     """Return what the files of the project say, read by another program than the one that wrote them."""
     answers = start_answers.add_partners(start_answers.collect_answers("r"), imported.data.get("partners", {}))
     merged: dict[str, Any] = {}
-    for content in project_plan.imported_files(answers, imported.data, has_other_yaml=False).values():
+    for content in project_plan.imported_files(answers, imported.data).values():
         for section, value in yaml.safe_load(content).items():
             merged.setdefault(section, {}).update(value) if isinstance(value, dict) else merged.update({section: value})
     return merged

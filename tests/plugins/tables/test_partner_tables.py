@@ -87,7 +87,7 @@ def test_nothing_of_a_partners_table_is_lost_silently(name: str, count: int, com
 def test_the_project_of_a_partners_table_has_no_errors(name: str) -> None:
     imported = _import(name)
     answers = start_answers.add_partners(start_answers.collect_answers("r"), imported.data.get("partners", {}))
-    files = project_plan.imported_files(answers, imported.data, has_other_yaml=False)
+    files = project_plan.imported_files(answers, imported.data)
     assert [d.message for d in project_plan.judge_files(files, "r").findings if d.severity == "error"] == []
 
 

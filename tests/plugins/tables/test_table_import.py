@@ -28,7 +28,7 @@ def said(text: str | bytes) -> list[str]:
 def made(imported: table_import.TableImport) -> CheckedProject:
     """Check the files that the data become."""
     given = start_answers.add_partners(start_answers.collect_answers("r"), imported.data.get("partners", {}))
-    return project_plan.judge_files(project_plan.imported_files(given, imported.data, has_other_yaml=False), "r")
+    return project_plan.judge_files(project_plan.imported_files(given, imported.data), "r")
 
 
 CONNECTIONS = """\

@@ -26,7 +26,7 @@ def read(data: bytes) -> table_import.TableImport:
 def made(imported: table_import.TableImport) -> CheckedProject:
     """Check the files that the data become."""
     given = start_answers.add_partners(start_answers.collect_answers("r"), imported.data.get("partners", {}))
-    return project_plan.judge_files(project_plan.imported_files(given, imported.data, has_other_yaml=False), "r")
+    return project_plan.judge_files(project_plan.imported_files(given, imported.data), "r")
 
 
 NAMES = st.text(st.characters(codec="utf-8", exclude_characters="\0"), max_size=12) | st.sampled_from(
