@@ -32,8 +32,8 @@ def _explode(bomb: Bomb, folder: Path) -> None:
         environment = {**os.environ, "PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(folder / "cache")}
         os.execve(sys.executable, [sys.executable, "-m", "archgen", *bomb.words.split()], environment)  # noqa: S606
     os.close(write_end)
-    with os.fdopen(read_end, errors="replace") as stream:
-        said = stream.read()
+    with os.fdopen(read_end, errors="replace") as pipe:
+        said = pipe.read()
     _, status, usage = os.wait4(process, 0)
     code = os.waitstatus_to_exitcode(status)
     assert code in {0, 1, 2}, f"ended by signal {-code}: {said[-1000:]}"
@@ -51,7 +51,9 @@ def test_a_bomb_ends_with_a_sentence(bomb: Bomb, tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are those of Linux")
-@pytest.mark.parametrize("bomb", [pytest.param(bomb, id=bomb.name.replace(" ", "_")) for bomb in BOMBS if bomb.is_quick])
+@pytest.mark.parametrize(
+    "bomb", [pytest.param(bomb, id=bomb.name.replace(" ", "_")) for bomb in BOMBS if bomb.is_quick]
+)
 def test_a_quick_bomb_ends_with_a_sentence(bomb: Bomb, tmp_path: Path) -> None:
     _explode(bomb, tmp_path)
 
