@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -29,8 +29,13 @@ if TYPE_CHECKING:
 MAX_DEPTH = 60
 _MAX_QUOTED = 80
 _NUMBERS = (int, float)
-_FINDERS = frozenset({ast.Constant, ast.Name, ast.Attribute, ast.NamedExpr, ast.Lambda})
-"""Expressions that make nothing: what they stand for is there already."""
+_FINDERS = frozenset(
+    {
+        *(ast.Constant, ast.Name, ast.Attribute, ast.NamedExpr, ast.Lambda),
+        *(ast.List, ast.Tuple, ast.Set, ast.Dict, ast.BinOp),
+    }
+)
+"""Expressions that make nothing, or whose parts are paid for each by itself."""
 _WORD = "launch file"
 _KNOWN_TEXTS = {"os.sep": "/", "os.path.sep": "/", "os.pathsep": ":"}
 
@@ -189,20 +194,25 @@ class ExpressionReader(ABC):
         return self.quote(node)
 
     def _read_list(self, node: ast.List | ast.Set, scope: NameScope) -> LaunchValue:
-        return list(self._read_items(node.elts, scope))
+        return self._read_items(node.elts, scope)
 
     def _read_tuple(self, node: ast.Tuple, scope: NameScope) -> LaunchValue:
         return tuple(self._read_items(node.elts, scope))
 
-    def _read_items(self, nodes: list[ast.expr], scope: NameScope) -> Iterator[LaunchValue]:
+    def _read_items(self, nodes: list[ast.expr], scope: NameScope) -> list[LaunchValue]:
+        found: list[LaunchValue] = []
         for node in nodes:
-            if isinstance(node, ast.Starred):
-                value = self.evaluate(node.value, scope)
-                # What doubles in every line would fill the memory.
-                is_known = isinstance(value, list | tuple) and self.pay_for(value, node)
-                yield from value if is_known else (self.quote(node),)
+            value = self.evaluate(node.value if isinstance(node, ast.Starred) else node, scope)
+            if not isinstance(node, ast.Starred):
+                found.append(value)
+            elif isinstance(value, list | tuple) and self.pay_for(value, node):
+                found += value
+            elif isinstance(value, list) and not found:
+                # What doubles in every line would fill the memory: it stays as it is.
+                return value
             else:
-                yield self.evaluate(node, scope)
+                found.append(self.quote(node))
+        return found
 
     def _read_dict(self, node: ast.Dict, scope: NameScope) -> LaunchValue:
         found: dict[LaunchValue, LaunchValue] = {}
@@ -241,8 +251,9 @@ class ExpressionReader(ABC):
 
     def combine(self, sign: ast.operator, left: LaunchValue, right: LaunchValue, node: ast.AST) -> LaunchValue:
         """Return what an operator makes of two values."""
-        is_paid = self.pay_for(left, node) and self.pay_for(right, node)
-        made = combine_values(sign, left, right) if is_paid else None
+        if not (self.pay_for(left, node) and self.pay_for(right, node)):
+            return left if isinstance(left, list) else self.quote(node)
+        made = combine_values(sign, left, right)
         return self.quote(node) if made is None else made
 
     def _read_unary_operation(self, node: ast.UnaryOp, scope: NameScope) -> LaunchValue:
@@ -342,7 +353,7 @@ class ExpressionReader(ABC):
 
     def _read_call(self, node: ast.Call, scope: NameScope) -> LaunchValue:
         function = self.evaluate(node.func, scope)
-        positional = list(self._read_items(node.args, scope))
+        positional = self._read_items(node.args, scope)
         named: dict[str, LaunchValue] = {}
         for keyword in node.keywords:
             value = self.evaluate(keyword.value, scope)
