@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
+from itertools import product
 
 from archgen.derivation.wire.qos_overrides import (
     END_WORDS,
@@ -187,25 +188,32 @@ def incompatible_qos(architecture: Architecture) -> Iterator[Diagnostic]:
     for topic in architecture.topics.values():
         if topic.flow != "topic":
             continue
-        for writer in topic.writers:
-            for reader in topic.readers:
-                # Planned nodes that archgen adds have no decided QoS that could conflict.
-                if architecture.nodes[writer.node].written and architecture.nodes[reader.node].written:
-                    yield from _report_qos_conflicts(architecture, topic, writer, reader)
+        # Planned nodes that archgen adds have no decided QoS that could conflict.
+        writers, readers = (
+            [(each, _list_qos(each)) for each in ends if architecture.nodes[each.node].written]
+            for ends in (topic.writers, topic.readers)
+        )
+        # Many ends of one topic have few different settings, and most of these agree.
+        verdicts = {
+            (offered, requested): [tuple(find_qos_conflicts(*pair)) for pair in product(offered, requested)]
+            for offered, requested in product({each for _, each in writers}, {each for _, each in readers})
+        }
+        conflicting = {offered for (offered, _), each in verdicts.items() if any(each)}
+        for writer, offered in writers:
+            for reader, requested in readers if offered in conflicting else ():
+                if any(verdicts[offered, requested]):
+                    yield _report_qos_conflicts(architecture, topic, writer, reader, verdicts[offered, requested])
 
 
 def _report_qos_conflicts(
-    architecture: Architecture, topic: Topic, writer: Endpoint, reader: Endpoint
-) -> Iterator[Diagnostic]:
+    architecture: Architecture,
+    topic: Topic,
+    writer: Endpoint,
+    reader: Endpoint,
+    verdicts: Sequence[tuple[QosConflict, ...]],
+) -> Diagnostic:
     """Report all conflicts between a publisher and a subscriber in one diagnostic."""
-    verdicts = [
-        tuple(find_qos_conflicts(offered, requested))
-        for offered in _list_qos(writer)
-        for requested in _list_qos(reader)
-    ]
     conflicts = next(filter(None, verdicts), ())
-    if not conflicts:
-        return
     requests = " and ".join(conflict.requested for conflict in conflicts)
     offers = " and ".join(conflict.offered for conflict in conflicts)
     assumption = next(filter(None, map(_describe_assumption, (writer, reader))), "")
@@ -220,7 +228,7 @@ def _report_qos_conflicts(
         for each in (writer, reader)
         if each.component in architecture.components
     )
-    yield Diagnostic(
+    return Diagnostic(
         "incompatible-qos",
         f"`{reader.node}` receives nothing from `{writer.node}` on `{topic.name}`: it asks for {requests}, and is offered {offers}{assumption}",
         _qos_span(architecture, reader),

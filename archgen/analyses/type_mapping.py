@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from collections.abc import Set as AbstractSet
 
 from archgen.diagnostics.diagnostic import Diagnostic, Label, Severity
 from archgen.diagnostics.source_span import NO_SPAN, Span
@@ -39,6 +40,8 @@ def _spans_by_type(architecture: Architecture) -> dict[str, list[Span]]:
 
 def unmapped_type(architecture: Architecture) -> Iterator[Diagnostic]:
     """No message is named for a conceptual type that carries messages."""
+    mapped_names = {type_.name for type_ in architecture.types.values() if type_.message and type_.origin != "message"}
+    mapped_names |= set(architecture.interfaces.mapper_names)
     for name, spans in _spans_by_type(architecture).items():
         type_ = architecture.types.get(name)
         # Why a type with fields has no message, or one that is not bound, is reported with the type.
@@ -51,7 +54,7 @@ def unmapped_type(architecture: Architecture) -> Iterator[Diagnostic]:
                 # What is written as a message and is none is no type that waits to be mapped.
                 severity=Severity.ERROR if meant_message else None,
                 labels=tuple(_label_elsewhere(type_, spans[1:])),
-                help=f"did you mean `{meant_message}`?" if meant_message else _suggest_mapping(name, architecture),
+                help=f"did you mean `{meant_message}`?" if meant_message else _suggest_mapping(name, mapped_names),
                 element=name,
             )
 
@@ -62,9 +65,8 @@ def _label_elsewhere(type_: ConceptualType | None, spans: list[Span]) -> Iterato
     yield from (Label(span, "also used here") for span in spans)
 
 
-def _suggest_mapping(type_name: str, architecture: Architecture) -> str:
-    mapped_names = {type_.name for type_ in architecture.types.values() if type_.message and type_.origin != "message"}
-    guess = did_you_mean(type_name, mapped_names | set(architecture.interfaces.mapper_names))
+def _suggest_mapping(type_name: str, mapped_names: AbstractSet[str]) -> str:
+    guess = did_you_mean(type_name, mapped_names)
     return guess or f"name it below `types:`, as in `{type_name}: {{message: package/msg/Name}}`"
 
 

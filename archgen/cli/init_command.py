@@ -205,6 +205,7 @@ def _parse_headings(headings: tuple[str, ...]) -> Mapping[str, str]:
 
 def _import_tables(tables: tuple[Path, ...], distro: str, heading_map: Mapping[str, str]) -> ImportedTables:
     """Read the tables. Print what was not imported; where nothing could be, end with status 1."""
+    from archgen.findings.instance_findings import limit_findings
     from archgen.importers.foreign_import import MAX_OFFICE_BYTES
     from archgen.installed_plugins import load_reader
 
@@ -212,7 +213,7 @@ def _import_tables(tables: tuple[Path, ...], distro: str, heading_map: Mapping[s
         [(str(path), command_support.read_input(path, MAX_OFFICE_BYTES)) for path in tables], distro, heading_map
     )
     if imported.diagnostics:
-        command_support.print_excerpts(imported.diagnostics, imported.sources, sys.stderr)
+        command_support.print_excerpts(limit_findings(imported.diagnostics), imported.sources, sys.stderr)
     if not imported.data:
         click.echo("Nothing was written.", err=True)
         sys.exit(1)

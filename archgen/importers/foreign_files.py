@@ -25,6 +25,8 @@ MAX_DEPTH = 200
 """Elements nest no deeper than this: models have about 30, and code that walks down a tree has an end."""
 MAX_ELEMENTS = 500_000
 """A tree takes about 2 kB of memory for each: so many are a model of a hundred thousand classes, or of 50 MB."""
+MAX_NAMESPACES = 200
+"""So many may have names in one place: they are copied for each element that gives a name to one more."""
 _MALFORMED_HELP = "export it again from the tool that wrote it"
 _NO_NAMESPACES: Mapping[str, str] = MappingProxyType({"xml": "http://www.w3.org/XML/1998/namespace"})
 
@@ -119,6 +121,9 @@ class _TreeBuilder:
             if attribute == "xmlns" or attribute.startswith("xmlns:")
         }
         namespaces = {**namespaces, **declared} if declared else namespaces
+        if len(namespaces) > MAX_NAMESPACES:
+            words = f"more than {MAX_NAMESPACES} namespaces have names here"
+            raise self._refuse(XmlProblem(words, "no model needs so many: export it again"))
         place = (self._parser.CurrentLineNumber, self._parser.CurrentColumnNumber + 1)
         element = XmlElement(name, attributes, namespaces, place)
         if self._open:

@@ -26,6 +26,7 @@ from archgen.importers.foreign_import import (
     RecordingRefusedError,
 )
 from archgen.importers.robot_observation import ObservationOptions
+from archgen.importers.work_budget import CHARACTERS_IN_A_STEP, STEPS_OF_A_KEPT_VALUE, WorkBudget
 from archgen.model.code_names import make_camel_name
 from archgen.model.element_ids import MAX_ID_LENGTH, is_id, make_id, make_unique_id, spell_in_ascii
 from archgen.model.path_resolver import title_from_id
@@ -39,10 +40,12 @@ from archgen.syntax.yaml_writer import FlowMapping, needs_quotes
 
 __all__ = [
     "ARCHIVE_DAMAGE",
+    "CHARACTERS_IN_A_STEP",
     "MAX_BYTES",
     "MAX_ID_LENGTH",
     "MAX_OFFICE_BYTES",
     "NO_SPAN",
+    "STEPS_OF_A_KEPT_VALUE",
     "ZIP_BEGINNING",
     "FlowMapping",
     "ForeignFileError",
@@ -63,6 +66,7 @@ __all__ = [
     "SequenceNode",
     "SourceTexts",
     "Span",
+    "WorkBudget",
     "XmlElement",
     "XmlProblem",
     "YamlNode",

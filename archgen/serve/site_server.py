@@ -85,6 +85,8 @@ _FIXED_HEADERS = {
 _MAX_QUESTION_BYTES = 100_000
 _MAX_STREAMS = 100
 """So many pages may wait for news at once: each holds a thread."""
+MAX_CONNECTIONS = 200
+"""So many may be open at once: each holds a thread, also one on which nothing is asked."""
 _BREATH = 15.0
 """Seconds after which a line is sent to a page that waits for news, to notice that it is gone."""
 
@@ -103,6 +105,7 @@ class SiteServer(ThreadingHTTPServer):
         self.live_site = live_site
         self.served_names = (host, socket.gethostname()) if host not in {"localhost", "127.0.0.1", "::1"} else (host,)
         self.streams = threading.BoundedSemaphore(_MAX_STREAMS)
+        self._connections = threading.BoundedSemaphore(MAX_CONNECTIONS)
         self.question_lock = threading.Lock()
 
     def server_bind(self) -> None:
@@ -120,6 +123,20 @@ class SiteServer(ThreadingHTTPServer):
         if _is_ip_address(host) and host in {"0.0.0.0", "::"}:  # noqa: S104 - recognised, not chosen
             host = "localhost"
         return f"http://{f'[{host}]' if ':' in host else host}:{self.server_port}/"
+
+    def process_request(self, request: socket.socket, client_address: object) -> None:  # type: ignore[override]
+        """Answer in a thread, or end a connection beyond those that may be open."""
+        if self._connections.acquire(blocking=False):
+            super().process_request(request, client_address)
+        else:
+            self.shutdown_request(request)
+
+    def process_request_thread(self, request: socket.socket, client_address: object) -> None:  # type: ignore[override]
+        """Answer all that is asked on one connection."""
+        try:
+            super().process_request_thread(request, client_address)
+        finally:
+            self._connections.release()
 
     def handle_error(self, request: object, client_address: object) -> None:  # noqa: ARG002 - the signature of socketserver
         """Say in one line what went wrong; a reader who went away is nothing wrong."""

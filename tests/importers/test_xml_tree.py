@@ -58,3 +58,10 @@ def test_a_file_of_too_many_elements_is_refused(monkeypatch: pytest.MonkeyPatch)
     assert parse_xml("model.xmi", b"<a><b/><b/></a>").tag == "a"
     with pytest.raises(ForeignFileError, match="it has more than 3 elements"):
         parse_xml("model.xmi", b"<a><b/><b/><b/></a>")
+
+
+def test_very_many_namespaces_in_one_place_are_refused() -> None:
+    declared = " ".join(f'xmlns:n{number}="urn:{number}"' for number in range(foreign_files.MAX_NAMESPACES))
+    with pytest.raises(ForeignFileError, match="more than 200 namespaces have names here") as caught:
+        parse_xml("model.xmi", f"<a {declared}>\n<b/></a>".encode())
+    assert (caught.value.span.line, caught.value.span.column) == (1, 1)

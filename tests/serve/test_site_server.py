@@ -10,6 +10,7 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ import pytest
 from click.testing import CliRunner
 
 from archgen.cli import main
+from archgen.serve import site_server
 from archgen.serve.live_site import LiveSite
 from archgen.serve.site_server import SiteServer
 from tests.serve.conftest import ROBOT
@@ -224,6 +226,26 @@ def test_news_come_when_a_file_has_changed(server: SiteServer, live_site: LiveSi
     assert status["outdated"] is True
     assert status["errors"][0]["help"] == "did you mean `functionality`?"
     connection.close()
+
+
+def test_connections_beyond_those_that_may_be_open_are_ended(
+    live_site: LiveSite, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(site_server, "MAX_CONNECTIONS", 2)
+    server = SiteServer(live_site, "127.0.0.1", 0)
+    thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.05})
+    thread.start()
+    address = ("127.0.0.1", server.server_port)
+    held = [socket.create_connection(address, 120) for _ in range(2)]
+    with socket.create_connection(address, 120) as third:
+        assert third.recv(1) == b""
+    for each in held:
+        each.sendall(b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n")
+        assert each.recv(12).startswith(b"HTTP/1.1 ")
+        each.close()
+    server.shutdown()
+    server.server_close()
+    thread.join(120)
 
 
 def serve(project: Path, *words: str) -> subprocess.Popen[str]:

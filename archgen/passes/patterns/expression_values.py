@@ -10,7 +10,7 @@ from archgen.compose.type_expressions import bind_type_name
 from archgen.model.message_types import PART_KEYS
 from archgen.passes.patterns.expressions import Call, Condition, ListOperand, Operand, TextOperand
 from archgen.passes.patterns.pattern_shapes import INNER_KEY, Anything, Bindings, ComponentBody, Variable, ViewValue
-from archgen.passes.patterns.value_matching import resolve_text
+from archgen.passes.patterns.value_matching import join_words, resolve_text
 
 _WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[A-Z]+|[0-9]+")
 _TYPE_KEYS = frozenset({"type", "is", "same_as", *PART_KEYS})
@@ -110,7 +110,7 @@ def evaluate_operand(operand: Operand, bindings: Bindings, view: NamedElements) 
         case "unique":
             return _find_free_name(texts[0], view)
         case _:
-            return "".join(texts)
+            return join_words(texts)
 
 
 def _leave_out(value: ViewValue, left_out: Sequence[str]) -> ViewValue:

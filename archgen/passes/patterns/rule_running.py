@@ -15,7 +15,7 @@ from archgen.passes.patterns.matching import match_view
 from archgen.passes.patterns.pass_shapes import WRONG_PASS, LetBinding, PatternPass, RewriteRule
 from archgen.passes.patterns.pattern_shapes import Bindings, PortReference, ViewValue
 from archgen.passes.patterns.tree_edits import TreeEditor
-from archgen.passes.patterns.value_matching import BudgetExceededError, MatchBudget
+from archgen.passes.patterns.value_matching import MAX_TEXT, BudgetExceededError, MatchBudget
 from archgen.passes.project_tree import ProjectTree
 from archgen.syntax.yaml_tree import ScalarNode, SequenceNode
 
@@ -97,6 +97,8 @@ class _RuleRunner:
         except BudgetExceededError:
             message = (
                 f"the pass `{self._pass.name}` takes more than {self._budget.steps:,} steps to find what it looks for"
+                if self._budget.remaining < 0
+                else f"the pass `{self._pass.name}` makes a text of more than {MAX_TEXT:,} letters"
             )
             help_line = "let the components of `find` have more in common: a variable, or `in`"
             raise _PassStoppedError(Diagnostic(WRONG_PASS, message, rule.span, help=help_line)) from None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from archgen.model.generic_names import read_generic_name
 from archgen.passes.patterns.pattern_shapes import (
@@ -19,9 +19,12 @@ from archgen.passes.patterns.pattern_shapes import (
     ViewValue,
 )
 
+MAX_TEXT = 10_000
+"""How long a text may be that is put together of others: one of which each is the one before twice soon fills the memory."""
+
 
 class BudgetExceededError(Exception):
-    """Matching took more steps than it may take."""
+    """Matching took more steps than it may take, or a text is longer than `MAX_TEXT`."""
 
 
 class MatchBudget:
@@ -167,8 +170,15 @@ def resolve_text(pattern: Pattern, bindings: Bindings) -> str | None:
             if not isinstance(word, str):
                 return None
             words.append(word)
-        return "".join(words)
+        return join_words(words)
     return None
+
+
+def join_words(words: Sequence[str]) -> str:
+    """Return a text of several. Raise BudgetExceededError for one that is too long."""
+    if sum(map(len, words)) > MAX_TEXT:
+        raise BudgetExceededError
+    return "".join(words)
 
 
 def match_text(pattern: TextPattern, value: ViewValue, bindings: Bindings) -> Bindings | None:

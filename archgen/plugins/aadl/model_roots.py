@@ -44,6 +44,9 @@ class ModelRoots:
         resolved = self._resolver.resolve(ClassifierUse(name, base)) if base else None
         if resolved is None or resolved is structure.resolved:
             return ""
+        if all(ancestor is not resolved.known for ancestor in structure.resolved.ancestors):
+            # More extend one another than are followed.
+            return ""
         return self._type_ids.get(id(self._finder.find(resolved)), "")
 
     def is_single(self, structure: ClassifierStructure) -> bool:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
+from archgen.plugin.importing import WorkBudget
 from archgen.plugins.aadl.aadl_tree import (
     AadlConnection,
     AadlFeature,
@@ -28,6 +29,8 @@ UNBOUND = "prototype"
 """The category of a prototype for which nothing stands."""
 _MAX_PARENTS = 150
 """So many classifiers may extend one another: more than any model has, and less than Python can go down."""
+_MAX_STEPS = 200_000
+"""So many things may be inherited, all classifiers together."""
 
 
 class ClassifierResolver:
@@ -40,6 +43,7 @@ class ClassifierResolver:
         """Associations, by identity, that others write over where they stand."""
         self._resolved: dict[tuple[str, str], ResolvedClassifier] = {}
         self._open: set[int] = set()
+        self._budget = WorkBudget(_MAX_STEPS)
 
     def resolve(self, use: ClassifierUse) -> ResolvedClassifier | None:
         """Return what is used with all that it inherits, or None where it is in no file."""
@@ -92,7 +96,14 @@ class ClassifierResolver:
             for prototype in classifier.prototypes
         } | dict(bindings)
         for parent in self._list_parents(known_classifier, env):
-            self._add_inherited(resolved, parent)
+            if len(parent.ancestors) > _MAX_PARENTS:
+                self.notes.add_counted(
+                    "extends", f"more than {_MAX_PARENTS} classifiers extend one another", classifier.span
+                )
+            elif self._budget.pay(parent.count_members()):
+                self._add_inherited(resolved, parent)
+            elif words := self._budget.tell_excess():
+                self.notes.add("extends", words, classifier.span)
         self._open.discard(id(classifier))
         resolved.prototypes |= env
         resolved.initial_mode = classifier.initial_mode.lower() or resolved.initial_mode
@@ -307,6 +318,11 @@ class ResolvedClassifier:
     calls: list[Subcomponent] = field(default_factory=list)
     annexes: list[str] = field(default_factory=list)
     _prefixes: set[Path] | None = None
+
+    def count_members(self) -> int:
+        """Return how much one that extends it inherits."""
+        members = (*self.ports, *self.parts, *self.connections, *self.flows, *self.properties, *self.calls)
+        return len(members) + len(self.ancestors) + len(self.prototypes)
 
     def list_prefixes(self) -> set[Path]:
         """Return all beginnings of paths to which associations apply."""

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 from archgen.plugin.model import parse_quantity
 from archgen.plugin.ros import full_message_name
-from archgen.plugins.tables.imported_project import ImportedProject
+from archgen.plugins.tables.imported_project import MAX_LISTED, ImportedProject
 from archgen.plugins.tables.table_cells import TableCell
 
 _NUMBER = r"[0-9]{1,3}(?:[ '\u2019.,][0-9]{3})+(?![0-9])|[0-9]{1,9}"
@@ -146,6 +146,19 @@ def _split_outside_brackets(text: str) -> list[str]:
         undecided_commas = []
     commas += undecided_commas
     return [text[start + 1 : end] for start, end in pairwise([-1, *commas, len(text)])]
+
+
+def list_items(project: ImportedProject, cell: TableCell) -> list[str]:
+    """Return the items of a cell, as many as the project's budget has; what it does not take is told once."""
+    items = split_cell_list(cell)
+    if project.budget.pay(len(items)):
+        return items
+    kept = items[: project.budget.left]
+    project.budget.pay(len(kept))
+    if project.budget.tell_excess():
+        message = f"cells list more than {MAX_LISTED:,} things: what comes later was not taken"
+        project.reject_cell("too-large", message, cell, "take the lists over in several tables")
+    return kept
 
 
 def split_cell_list(cell: TableCell) -> list[str]:

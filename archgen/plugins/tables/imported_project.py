@@ -9,12 +9,14 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from archgen.plugin.findings import Diagnostic, Label, Severity
-from archgen.plugin.importing import Span, find_closest, make_id, make_unique_id
+from archgen.plugin.importing import Span, WorkBudget, find_closest, make_id, make_unique_id
 from archgen.plugins.tables.table_cells import CellLedger, ElementPath, TableCell
 
 UNSORTED = "unsorted"
 """The group of components for which no row names one."""
 _MAX_GUESSES = 20
+MAX_LISTED = 10_000
+"""How many inputs and outputs cells may list, all tables together."""
 _PATH_SEPARATOR = re.compile(r"(?:(?<!\s)\s++)?+(?:::|->|[./:>\\|])\s*+")
 
 
@@ -87,6 +89,7 @@ class ImportedProject:
     """Whether all rows that declare components were read: an unknown name is then a slip."""
     first_node: dict[str, str] = field(default_factory=dict)
     """The first node of each component, by the component's path."""
+    budget: WorkBudget = field(default_factory=lambda: WorkBudget(MAX_LISTED))
     _guess_count: int = 0
     _producers: dict[str, dict[tuple[str, str, str], None]] = field(default_factory=dict)
     _id_by_name: dict[str, str] = field(default_factory=dict)

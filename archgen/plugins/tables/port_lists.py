@@ -32,7 +32,7 @@ def import_outputs(project: ImportedProject, row: TableRecord) -> None:
         component.declared_empty.add("outputs")
         project.take_cell(cell, "outputs", component)
         return
-    items = cell_values.split_cell_list(cell)
+    items = cell_values.list_items(project, cell)
     types = split_beside(project, items, row.cell_below("type"), component)
     messages = split_beside(project, items, row.cell_below("message"), component)
     for number, item in enumerate(items):
@@ -126,7 +126,7 @@ def import_inputs(project: ImportedProject, row: TableRecord) -> None:
         component.declared_empty.add("inputs")
         project.take_cell(cell, "inputs", component)
         return
-    for item in cell_values.split_cell_list(cell):
+    for item in cell_values.list_items(project, cell):
         name, _, text = (word.strip() for word in item.partition(":"))
         _import_input(project, component, name or text, text or name, cell)
 

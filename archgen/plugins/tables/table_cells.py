@@ -17,7 +17,7 @@ from archgen.plugin.importing import Span, title_from_id
 
 MAX_BYTES = 8 * 1024 * 1024
 """The most bytes that a table in plain text may have."""
-MAX_CELLS = 300_000
+MAX_CELLS = 100_000
 """The most non-empty cells that a table may have. 10,000 components with their connections have fewer."""
 MAX_COLUMNS = 200
 # Spreadsheets and web pages leave no-break, zero-width and byte order characters in cells.
@@ -130,6 +130,7 @@ class CellLedger:
     cells: dict[Span, TableCell] = field(default_factory=dict)
     key_by_cell: dict[Span, str] = field(default_factory=dict)
     """The meaning of the column in which a cell stands."""
+    _known_uses: set[tuple[Span, CellUse]] = field(default_factory=set)
     uses: dict[Span, list[CellUse]] = field(default_factory=dict)
     reasons: dict[Span, str] = field(default_factory=dict)
     """Why cells, or parts of them, were not taken."""
@@ -147,9 +148,9 @@ class CellLedger:
     def take_cell(self, cell: TableCell, key: str, element: ElementPath, words: str = "") -> None:
         """Note that a cell was taken, and which words the element must have because of it."""
         use = CellUse(key, element, words)
-        cell_uses = self.uses.setdefault(cell.span, [])
-        if use not in cell_uses:
-            cell_uses.append(use)
+        if (cell.span, use) not in self._known_uses:
+            self._known_uses.add((cell.span, use))
+            self.uses.setdefault(cell.span, []).append(use)
 
     def reject_cell(self, cell: TableCell, reason: str) -> None:
         """Note that a cell, or a part of it, was not taken."""

@@ -13,11 +13,12 @@ from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field
 
+from archgen.plugin.importing import WorkBudget
 from archgen.plugins.ros.launch.launch_actions import LaunchCondition
 from archgen.plugins.ros.launch.launch_values import (
-    MAX_PARTS,
     MAX_TEXT,
     OPEN,
+    VERY_LONG,
     LaunchValue,
     Substitution,
     UnknownValue,
@@ -127,7 +128,7 @@ class LaunchScope:
     remaps: tuple[tuple[str, str], ...] = ()
     parameters: tuple[LaunchValue, ...] = ()
     """Parameters for all nodes, in the order in which they are set: mappings, and files."""
-    environment: tuple[tuple[str, str], ...] = ()
+    environment: Mapping[str, str] = field(default_factory=dict)
     conditions: tuple[tuple[str, bool | None], ...] = ()
     """The conditions around, as words, each with its verdict by the defaults."""
 
@@ -135,22 +136,22 @@ class LaunchScope:
 class LaunchContext:
     """The scope at the place that is walked through. `used` are the arguments that were filled in since it was emptied."""
 
-    def __init__(self, *, is_ros_1: bool = False) -> None:
+    def __init__(self, budget: WorkBudget) -> None:
+        self.budget = budget
         self.scope = LaunchScope()
-        self.is_ros_1 = is_ros_1
+        self.is_ros_1 = False
         self.used: dict[str, str] = {}
         self.environment: Mapping[str, str] = {}
         """Variables of the environment in which the launch file is started, as far as they were given."""
         self.asked: set[str] = set()
         """The arguments that ROS 2 was asked for, which needs no declaration of them."""
         self._scopes: list[LaunchScope] = []
-        self._left = MAX_PARTS
 
-    def push(self) -> None:
-        """Begin a scope."""
+    def push(self, *, keeps_others: bool = True) -> None:
+        """Begin a scope, with the arguments of the one around it or without."""
         self._scopes.append(self.scope)
         self.scope = copy(self.scope)
-        self.scope.configurations = dict(self.scope.configurations)
+        self.scope.configurations = dict(self.scope.configurations) if keeps_others else {}
 
     def pop(self) -> None:
         """End a scope."""
@@ -159,10 +160,9 @@ class LaunchContext:
     def resolve(self, value: LaunchValue, depth: int = 0) -> str | UnknownValue:
         """Return a value as text, with arguments filled in; `$(...)` stays for what only the robot knows."""
         # One value may stand in another one many times over.
-        self._left = MAX_PARTS if depth == 0 else self._left - 1
-        if depth > _MAX_DEPTH or self._left < 0:
+        if depth > _MAX_DEPTH or not self.budget.pay():
             return UnknownValue("values nested very deep")
-        if isinstance(value, UnknownValue):
+        if isinstance(value, str | UnknownValue):
             return value
         if isinstance(value, Substitution):
             return self._resolve_substitution(value, depth + 1)
@@ -179,9 +179,10 @@ class LaunchContext:
             if isinstance(text, UnknownValue):
                 return text
             texts.append(text)
+        if sum(map(len, texts)) > MAX_TEXT:
+            return VERY_LONG
         # As os.path.join has it: an absolute part begins anew, an empty one adds nothing.
-        joined = posixpath.join("", *texts) if is_path else "".join(texts)
-        return joined if len(joined) <= MAX_TEXT else UnknownValue("a very long text")
+        return posixpath.join("", *texts) if is_path else "".join(texts)
 
     def _resolve_substitution(self, value: Substitution, depth: int) -> str | UnknownValue:  # noqa: PLR0911 - a kind each
         match value.kind:
@@ -229,7 +230,7 @@ class LaunchContext:
         name = self.resolve(value.parts[0], depth)
         if isinstance(name, UnknownValue):
             return name
-        own = dict(self.scope.environment).get(name, self.environment.get(name))
+        own = self.scope.environment.get(name, self.environment.get(name))
         if own is not None:
             return own
         if len(value.parts) > 1 and value.parts[1] is not None:

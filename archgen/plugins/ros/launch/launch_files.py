@@ -11,7 +11,7 @@ from pathlib import Path
 from archgen.plugin.importing import ForeignFileError, read_bounded
 
 LAUNCH_ENDINGS = (".launch", ".launch.xml", ".launch.yaml", ".launch.yml", ".launch.py")
-MAX_LAUNCH_BYTES = 4_000_000
+MAX_LAUNCH_BYTES = 16_000_000
 _MAX_FOLDERS = 20_000
 _PARENTS_TRIED = 4
 _TEST_FOLDERS = frozenset({"test", "tests"})

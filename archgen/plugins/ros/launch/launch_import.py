@@ -16,17 +16,16 @@ from archgen.plugin.importing import (
     Span,
     make_id,
     make_unique_id,
-    read_bounded,
     title_from_id,
 )
 from archgen.plugins.ros.launch.entity_actions import Ros1EntityReader, Ros2EntityReader, is_ros_1_launch
 from archgen.plugins.ros.launch.launch_actions import LaunchAction, LaunchedNode
 from archgen.plugins.ros.launch.launch_entities import read_xml_entities, read_yaml_entities
-from archgen.plugins.ros.launch.launch_files import MAX_LAUNCH_BYTES, LaunchFiles
+from archgen.plugins.ros.launch.launch_files import LaunchFiles
 from archgen.plugins.ros.launch.launch_run import LaunchRun
 from archgen.plugins.ros.launch.launch_slices import SliceMaker
 from archgen.plugins.ros.launch.python_launch import read_python_launch
-from archgen.plugins.ros.launch.python_parsing import read_python_text
+from archgen.plugins.ros.launch.python_parsing import decode_text
 from archgen.plugins.ros.launch.server_parameters import give_server_parameters
 
 _ENDINGS = (".launch.py", ".launch.xml", ".launch.yaml", ".launch.yml", ".launch", ".py", ".xml", ".yaml", ".yml")
@@ -61,18 +60,21 @@ def run_launch_files(
 ) -> LaunchedFiles:
     """Walk through launch files, or through all that lie in folders and that no other one includes. Raise ForeignFileError."""
     launch_files = LaunchFiles(files)
-    run = LaunchRun(launch_files, load_included, arguments)
-    run.context.environment = dict(environment or {})
     given = [path.resolve() for path in files if not path.is_dir()]
+
+    def load(path: Path, run: LaunchRun) -> list[LaunchAction]:
+        # What is given by name must be readable; what lies in a folder or is included is only noted.
+        is_given = path in given and len(run.open_files) == 1
+        return load_actions(path, run) if is_given else load_noted(path, run)
+
+    run = LaunchRun(launch_files, load, arguments)
+    run.context.environment = dict(environment or {})
     entries = given or launch_files.list_launch_files()
     if not entries:
         words = "there is no launch file in it"
         raise ForeignFileError(
             words, Span.of_file(str(files[0]) if files else "."), "name a launch file, or a folder with some"
         )
-    for path in given:
-        # What is given by name must be readable; what lies in a folder or is included is only noted.
-        load_actions(path, LaunchRun(launch_files, load_included))
     launched: dict[Path, tuple[list[LaunchedNode], Counter[str]]] = {}
     notes: dict[Path, list[ImportNote]] = {}
     for path in dict.fromkeys(entries):
@@ -167,7 +169,7 @@ def _drop_twins(run: LaunchRun, nodes_by_file: Mapping[Path, Sequence[LaunchedNo
     return {id(node) for node in [*free, *kept.values()]}
 
 
-def load_included(path: Path, run: LaunchRun) -> list[LaunchAction]:
+def load_noted(path: Path, run: LaunchRun) -> list[LaunchAction]:
     """Return the actions of a file; of one that cannot be read none, with a note."""
     try:
         return load_actions(path, run)
@@ -179,13 +181,16 @@ def load_included(path: Path, run: LaunchRun) -> list[LaunchAction]:
 def load_actions(path: Path, run: LaunchRun) -> list[LaunchAction]:
     """Return the actions of a file. Raise ForeignFileError."""
     name = run.files.show_path(path)
+    data = run.read_file(path)
+    if data is None:
+        return []
     folder = posixpath.dirname(run.files.name_file(path))
     run.context.is_ros_1 = False
     if path.name.lower().endswith(".py"):
-        return read_python_launch(path, run)
+        return read_python_launch(path, data, run)
     if path.name.lower().endswith((".yaml", ".yml")):
-        return Ros2EntityReader(folder).read_launch(read_yaml_entities(name, read_python_text(name, path)))
-    root = read_xml_entities(name, read_bounded(path, MAX_LAUNCH_BYTES))
+        return Ros2EntityReader(folder).read_launch(read_yaml_entities(name, decode_text(name, data)))
+    root = read_xml_entities(name, data)
     if is_ros_1_launch(root, path.name):
         run.context.is_ros_1 = True
         return Ros1EntityReader(folder).read_launch(root)

@@ -9,7 +9,7 @@ Read what stands behind `--ros-args` (names, remaps, parameters and files), and 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -39,6 +39,7 @@ from archgen.plugins.ros.launch.launch_values import (
 )
 
 _MAX_DEPTH = 20
+_STEPS_OF_A_VALUE = 3
 _PARAMETER_TYPES = {
     "str": "text",
     "string": "text",
@@ -55,7 +56,7 @@ class CommandWords(list[str]):
 
 def evaluate_parameter(value: LaunchValue, context: LaunchContext, depth: int = 0) -> Any:  # noqa: ANN401
     """Return the value of a parameter as data; CommandWords or an UnknownValue, in mappings too, where it is no plain value."""
-    if depth > _MAX_DEPTH:
+    if depth > _MAX_DEPTH or not context.budget.pay(_STEPS_OF_A_VALUE):
         return UnknownValue("values nested very deep")
     if isinstance(value, UnknownValue) or value is None or isinstance(value, bool | int | float | str):
         return value
@@ -222,6 +223,19 @@ def read_inline_values(text: str, span: Span) -> dict[str, Any] | None:
 def read_inline_value(text: str) -> Any:  # noqa: ANN401
     """Return one value of YAML that stands in a launch file."""
     return read_value_text(text)
+
+
+def nest_values(values: Any, parts: Sequence[str]) -> dict[str, Any]:  # noqa: ANN401 - data of any form
+    """Return values below the parts of a name, the outermost first; of a name of very many parts only the first ones."""
+    for part in reversed(parts[:_MAX_DEPTH]):
+        values = {part: values}
+    nested: dict[str, Any] = values
+    return nested
+
+
+def count_leaves(values: Any) -> int:  # noqa: ANN401 - data of any form
+    """Return how many values a mapping holds."""
+    return sum(map(count_leaves, values.values())) if isinstance(values, dict) else 1
 
 
 def overlay_parameters(values: dict[str, Any], more: Mapping[str, Any]) -> None:

@@ -17,11 +17,12 @@ from archgen.plugins.ros.launch.scope_run import ScopeRun
 from archgen.plugins.ros.launch.server_parameters import ServerParameter, read_server_parameters
 
 ActionLoader = Callable[[Path, "LaunchRun"], list[LaunchAction]]
-MAX_NODES = 20_000
-MAX_ACTIONS = 100_000
+_STEPS_OF_AN_ACTION = 5
+_STEPS_OF_A_CONDITION = 2
+_CONFIGURATIONS_COPIED_IN_A_STEP = 32
 _MAX_NESTING = 100
-MAX_INCLUDES = 500
-_MAX_DEPTH = 25
+"""Actions in actions: each takes some of Python's own frames."""
+_MAX_OPEN_FILES = 25
 _SETTERS = frozenset(
     {"argument", "configure", "namespace", "parameter", "parameter_file", "remap", "environment", "host"}
 )
@@ -44,9 +45,9 @@ class LaunchRun(ScopeRun):
         """Parameters of ROS 1 that stand outside of nodes, by their full names."""
         self._load_actions = load_actions
         self._maker = NodeMaker(self)
-        self._includes = 0
-        self._actions = self._depth = 0
-        self._has_told_nodes = False
+        self._started: dict[int, LaunchedNode] = {}
+        """What an action has started last, by its identity."""
+        self._depth = 0
         self._handlers |= {
             "ignored": self._run_ignored,
             "description": self._run_description,
@@ -80,15 +81,14 @@ class LaunchRun(ScopeRun):
         """Walk through actions in their order."""
         self._depth += 1
         for action in actions:
-            self._actions += 1
-            if self._actions <= MAX_ACTIONS and self._depth <= _MAX_NESTING:
-                self._run_conditional(action)
-            elif self._actions <= MAX_ACTIONS + 1:
-                # Actions that stand in one another twice, level by level, or that make themselves, would have no end.
-                many = (
-                    f"more than {MAX_ACTIONS:,} actions" if self._actions > MAX_ACTIONS else "actions in so many others"
-                )
-                self.add_note(action.word, f"{many} are not followed", action.span)
+            # Actions that stand in one another twice, level by level, or that make themselves, would have no end.
+            steps = _STEPS_OF_AN_ACTION + _STEPS_OF_A_CONDITION * len(action.conditions)
+            if not self.pay(steps, action.word, action.span):
+                break
+            if self._depth > _MAX_NESTING:
+                self.add_note(action.word, "actions in so many others are not followed", action.span)
+                break
+            self._run_conditional(action)
         self._depth -= 1
 
     def _run_conditional(self, action: LaunchAction) -> None:
@@ -96,10 +96,9 @@ class LaunchRun(ScopeRun):
         if any(verdict is False for _, verdict in verdicts):
             # What does not run sets nothing for what stands behind it.
             if action.kind not in _SETTERS:
-                self.context.push()
-                self.context.scope.conditions += verdicts
-                self._run_action(action)
-                self.context.pop()
+                with self._enter_scope(action, (), is_scoped=True, keeps_others=True):
+                    self.context.scope.conditions += verdicts
+                    self._run_action(action)
             return
         before = self.context.scope.conditions
         self.context.scope.conditions += verdicts
@@ -143,9 +142,9 @@ class LaunchRun(ScopeRun):
     ) -> Iterator[None]:
         """Set values, and a namespace, for what stands in an action; what is not scoped sets them for what follows, too."""
         if is_scoped:
-            self.context.push()
-            if not keeps_others:
-                self.context.scope.configurations = {}
+            copied = len(self.context.scope.configurations) if keeps_others else 0
+            self.pay(copied // _CONFIGURATIONS_COPIED_IN_A_STEP, action.word, action.span)
+            self.context.push(keeps_others=keeps_others)
         self.context.scope.configurations.update(pairs)
         if action.get("namespace") is not None:
             self.push_namespace(action, action.get("namespace"))
@@ -167,21 +166,15 @@ class LaunchRun(ScopeRun):
         text = self.resolve_told(action, "the file", action.get("file"))
         if text is None:
             return
-        self._includes += 1
         path = self.files.find_file(text)
-        if (
-            path is None
-            or path in self.open_files
-            or len(self.open_files) > _MAX_DEPTH
-            or self._includes > MAX_INCLUDES
-        ):
+        if path is None or path in self.open_files or len(self.open_files) > _MAX_OPEN_FILES:
             is_far = path is None
             message = f"`{text}` is not read: " + (
                 "it does not lie in the folders that were given"
                 if is_far
                 else "it includes itself"
                 if path in self.open_files
-                else f"more than {MAX_INCLUDES} files, or {_MAX_DEPTH} in one another"
+                else f"more than {_MAX_OPEN_FILES} files in one another"
             )
             help_line = "give the folder of its package, too" if is_far else ""
             self.add_note(action.word, message, action.span, help_line)
@@ -205,13 +198,13 @@ class LaunchRun(ScopeRun):
     def _run_container(self, action: LaunchAction) -> None:
         container = self._maker.make_node(action, "container")
         self._add_node(container, action)
-        for child in action.children:
+        for child in action.children if container is not None else ():
             self._load_child(child, container, "")
 
     def _run_load(self, action: LaunchAction) -> None:
         target = action.get("target")
         container_name = ""
-        container = self._find_started(target) if isinstance(target, LaunchAction) else None
+        container = self._started.get(id(target)) if isinstance(target, LaunchAction) else None
         if isinstance(target, LaunchAction) and container is None:
             target = target.get("name")
         if target is not None and container is None:
@@ -228,19 +221,16 @@ class LaunchRun(ScopeRun):
         for child in action.children:
             self._load_child(child, container, container_name)
 
-    def _find_started(self, action: LaunchAction) -> LaunchedNode | None:
-        """Return the container that an action has started last."""
-        return next((node for node in reversed(self.nodes) if node.action is action), None)
-
     def _load_child(self, child: LaunchAction, container: LaunchedNode | None, container_name: str) -> None:
         before = self.context.scope.conditions
         for condition in child.conditions:
             self.context.scope.conditions = (*self.context.scope.conditions, self.context.judge_condition(condition))
         if child.kind == "node":
             node = self._maker.make_node(child, "loaded")
-            node.container, node.container_name = container, container_name
             self.taken[child.word] += 1
             self._add_node(node, child)
+            if node is not None:
+                node.container, node.container_name = container, container_name
         else:
             self._run_action(child)
         self.context.scope.conditions = before
@@ -248,10 +238,7 @@ class LaunchRun(ScopeRun):
     def _add_node(self, node: LaunchedNode | None, action: LaunchAction) -> None:
         if node is None:
             self.taken[action.word] -= 1
-        elif len(self.nodes) >= MAX_NODES:
-            if not self._has_told_nodes:
-                self.add_note(action.word, f"more than {MAX_NODES:,} nodes are not taken", action.span)
-            self._has_told_nodes = True
         else:
             node.action = action
             self.nodes.append(node)
+            self._started[id(action)] = node

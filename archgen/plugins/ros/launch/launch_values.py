@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from archgen.plugin import dataclass
@@ -12,7 +12,7 @@ LaunchValue = Any
 """Text, numbers, booleans, None, lists, tuples and dicts of these; a Substitution; an UnknownValue."""
 MAX_TEXT = 20_000
 """How long a text may grow while it is put together: longer ones count as computed."""
-MAX_PARTS = 20_000
+_MAX_PARTS = 20_000
 """How many values one value may be put together from."""
 OPEN = "$("
 OPEN_FILE = "open file"
@@ -42,13 +42,16 @@ class Substitution:
     parts: tuple[LaunchValue, ...] = ()
 
 
+VERY_LONG = UnknownValue("a very long text")
+
+
 def join_values(parts: Sequence[LaunchValue]) -> LaunchValue:
     """Return parts one after the other: one text where all of them are plain."""
     if len(parts) == 1:
         return parts[0]
     if all(isinstance(part, str | int | float) for part in parts):
-        text = "".join(map(write_plain, parts))
-        return text if len(text) <= MAX_TEXT else UnknownValue("a very long text")
+        texts = [*map(write_plain, parts)]
+        return "".join(texts) if sum(map(len, texts)) <= MAX_TEXT else VERY_LONG
     return Substitution("join", tuple(parts))
 
 
@@ -134,14 +137,14 @@ def has_unknown(value: LaunchValue, depth: int = 0) -> UnknownValue | None:
     return next((found for part in inner if (found := has_unknown(part, depth + 1))), None)
 
 
-def copy_value(value: LaunchValue, limit: int = MAX_PARTS) -> LaunchValue:
+def copy_value(value: LaunchValue, pay: Callable[[int], bool]) -> LaunchValue:
     """Return a value that nothing changes afterwards; an UnknownValue for one that is put together from too many."""
-    left = limit
+    left = _MAX_PARTS
 
     def copy_part(part: LaunchValue, depth: int) -> LaunchValue:
         nonlocal left
         left -= 1
-        if left < 0 or depth > 40:  # noqa: PLR2004 - deeper than anybody writes, and than it may be walked through
+        if left < 0 or depth > 40 or not pay(1):  # noqa: PLR2004 - deeper than anybody writes, and than it may be walked through
             raise OverflowError
         if isinstance(part, Substitution):
             return Substitution(part.kind, tuple(copy_part(inner, depth + 1) for inner in part.parts))

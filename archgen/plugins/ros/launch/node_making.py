@@ -7,13 +7,15 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from archgen.plugin.importing import find_program_name
+from archgen.plugin.importing import STEPS_OF_A_KEPT_VALUE, find_program_name
 from archgen.plugins.ros.launch.command_words import split_words
 from archgen.plugins.ros.launch.launch_actions import LaunchAction, LaunchedNode, join_names
 from archgen.plugins.ros.launch.launch_parameter_values import (
     FILE_KIND,
     FileRewrites,
+    count_leaves,
     evaluate_parameter,
+    nest_values,
     overlay_parameters,
     read_nodelet,
     read_prefix,
@@ -32,6 +34,8 @@ from archgen.plugins.ros.launch.scope_run import ScopeRun
 _VARIABLE = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 
 CONTAINER_PACKAGE = "rclcpp_components"
+_STEPS_OF_A_NODE = 130
+_COLLECTIONS = frozenset({list, tuple, dict})
 
 
 class NodeMaker:
@@ -40,8 +44,10 @@ class NodeMaker:
     def __init__(self, run: ScopeRun) -> None:
         self._run = run
 
-    def make_node(self, action: LaunchAction, form: str) -> LaunchedNode:
-        """Return the node, container or loaded node of an action."""
+    def make_node(self, action: LaunchAction, form: str) -> LaunchedNode | None:
+        """Return the node, container or loaded node of an action; None where it is more than is followed."""
+        if not self._pay(action):
+            return None
         node = self._begin(action, form)
         for key in ("package", "executable", "plugin", "name"):
             setattr(node, key, self._resolve_key(node, action, key))
@@ -62,6 +68,8 @@ class NodeMaker:
 
     def make_process(self, action: LaunchAction) -> LaunchedNode | None:
         """Return the program that an action starts; None where its words are computed."""
+        if not self._pay(action):
+            return None
         node = self._begin(action, "program")
         words: list[str] = []
         for value in wrap_in_list(action.get("command")):
@@ -78,6 +86,15 @@ class NodeMaker:
         self._set_process(node, action)
         self._finish(node)
         return node
+
+    def _pay(self, action: LaunchAction) -> bool:
+        """Pay for a node with what it takes over from what is around it, and with what its action says."""
+        scope = self._run.context.scope
+        kept = len(scope.remaps) + len(scope.environment)
+        kept += sum(len(value) for value in action.values.values() if type(value) in _COLLECTIONS)
+        steps = _STEPS_OF_A_NODE + STEPS_OF_A_KEPT_VALUE * kept + 2 * len(scope.conditions)
+        steps += len(scope.namespace) // 4 if isinstance(scope.namespace, str) else 0
+        return self._run.pay(steps, action.word, action.span)
 
     def _begin(self, action: LaunchAction, form: str) -> LaunchedNode:
         self._run.context.used = {}
@@ -225,9 +242,8 @@ class NodeMaker:
         if found is not None:
             self._keep_written(node, f"parameters.{name}", value)
             # In ROS 1 a `/` in a parameter's name is a level of its tree.
-            for part in reversed([each for each in name.split("/") if each] if self._run.context.is_ros_1 else [name]):
-                found = {part: found}
-            overlay_parameters(node.parameters, found)
+            parts = [each for each in name.split("/") if each] if self._run.context.is_ros_1 else [name]
+            overlay_parameters(node.parameters, nest_values(found, parts))
             node.file_parameters.discard(name)
             node.parameter_commands.pop(name, None)
 
@@ -268,6 +284,8 @@ class NodeMaker:
             words = "it is not read" if path is None else "it is no file of parameters of ROS 2"
             self._run.add_note(FILE_KIND, f"`{text}`: {words}", node.span, fate="noted")
             return
+        if not self._run.pay(STEPS_OF_A_KEPT_VALUE * len(values), FILE_KIND, node.span):
+            return
         for name, value in (changes.change_values(values, self._run.context) if changes else values).items():
             if isinstance(value, UnknownValue):
                 node.parameters.pop(name, None)
@@ -284,9 +302,8 @@ class NodeMaker:
             if not inner_name and text not in node.parameter_files:
                 node.parameter_files.append(text)
             return
-        for part in reversed(inner_name.split("/") if inner_name else []):
-            values = {part: values}
-        overlay_parameters(node.parameters, values)
+        if self._run.pay(STEPS_OF_A_KEPT_VALUE * count_leaves(values), FILE_KIND, node.span):
+            overlay_parameters(node.parameters, nest_values(values, inner_name.split("/") if inner_name else []))
 
 
 def wrap_in_list(value: LaunchValue) -> list[LaunchValue]:

@@ -9,10 +9,11 @@ from typing import NamedTuple
 
 from archgen.plugins.ros.launch.launch_actions import ActionKind, LaunchAction, LaunchCondition
 from archgen.plugins.ros.launch.launch_context import LaunchContext
-from archgen.plugins.ros.launch.launch_values import LaunchValue, Substitution, UnknownValue, copy_value
+from archgen.plugins.ros.launch.launch_values import LaunchValue, Substitution, UnknownValue
 from archgen.plugins.ros.launch.python_methods import MethodReader
 from archgen.plugins.ros.launch.python_values import CallArguments, FunctionValue
 
+_STEPS_OF_AN_ACTION = 30
 LAUNCH_MODULES = frozenset({"launch", "launch_ros"})
 CONDITIONS = frozenset({"IfCondition", "UnlessCondition", "LaunchConfigurationEquals", "LaunchConfigurationNotEquals"})
 _Argument = tuple[int | None, *tuple[str, ...]]
@@ -99,11 +100,12 @@ _INCLUDED = frozenset(
 )
 
 
-def make_condition(name: str, arguments: CallArguments) -> LaunchCondition:
+def make_condition(reader: MethodReader, name: str, arguments: CallArguments) -> LaunchCondition:
     """Return what `IfCondition` and its like say."""
-    value = copy_value(arguments.get(0, "predicate_expression", "launch_configuration_name"))
+    value = reader.copy(arguments.get(0, "predicate_expression", "launch_configuration_name"))
     if name.startswith("LaunchConfiguration"):
-        value = Substitution("equals", (Substitution("var", (value,)), arguments.get(1, "expected_value")))
+        expected = reader.copy(arguments.get(1, "expected_value"))
+        value = Substitution("equals", (Substitution("var", (value,)), expected))
     return LaunchCondition(value, name in {"UnlessCondition", "LaunchConfigurationNotEquals"})
 
 
@@ -116,6 +118,8 @@ def make_action(
     maker = _MAKERS.get(name)
     if maker is None:
         return None
+    if not reader.pay_to_repeat(node, _STEPS_OF_AN_ACTION):
+        return reader.quote(node)
     action = maker(reader, name, arguments, node)
     condition = arguments.get(None, "condition")
     if isinstance(condition, LaunchCondition):
@@ -129,10 +133,10 @@ def make_action(
 
 
 def _make_node(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
-    values = _take_arguments(arguments, _NODE_KEYS)
+    values = _take_arguments(reader, arguments, _NODE_KEYS)
     environment = arguments.get(None, "additional_env") or arguments.get(None, "env")
     if isinstance(environment, Mapping):
-        values["environment"] = copy_value(environment)
+        values["environment"] = reader.copy(environment)
     values["is_lifecycle"] = name == "LifecycleNode"
     action = LaunchAction(_NODES[name], name, reader.place(node), values)
     reader.add_children(action, arguments.get(*_LOADED_NODES))
@@ -141,17 +145,19 @@ def _make_node(reader: MethodReader, name: str, arguments: CallArguments, node: 
 
 def _make_listed(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
     kind, taken, children, said = _ACTIONS[name]
-    values = {**said, **_take_arguments(arguments, taken)}
+    values = {**said, **_take_arguments(reader, arguments, taken)}
     action = LaunchAction(kind, name, reader.place(node), values)
     if children:
         reader.add_children(action, arguments.get(*children))
     return action
 
 
-def _take_arguments(arguments: CallArguments, taken: Mapping[str, _Argument]) -> dict[str, LaunchValue]:
+def _take_arguments(
+    reader: MethodReader, arguments: CallArguments, taken: Mapping[str, _Argument]
+) -> dict[str, LaunchValue]:
     """Return the arguments that are there, by archgen's names for them."""
     found = {key: arguments.get(place, *names) for key, (place, *names) in taken.items()}
-    return {key: copy_value(value) for key, value in found.items() if value is not None}
+    return {key: reader.copy(value) for key, value in found.items() if value is not None}
 
 
 def _make_include(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
@@ -159,15 +165,15 @@ def _make_include(reader: MethodReader, name: str, arguments: CallArguments, nod
     pairs = list(given.items()) if isinstance(given, Mapping) else given
     if pairs is not None and not isinstance(pairs, list | tuple):
         reader.tell_noted(name, "the arguments that it hands on are computed", node)
-    values = {"file": copy_value(arguments.get(0, "launch_description_source")), "arguments": copy_value(pairs)}
+    values = {"file": reader.copy(arguments.get(0, "launch_description_source")), "arguments": reader.copy(pairs)}
     return LaunchAction("include", name, reader.place(node), values)
 
 
 def _make_process(reader: MethodReader, name: str, arguments: CallArguments, node: ast.Call) -> LaunchAction:
     command = arguments.get(None, "cmd")
     values = {
-        **_take_arguments(arguments, {**_PROGRAM_KEYS, "environment": (None, "additional_env")}),
-        "command": copy_value(command if isinstance(command, list | tuple) else [command]),
+        **_take_arguments(reader, arguments, {**_PROGRAM_KEYS, "environment": (None, "additional_env")}),
+        "command": reader.copy(command if isinstance(command, list | tuple) else [command]),
         "splits_words": arguments.get(None, "shell") is True,
     }
     return LaunchAction("process", name, reader.place(node), values)

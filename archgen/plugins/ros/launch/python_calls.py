@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from archgen.plugins.ros.launch.launch_actions import LaunchAction, LaunchCondition
 from archgen.plugins.ros.launch.launch_parameter_values import FILE_KIND, FileRewrites
-from archgen.plugins.ros.launch.launch_values import LaunchValue, Substitution, UnknownValue, copy_value
+from archgen.plugins.ros.launch.launch_values import MAX_TEXT, LaunchValue, Substitution, UnknownValue
 from archgen.plugins.ros.launch.opened_files import OpenedFileReader
 from archgen.plugins.ros.launch.python_actions import CONDITIONS, LAUNCH_MODULES, make_action, make_condition
 from archgen.plugins.ros.launch.python_values import BoundMethod, CallArguments, FunctionValue, ImportedName
@@ -54,6 +54,7 @@ _FIRST_ARGUMENT = {
     "perform_substitutions": "subs",
 }
 """Calls that stand for what is given to them."""
+_MAX_RANGE = 10**9
 _BUILTINS = frozenset({"range", "list", "dict", "enumerate", "zip", "len", "int", "float", "open", "str"})
 _MODULES = {
     "get": "os.environ",
@@ -118,7 +119,7 @@ class CallReader(OpenedFileReader):
         if name in _SUBSTITUTIONS:
             return self._make_substitution(name, arguments, node)
         if name in CONDITIONS:
-            return make_condition(name, arguments)
+            return make_condition(self, name, arguments)
         # By a table and not by the name of a method: the name comes from the file, and may be that of any method here.
         caller = self._callers.get(name)
         if caller is not None and _is_meant(function):
@@ -143,7 +144,7 @@ class CallReader(OpenedFileReader):
             parts.pop()
         if not parts:
             return self.quote(node)
-        made = copy_value(Substitution(kind, tuple(parts)))
+        made = self.copy(Substitution(kind, tuple(parts)))
         return made if not isinstance(made, UnknownValue) else self.quote(node)
 
     def _call_launch_description(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
@@ -160,7 +161,7 @@ class CallReader(OpenedFileReader):
         if any(isinstance(part, UnknownValue) for part in parts) or not parts:
             return self.quote(node)
         if all(isinstance(part, str) for part in parts):
-            return posixpath.join(*parts)
+            return posixpath.join(*parts) if sum(map(len, parts)) <= MAX_TEXT else self.quote(node)
         return Substitution("path", tuple(parts))
 
     def _call_dirname(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
@@ -176,7 +177,7 @@ class CallReader(OpenedFileReader):
 
     def _call_rewritten_yaml(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         rewrites = arguments.get(1, "param_rewrites")
-        changes = copy_value(rewrites) if isinstance(rewrites, Mapping) else {}
+        changes = self.copy(rewrites) if isinstance(rewrites, Mapping) else {}
         root = arguments.get(2, "root_key")
         self.tell_noted(
             "RewrittenYaml", "values written over a parameter file are taken where the file can be read", node
@@ -193,7 +194,7 @@ class CallReader(OpenedFileReader):
         texts, condition = arguments.get(1, "replacements"), arguments.get(2, "condition")
         if not isinstance(texts, Mapping):
             return self.quote(node)
-        made = FileRewrites({}, copy_value(texts), condition if isinstance(condition, LaunchCondition) else None)
+        made = FileRewrites({}, self.copy(texts), condition if isinstance(condition, LaunchCondition) else None)
         return Substitution(FILE_KIND, (arguments.get(0, "source_file"), "", made))
 
     def _call_getenv(self, arguments: CallArguments, _node: ast.Call) -> LaunchValue:
@@ -201,12 +202,13 @@ class CallReader(OpenedFileReader):
 
     def _call_range(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         ends = [self.force(each) for each in arguments.positional]
-        if not ends or not all(isinstance(end, int) and abs(end) <= 1000 for end in ends):  # noqa: PLR2004 - robots in a row
+        if not ends or not all(isinstance(end, int) and abs(end) <= _MAX_RANGE for end in ends):
             return self.quote(node)
         try:
-            return list(range(*ends))
+            numbers = range(*ends)
         except (ValueError, TypeError):
             return self.quote(node)
+        return list(numbers) if self.pay_to_repeat(node, len(numbers)) else self.quote(node)
 
     def _call_list(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         value = arguments.get(0)
@@ -233,10 +235,14 @@ class CallReader(OpenedFileReader):
 
     def _call_enumerate(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         value = arguments.get(0)
-        return [list(pair) for pair in enumerate(value)] if isinstance(value, list | tuple) else self.quote(node)
+        is_known = isinstance(value, list | tuple) and self.pay_to_repeat(node, 2 * len(value))
+        return [list(pair) for pair in enumerate(value)] if is_known else self.quote(node)
 
     def _call_zip(self, arguments: CallArguments, node: ast.Call) -> LaunchValue:
         if not all(isinstance(each, list | tuple) for each in arguments.positional):
+            return self.quote(node)
+        length = min(map(len, arguments.positional), default=0)
+        if not self.pay_to_repeat(node, length * (1 + len(arguments.positional))):
             return self.quote(node)
         return [list(each) for each in zip(*arguments.positional, strict=False)]
 

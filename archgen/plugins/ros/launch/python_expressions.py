@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import ast
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from archgen.plugin.importing import Span
+from archgen.plugin.importing import CHARACTERS_IN_A_STEP, Span
 from archgen.plugins.ros.launch.launch_actions import LaunchAction
 from archgen.plugins.ros.launch.launch_context import LaunchContext
-from archgen.plugins.ros.launch.launch_values import MAX_TEXT, LaunchValue, Substitution, UnknownValue, join_values
-from archgen.plugins.ros.launch.python_operators import MAX_ITEMS, combine_values, compare_values
+from archgen.plugins.ros.launch.launch_values import LaunchValue, Substitution, UnknownValue, copy_value, join_values
+from archgen.plugins.ros.launch.python_operators import combine_values, compare_values
 from archgen.plugins.ros.launch.python_values import (
     BoundMethod,
     CallArguments,
@@ -26,10 +26,17 @@ from archgen.plugins.ros.launch.python_values import (
 if TYPE_CHECKING:
     from archgen.plugins.ros.launch.launch_run import LaunchRun
 
-MAX_STEPS = 300_000
 MAX_DEPTH = 60
 _MAX_QUOTED = 80
 _NUMBERS = (int, float)
+_FINDERS = frozenset(
+    {
+        *(ast.Constant, ast.Name, ast.Attribute, ast.NamedExpr, ast.Lambda),
+        *(ast.List, ast.Tuple, ast.Set, ast.Dict, ast.BinOp),
+    }
+)
+"""Expressions that make nothing, or whose parts are paid for each by itself."""
+_WORD = "launch file"
 _KNOWN_TEXTS = {"os.sep": "/", "os.path.sep": "/", "os.pathsep": ":"}
 
 
@@ -44,8 +51,8 @@ class ExpressionReader(ABC):
         self._path = path
         self._run = run
         self._lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
-        self._steps = 0
-        self._depth = 0
+        self.budget = run.budget.halve()
+        self.depth = 0
         self._expression_readers: dict[type[ast.expr], Callable[[Any, NameScope], LaunchValue]] = {
             ast.Constant: self._read_constant,
             ast.Name: self._read_name,
@@ -81,10 +88,15 @@ class ExpressionReader(ABC):
         line_number = getattr(node, "lineno", 0)
         if not 0 < line_number <= len(self._lines):
             return UnknownValue(type(node).__name__, line_number, self.file)
-        line = self._lines[line_number - 1].encode("utf-8", "replace")
+        line, start = self._lines[line_number - 1], getattr(node, "col_offset", 0)
         is_one_line = getattr(node, "end_lineno", line_number) == line_number
-        end = getattr(node, "end_col_offset", len(line)) if is_one_line else len(line)
-        text = line[getattr(node, "col_offset", 0) : end].decode("utf-8", "replace").strip()
+        end = getattr(node, "end_col_offset", None) if is_one_line else None
+        if line.isascii():
+            text = line[start:end].strip()
+        else:
+            # Python counts bytes, for which the whole line is looked at again.
+            self.budget.pay(len(line) // CHARACTERS_IN_A_STEP)
+            text = line.encode("utf-8", "replace")[start:end].decode("utf-8", "replace").strip()
         shown = text if len(text) <= _MAX_QUOTED else f"{text[:_MAX_QUOTED]}..."
         return UnknownValue(shown if is_one_line or shown.endswith("...") else f"{shown}...", line_number, self.file)
 
@@ -92,7 +104,10 @@ class ExpressionReader(ABC):
         """Return where a part of the file stands."""
         line, byte_offset = getattr(node, "lineno", 1), getattr(node, "col_offset", 0)
         text = self._lines[line - 1] if line <= len(self._lines) else ""
-        column = len(text.encode("utf-8", "replace")[:byte_offset].decode("utf-8", "replace")) + 1
+        column = byte_offset + 1
+        if not text.isascii():
+            self.budget.pay(len(text) // CHARACTERS_IN_A_STEP)
+            column = len(text.encode("utf-8", "replace")[:byte_offset].decode("utf-8", "replace")) + 1
         return Span(self.file, line, column, line, column + 1)
 
     def tell_lost(self, word: str, message: str, node: ast.AST) -> None:
@@ -103,25 +118,35 @@ class ExpressionReader(ABC):
         """Note what is taken otherwise than it is written."""
         self._run.add_note(word, message, self.place(node), fate="noted")
 
-    def count_steps(self, number: int) -> None:
-        """Count what takes the time of several steps."""
-        self._steps += number
+    def pay(self, node: ast.AST, steps: int = 1) -> bool:
+        """Whether the budget has so many steps for what is done once; the first time that it has not is told."""
+        return self.budget.pay(steps) or self._run.tell_excess(_WORD, self.place(node))
 
-    def count_step(self) -> bool:
-        """Whether one more step may be taken."""
-        self._steps += 1
-        return self._steps <= MAX_STEPS
+    def pay_to_repeat(self, node: ast.AST, steps: int = 1) -> bool:
+        """Whether the budget has so many steps for what is done again, or makes something larger."""
+        return self.budget.pay_to_repeat(steps) or self._run.tell_excess(_WORD, self.place(node))
+
+    def pay_for(self, made: LaunchValue, node: ast.AST) -> bool:
+        """Whether the budget has the steps that a text, list or mapping costs which is made of others."""
+        if isinstance(made, str):
+            return self.pay_to_repeat(node, len(made) // CHARACTERS_IN_A_STEP)
+        return not isinstance(made, list | tuple | dict) or self.pay_to_repeat(node, len(made))
+
+    def copy(self, value: LaunchValue) -> LaunchValue:
+        """Return a value that nothing changes afterwards, as an action takes it."""
+        return copy_value(value, self.budget.pay)
 
     def evaluate(self, node: ast.expr, scope: NameScope) -> LaunchValue:
         """Return what an expression stands for."""
         reader = self._expression_readers.get(type(node))
-        if reader is None or self._depth >= MAX_DEPTH or not self.count_step():
+        if reader is None or self.depth >= MAX_DEPTH or not self.pay(node):
             return self.quote(node)
-        self._depth += 1
+        self.depth += 1
         try:
-            return reader(node, scope)
+            value = reader(node, scope)
         finally:
-            self._depth -= 1
+            self.depth -= 1
+        return value if type(node) in _FINDERS or self.pay_for(value, node) else self.quote(node)
 
     def force(self, value: LaunchValue) -> LaunchValue:
         """Return a value with its substitutions filled in, where that is possible here."""
@@ -169,29 +194,32 @@ class ExpressionReader(ABC):
         return self.quote(node)
 
     def _read_list(self, node: ast.List | ast.Set, scope: NameScope) -> LaunchValue:
-        return list(self._read_items(node.elts, scope))
+        return self._read_items(node.elts, scope)
 
     def _read_tuple(self, node: ast.Tuple, scope: NameScope) -> LaunchValue:
         return tuple(self._read_items(node.elts, scope))
 
-    def _read_items(self, nodes: list[ast.expr], scope: NameScope) -> Iterator[LaunchValue]:
-        count = len(nodes)
+    def _read_items(self, nodes: list[ast.expr], scope: NameScope) -> list[LaunchValue]:
+        found: list[LaunchValue] = []
         for node in nodes:
-            if isinstance(node, ast.Starred):
-                value = self.evaluate(node.value, scope)
-                # What doubles in every line would fill the memory.
-                count += len(value) if isinstance(value, list | tuple) else 0
-                is_known = isinstance(value, list | tuple) and count <= MAX_ITEMS
-                yield from value if is_known else (self.quote(node),)
+            value = self.evaluate(node.value if isinstance(node, ast.Starred) else node, scope)
+            if not isinstance(node, ast.Starred):
+                found.append(value)
+            elif isinstance(value, list | tuple) and self.pay_for(value, node):
+                found += value
+            elif isinstance(value, list) and not found:
+                # What doubles in every line would fill the memory: it stays as it is.
+                return value
             else:
-                yield self.evaluate(node, scope)
+                found.append(self.quote(node))
+        return found
 
     def _read_dict(self, node: ast.Dict, scope: NameScope) -> LaunchValue:
         found: dict[LaunchValue, LaunchValue] = {}
         for key_node, value_node in zip(node.keys, node.values, strict=True):
             value = self.evaluate(value_node, scope)
             if key_node is None:
-                if not isinstance(value, Mapping):
+                if not isinstance(value, Mapping) or not self.pay_for(value, node):
                     return self.quote(node)
                 found |= value
                 continue
@@ -223,6 +251,8 @@ class ExpressionReader(ABC):
 
     def combine(self, sign: ast.operator, left: LaunchValue, right: LaunchValue, node: ast.AST) -> LaunchValue:
         """Return what an operator makes of two values."""
+        if not (self.pay_for(left, node) and self.pay_for(right, node)):
+            return left if isinstance(left, list) else self.quote(node)
         made = combine_values(sign, left, right)
         return self.quote(node) if made is None else made
 
@@ -251,7 +281,8 @@ class ExpressionReader(ABC):
     def _read_comparison(self, node: ast.Compare, scope: NameScope) -> LaunchValue:
         values = [self.force(self.evaluate(each, scope)) for each in (node.left, *node.comparators)]
         for sign, left, right in zip(node.ops, values, values[1:], strict=False):
-            verdict = compare_values(sign, left, right)
+            is_paid = self.pay_for(left, node) and self.pay_for(right, node)
+            verdict = compare_values(sign, left, right) if is_paid else None
             if verdict is None:
                 return self.quote(node)
             if not verdict:
@@ -303,10 +334,10 @@ class ExpressionReader(ABC):
         if isinstance(target, ast.Name):
             scope.values[target.id] = value
         elif isinstance(target, ast.Tuple | ast.List):
-            items = list_loop_items(value) if not isinstance(value, Mapping) else None
-            fits = items is not None and len(items) == len(target.elts)
+            fits = isinstance(value, list | tuple | str) and len(value) == len(target.elts)
+            items = list(value) if fits else None
             for number, each in enumerate(target.elts):
-                self.assign(each, items[number] if fits and items else self.quote(target), scope)
+                self.assign(each, items[number] if items else self.quote(target), scope)
         elif isinstance(target, ast.Subscript):
             self._assign_entry(target, value, scope)
 
@@ -322,7 +353,7 @@ class ExpressionReader(ABC):
 
     def _read_call(self, node: ast.Call, scope: NameScope) -> LaunchValue:
         function = self.evaluate(node.func, scope)
-        positional = list(self._read_items(node.args, scope))
+        positional = self._read_items(node.args, scope)
         named: dict[str, LaunchValue] = {}
         for keyword in node.keywords:
             value = self.evaluate(keyword.value, scope)
@@ -334,9 +365,8 @@ class ExpressionReader(ABC):
                 self.tell_lost("call", "arguments of it are computed", keyword.value)
         return self.call(function, CallArguments(positional, named), node)
 
-
-def list_loop_items(value: LaunchValue) -> list[LaunchValue] | None:
-    """Return what a loop over a value takes one after the other; None where that is not known."""
-    if isinstance(value, list | tuple | Mapping):
-        return list(value)[:MAX_ITEMS] if len(value) <= MAX_ITEMS else None
-    return list(value) if isinstance(value, str) and len(value) <= MAX_TEXT else None
+    def list_loop_items(self, node: ast.expr, scope: NameScope) -> list[LaunchValue] | None:
+        """Return what a loop takes one after the other; None where that is not known."""
+        value = self.evaluate(node, scope)
+        is_known = isinstance(value, list | tuple | Mapping | str) and self.pay_for(value, node)
+        return list(value) if is_known else None

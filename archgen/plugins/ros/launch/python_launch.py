@@ -9,7 +9,7 @@ from archgen.plugin.importing import ForeignFileError, Span
 from archgen.plugins.ros.launch.launch_actions import LaunchAction
 from archgen.plugins.ros.launch.launch_values import UnknownValue
 from archgen.plugins.ros.launch.python_calls import CallReader
-from archgen.plugins.ros.launch.python_parsing import read_launch_module
+from archgen.plugins.ros.launch.python_parsing import parse_launch_module
 from archgen.plugins.ros.launch.python_values import CallArguments, FunctionValue, NameScope
 
 if TYPE_CHECKING:
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 _ENTRY = "generate_launch_description"
 
 
-def read_python_launch(path: Path, run: LaunchRun) -> list[LaunchAction]:
+def read_python_launch(path: Path, data: bytes, run: LaunchRun) -> list[LaunchAction]:
     """Return the actions of a file. Raise ForeignFileError for what is no Python, or no launch file."""
-    text, tree = read_launch_module(run.files.show_path(path), path)
+    text, tree = parse_launch_module(run.files.show_path(path), data)
     reader = CallReader(path, text, run)
     scope = NameScope(values={"__file__": reader.own_name, "__name__": "launch_file"})
     reader.run_block(tree.body, scope)
@@ -30,10 +30,9 @@ def read_python_launch(path: Path, run: LaunchRun) -> list[LaunchAction]:
         raise ForeignFileError(words, Span.of_file(reader.file), "give a launch file")
     holder = LaunchAction("description", "LaunchDescription", reader.place(function.definition))
     result = reader.call_function(function, CallArguments([], {}), function.definition)
+    if isinstance(result, LaunchAction):
+        return [result]
     reader.add_children(holder, result)
-    if not reader.count_step():
-        words = "it takes more steps than archgen follows: what comes later is not read"
-        run.add_note("launch file", words, Span.of_file(reader.file))
     if result is None or isinstance(result, UnknownValue):
         run.add_note("launch file", "what it starts is computed", reader.place(function.definition))
     return holder.children

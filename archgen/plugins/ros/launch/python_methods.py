@@ -7,14 +7,22 @@ from collections.abc import Mapping
 
 from archgen.plugin.importing import Span
 from archgen.plugins.ros.launch.launch_actions import LaunchAction
-from archgen.plugins.ros.launch.launch_values import OPEN_FILE, LaunchValue, Substitution, UnknownValue, join_values
-from archgen.plugins.ros.launch.python_operators import MANY_ITEMS, MAX_ITEMS, fill_text
+from archgen.plugins.ros.launch.launch_values import (
+    MAX_TEXT,
+    OPEN_FILE,
+    LaunchValue,
+    Substitution,
+    UnknownValue,
+    join_values,
+)
+from archgen.plugins.ros.launch.python_operators import fill_text
 from archgen.plugins.ros.launch.python_statements import StatementReader
 from archgen.plugins.ros.launch.python_values import BoundMethod, CallArguments
 
 _TEXT_METHODS = frozenset(
     {"lower", "upper", "strip", "lstrip", "rstrip", "replace", "split", "startswith", "endswith", "title"}
 )
+_MAX_GROWTH = 100
 _SAME_METHODS = frozenset(
     {"perform", "as_posix", "resolve", "absolute", "toxml", "toprettyxml", "expanduser", "copy", "string"}
 )
@@ -25,12 +33,19 @@ class MethodReader(StatementReader):
 
     def add_children(self, action: LaunchAction, value: LaunchValue, depth: int = 0) -> None:
         """Put what a value holds into an action, list by list."""
-        if value is None or depth > 20 or not self.count_step():  # noqa: PLR2004 - lists in lists
+        if value is None or depth > 20:  # noqa: PLR2004 - lists in lists
+            return
+        if not self.budget.pay():
+            self._run.tell_excess(action.word, action.span)
             return
         if isinstance(value, LaunchAction):
             action.children.append(value)
         elif isinstance(value, list | tuple):
-            for item in value:
+            # However long it is, something is left for the lines behind it.
+            followed = value[: self.budget.left // 4]
+            if len(followed) < len(value):
+                self._run.tell_excess(action.word, action.span)
+            for item in followed:
                 self.add_children(action, item, depth + 1)
         elif isinstance(value, UnknownValue):
             line = value.line or action.span.line
@@ -73,6 +88,10 @@ class MethodReader(StatementReader):
             and isinstance(text, str)
             and all(isinstance(each, str) for each in arguments.positional)
         ):
+            # A text in the place of each letter, or a list of all letters.
+            grown = (len(text) + 1) * max((len(each) for each in arguments.positional[1:]), default=1)
+            if not self.pay_to_repeat(node, len(text)) or grown > MAX_TEXT * _MAX_GROWTH:
+                return self.quote(node)
             try:
                 found: LaunchValue = getattr(text, name)(*arguments.positional)
             except (
@@ -80,7 +99,7 @@ class MethodReader(StatementReader):
                 ValueError,
             ):  # as it would be when the file is run: an empty separator, an argument too few
                 return self.quote(node)
-            return found if not isinstance(found, str) or len(found) <= 2 * len(text) + 100 else self.quote(node)
+            return found if not isinstance(found, str) or len(found) <= MAX_TEXT else self.quote(node)
         return self.quote(node)
 
     def _call_list_method(
@@ -90,12 +109,12 @@ class MethodReader(StatementReader):
         if name == "append":
             owner.append(self._with_conditions(value))
         elif name == "extend":
-            items = list(value) if isinstance(value, list | tuple) else [value]
-            if len(owner) + len(items) > MAX_ITEMS:
-                self.tell_lost("extend", MANY_ITEMS, node)
-            else:
+            if self.pay_for(value, node):
+                items = list(value) if isinstance(value, list | tuple) else [value]
                 owner += map(self._with_conditions, items)
-        elif name == "insert" and len(arguments.positional) == 2 and isinstance(value, int):  # noqa: PLR2004 - place and value
+        elif (
+            name == "insert" and len(arguments.positional) > 1 and isinstance(value, int) and self.pay_for(owner, node)
+        ):
             owner.insert(value, self._with_conditions(arguments.positional[1]))
         elif name == "copy":
             return list(owner)
@@ -106,7 +125,8 @@ class MethodReader(StatementReader):
     def _with_conditions(self, value: LaunchValue) -> LaunchValue:
         """Return an action that is added only if the conditions around hold."""
         if isinstance(value, LaunchAction):
-            value.conditions += [each for each in self.conditions if each not in value.conditions]
+            known = set(map(id, value.conditions))
+            value.conditions += [each for each in self.conditions if id(each) not in known]
         return value
 
     def _call_dict_method(  # noqa: C901, PLR0911 - a method each
@@ -116,12 +136,12 @@ class MethodReader(StatementReader):
         match name:
             case "update":
                 if isinstance(value, Mapping):
-                    owner |= value
+                    owner |= value if self.pay_for(value, node) else {}
                 elif value is not None:
                     self.tell_lost("update", f"what it adds is computed: `{self.quote(node).reason}`", node)
                 owner |= arguments.named
                 return None
-            case "items":
+            case "items" if self.pay_for(owner, node):
                 return [[key, each] for key, each in owner.items()]
             case "keys":
                 return list(owner)

@@ -10,9 +10,6 @@ from typing import Any
 
 from archgen.plugins.ros.launch.launch_values import OPEN, LaunchValue, Substitution, UnknownValue, join_values
 
-MAX_ITEMS = 5_000
-MANY_ITEMS = f"the list is longer than {MAX_ITEMS:,}, which archgen does not follow"
-"""How long a list may be while it is put together."""
 _MAX_NUMBER = 1e15
 _NUMBERS = (int, float)
 _TEXTS = (str, Substitution)
@@ -54,7 +51,7 @@ def combine_values(  # noqa: PLR0911 - a kind of values each
     if isinstance(sign, ast.Add) and isinstance(left, _TEXTS) and isinstance(right, _TEXTS):
         return join_values([left, right])
     if isinstance(sign, ast.Add) and isinstance(left, list | tuple) and isinstance(right, list | tuple):
-        return [*left, *right] if len(left) + len(right) <= MAX_ITEMS else None
+        return [*left, *right]
     if isinstance(sign, ast.BitOr) and isinstance(left, dict) and isinstance(right, dict):
         return left | right
     if isinstance(sign, ast.Mod) and isinstance(left, str):

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import ast
 import warnings
-from pathlib import Path
 from typing import Literal
 
-from archgen.plugin.importing import ForeignFileError, Span, read_bounded
-from archgen.plugins.ros.launch.launch_files import MAX_LAUNCH_BYTES
+from archgen.plugin.importing import ForeignFileError, Span
 
 MAX_CHARACTERS = 1_000_000
 """Launch files have a few thousand characters, the longest of known robots sixty thousand."""
@@ -62,9 +60,8 @@ def _parse_quietly(text: str, mode: Literal["exec", "eval"]) -> ast.AST:
         raise PythonRefusedError(str(error)) from None
 
 
-def read_python_text(file: str, path: Path) -> str:
+def decode_text(file: str, data: bytes) -> str:
     """Return the text of a file. Raise ForeignFileError."""
-    data = read_bounded(path, MAX_LAUNCH_BYTES)
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -73,9 +70,9 @@ def read_python_text(file: str, path: Path) -> str:
         raise ForeignFileError(words, Span(file, line, 1, line, 2), "save it as UTF-8") from None
 
 
-def read_launch_module(file: str, path: Path) -> tuple[str, ast.Module]:
+def parse_launch_module(file: str, data: bytes) -> tuple[str, ast.Module]:
     """Return the text and the syntax tree of a file. Raise ForeignFileError for what is no Python."""
-    text = read_python_text(file, path)
+    text = decode_text(file, data)
     try:
         return text, parse_python(text)
     except PythonRefusedError as error:

@@ -14,9 +14,8 @@ from archgen.plugin.importing import ForeignFileError
 from archgen.plugins.ros.launch.launch_actions import LaunchCondition
 from archgen.plugins.ros.launch.launch_values import LaunchValue, UnknownValue
 from archgen.plugins.ros.launch.python_branches import BranchRecord, Container, merge_names
-from archgen.plugins.ros.launch.python_expressions import MAX_DEPTH, ExpressionReader, list_loop_items
-from archgen.plugins.ros.launch.python_operators import MANY_ITEMS, MAX_ITEMS
-from archgen.plugins.ros.launch.python_parsing import read_launch_module
+from archgen.plugins.ros.launch.python_expressions import MAX_DEPTH, ExpressionReader
+from archgen.plugins.ros.launch.python_parsing import parse_launch_module
 from archgen.plugins.ros.launch.python_values import CallArguments, FunctionValue, ImportedName, ModuleValue, NameScope
 
 if TYPE_CHECKING:
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
 Ending = Literal["", "return", "break", "continue", "raise"]
 """How a block ended."""
 _JUMPS: dict[type[ast.stmt], Ending] = {ast.Raise: "raise", ast.Break: "break", ast.Continue: "continue"}
-_MAX_FUNCTIONS = 20
+_STEPS_OF_A_SCOPE = 3
 _REMEMBERED_IN_A_STEP = 10
 
 
@@ -40,7 +39,6 @@ class StatementReader(ExpressionReader):
         """The modules beside the file that were read, for all of them together."""
         self.conditions: list[LaunchCondition] = []
         """The conditions around that are not known: what is made there counts only if they hold."""
-        self._functions = 0
         self._statement_runners: dict[type[ast.stmt], Callable[[Any, NameScope], Ending]] = {
             ast.Assign: self._run_assignment,
             ast.AnnAssign: self._run_annotated_assignment,
@@ -85,12 +83,12 @@ class StatementReader(ExpressionReader):
         if path not in self.modules:
             self.modules[path] = scope = NameScope(values={"__file__": path.as_posix(), "__name__": name})
             try:
-                text, tree = read_launch_module(self._run.files.show_path(path), path)
+                text, tree = parse_launch_module(self._run.files.show_path(path), self._run.read_file(path) or b"")
             except ForeignFileError as error:
                 self._run.add_note("import", error.message, error.span)
             else:
                 reader = type(self)(path, text, self._run)
-                reader.modules = self.modules
+                reader.modules, reader.depth, reader.budget = self.modules, self.depth, self.budget
                 reader.run_block(tree.body, scope)
         return ModuleValue(name, self.modules[path])
 
@@ -104,13 +102,13 @@ class StatementReader(ExpressionReader):
 
     def _run_statement(self, statement: ast.stmt, scope: NameScope) -> Ending:
         runner = self._statement_runners.get(type(statement))
-        if runner is None or self._depth >= MAX_DEPTH or not self.count_step():
+        if runner is None or self.depth >= MAX_DEPTH or not self.pay(statement):
             return ""
-        self._depth += 1
+        self.depth += 1
         try:
             return runner(statement, scope)
         finally:
-            self._depth -= 1
+            self.depth -= 1
 
     def _run_assignment(self, statement: ast.Assign, scope: NameScope) -> Ending:
         value = self.evaluate(statement.value, scope)
@@ -128,11 +126,8 @@ class StatementReader(ExpressionReader):
             return ""
         old, new = scope.find(statement.target.id)[1], self.evaluate(statement.value, scope)
         if isinstance(old, list) and isinstance(statement.op, ast.Add):
-            items = new if isinstance(new, list | tuple) else [new]
-            if len(old) + len(items) > MAX_ITEMS:
-                self.tell_lost("+=", MANY_ITEMS, statement)
-            else:
-                old += items
+            if self.pay_for(new, statement):
+                old += new if isinstance(new, list | tuple) else [new]
         else:
             scope.values[statement.target.id] = self.combine(statement.op, old, new, statement)
         return ""
@@ -200,7 +195,7 @@ class StatementReader(ExpressionReader):
         test, depth = self.quote(statement.test), len(self.conditions)
         before = dict(scope.values)
         record = BranchRecord(scope)
-        self.count_steps(record.size // _REMEMBERED_IN_A_STEP)
+        self.pay(statement, record.size // _REMEMBERED_IN_A_STEP)
         endings: list[Ending] = []
         names: list[dict[LaunchValue, LaunchValue]] = []
         contents: list[list[Container]] = []
@@ -230,13 +225,13 @@ class StatementReader(ExpressionReader):
         return ""
 
     def _run_for(self, statement: ast.For, scope: NameScope) -> Ending:
-        items = list_loop_items(self.evaluate(statement.iter, scope))
+        items = self.list_loop_items(statement.iter, scope)
         if items is None:
             repeated = self.quote(statement.iter)
             self.tell_noted("for", f"how often is computed: `{repeated.reason}`; what is in it is read once", statement)
             items = [repeated]
         for item in items:
-            if not self.count_step():
+            if not self.pay_to_repeat(statement):
                 break
             self.assign(statement.target, item, scope)
             depth = len(self.conditions)
@@ -249,9 +244,9 @@ class StatementReader(ExpressionReader):
         return self.run_block(statement.orelse, scope)
 
     def _run_while(self, statement: ast.While, scope: NameScope) -> Ending:
-        for _ in range(MAX_ITEMS):
+        while self.pay_to_repeat(statement):
             verdict = self.judge(self.evaluate(statement.test, scope))
-            if verdict is False or not self.count_step():
+            if verdict is False:
                 break
             if verdict is None:
                 self.tell_noted("while", "how often is computed; what is in it is read once", statement)
@@ -266,20 +261,18 @@ class StatementReader(ExpressionReader):
 
     def call_function(self, function: FunctionValue, arguments: CallArguments, node: ast.AST) -> LaunchValue:
         """Return what a function of the file gives."""
-        if self._functions >= _MAX_FUNCTIONS or not self.count_step():
+        if not self.pay_to_repeat(node, _STEPS_OF_A_SCOPE):
             return self.quote(node)
         if isinstance(function.reader, StatementReader) and function.reader is not self:
             return function.reader.call_from(self, function, arguments)
         scope = NameScope(function.scope)
         self._bind_arguments(function, arguments, scope)
-        self._functions += 1
         depth = len(self.conditions)
         try:
             if isinstance(function.definition, ast.Lambda):
                 return self.evaluate(function.definition.body, scope)
             self.run_block(function.definition.body, scope)
         finally:
-            self._functions -= 1
             del self.conditions[depth:]
         returned = scope.returned
         if len(returned) > 1:
@@ -290,12 +283,12 @@ class StatementReader(ExpressionReader):
 
     def call_from(self, caller: StatementReader, function: FunctionValue, arguments: CallArguments) -> LaunchValue:
         """Return what a function of this module gives that another file calls."""
-        before = self.context, self.conditions, self._functions
-        self.context, self.conditions, self._functions = caller.context, caller.conditions, caller._functions
+        before = self.context, self.conditions, self.depth
+        self.context, self.conditions, self.depth = caller.context, caller.conditions, caller.depth
         try:
             return self.call_function(function, arguments, function.definition)
         finally:
-            self.context, self.conditions, self._functions = before
+            self.context, self.conditions, self.depth = before
 
     def _read_list_comprehension(self, node: ast.ListComp | ast.GeneratorExp, scope: NameScope) -> LaunchValue:
         scopes = self._walk_generators(node.generators, NameScope(scope), 0)
@@ -315,7 +308,7 @@ class StatementReader(ExpressionReader):
         if depth == len(generators):
             return [scope]
         generator = generators[depth]
-        items = list_loop_items(self.evaluate(generator.iter, scope))
+        items = self.list_loop_items(generator.iter, scope)
         if items is None:
             return None
         found: list[NameScope] = []
@@ -327,7 +320,7 @@ class StatementReader(ExpressionReader):
                 return None
             if all(verdicts):
                 inner_scopes = self._walk_generators(generators, inner, depth + 1)
-                if inner_scopes is None or len(found) + len(inner_scopes) > MAX_ITEMS or not self.count_step():
+                if inner_scopes is None or not self.pay_to_repeat(generator.target, _STEPS_OF_A_SCOPE):
                     return None
                 found += inner_scopes
         return found

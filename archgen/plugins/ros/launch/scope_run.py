@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
-from archgen.plugin.importing import ImportNote, Span
+from archgen.plugin.importing import ImportNote, Span, WorkBudget, read_bounded
 from archgen.plugins.ros.launch.launch_actions import (
     ActionKind,
     ConditionalValue,
@@ -16,7 +16,7 @@ from archgen.plugins.ros.launch.launch_actions import (
 )
 from archgen.plugins.ros.launch.launch_arguments import DeclaredArgument, LaunchArguments
 from archgen.plugins.ros.launch.launch_context import LaunchContext
-from archgen.plugins.ros.launch.launch_files import LaunchFiles
+from archgen.plugins.ros.launch.launch_files import MAX_LAUNCH_BYTES, LaunchFiles
 from archgen.plugins.ros.launch.launch_parameter_values import FILE_KIND, ParameterFileReader
 from archgen.plugins.ros.launch.launch_values import (
     OPEN,
@@ -26,6 +26,12 @@ from archgen.plugins.ros.launch.launch_values import (
     describe_launch_value,
 )
 
+_MAX_STEPS = 10_000_000
+"""Of one import, whatever is read: 50,000 nodes that a loop makes are fewer."""
+_STEPS_ADDED_FOR_A_BYTE = 2
+"""What is written out has more: 50,000 nodes in XML, each with a few parameters and names, are 9 MB and take 10 million."""
+_BYTES_READ_IN_A_STEP = 8
+
 
 class ScopeRun:
     """Walks through what sets something. Notes are kept here, each one once for a place."""
@@ -33,12 +39,14 @@ class ScopeRun:
     def __init__(self, files: LaunchFiles, arguments: LaunchArguments) -> None:
         self.files, self.arguments = files, arguments
         self.parameter_reader = ParameterFileReader()
-        self.context = LaunchContext()
+        self.budget = WorkBudget(_MAX_STEPS)
+        self.context = LaunchContext(self.budget)
         self.notes: list[ImportNote] = []
         self.hosts: dict[str, str] = {}
         """The machines of ROS 1, with their addresses."""
         self.open_files: list[Path] = []
         """The files that are read just now, each included by the one before."""
+        self._read_files: set[Path] = set()
         self._seen_notes: set[tuple[str, str, int, str]] = set()
         self._handlers: dict[ActionKind, Callable[[LaunchAction], None]] = {
             "argument": self._run_argument,
@@ -134,7 +142,7 @@ class ScopeRun:
     def _run_environment(self, action: LaunchAction) -> None:
         name, value = self.context.resolve(action.get("name")), self.context.resolve(action.get("value"))
         if isinstance(name, str) and isinstance(value, str):
-            self.context.scope.environment = (*self.context.scope.environment, (name, value))
+            self.context.scope.environment = {**self.context.scope.environment, name: value}
         else:
             unknown = value if isinstance(value, UnknownValue) else UnknownValue(str(name))
             self.tell_computed(action, "the value", unknown)
@@ -174,6 +182,25 @@ class ScopeRun:
                 continue
             chosen.append(item.value if isinstance(item, ConditionalValue) else item)
         return chosen
+
+    def read_file(self, path: Path) -> bytes | None:
+        """Return what a launch file holds, or a module beside it; None where that is more than is followed."""
+        data = read_bounded(path, MAX_LAUNCH_BYTES)
+        if path not in self._read_files:
+            self._read_files.add(path)
+            self.budget.add(_STEPS_ADDED_FOR_A_BYTE * len(data))
+        is_paid = self.pay(len(data) // _BYTES_READ_IN_A_STEP, "launch file", Span.of_file(self.files.show_path(path)))
+        return data if is_paid else None
+
+    def pay(self, steps: int, word: str, span: Span) -> bool:
+        """Whether the budget has so many steps more; the first time that it has not is noted."""
+        return self.budget.pay(steps) or self.tell_excess(word, span)
+
+    def tell_excess(self, word: str, span: Span) -> bool:
+        """Note, once, that there is more than is followed; False, for what is not done."""
+        if words := self.budget.tell_excess():
+            self.add_note(word, words, span, "give launch files that start less, one after the other")
+        return False
 
     def add_note(self, kind: str, message: str, span: Span, help_line: str = "", fate: str = "not taken") -> None:
         """Add a note, once for each place."""

@@ -11,6 +11,7 @@ from archgen.plugins.ros.launch.launch_parameter_values import (
     FILE_KIND,
     CommandWords,
     evaluate_parameter,
+    nest_values,
     overlay_parameters,
     split_parameter,
 )
@@ -18,6 +19,8 @@ from archgen.plugins.ros.launch.launch_values import Substitution, UnknownValue
 from archgen.plugins.ros.launch.scope_run import ScopeRun
 
 SIMULATED_TIME = "use_sim_time"
+_MAX_DEPTH = 20
+"""So many parts of a parameter's name are levels of its tree."""
 
 
 class ServerParameter(NamedTuple):
@@ -35,8 +38,9 @@ def give_server_parameters(
     """Give nodes what stands below their names; return what is for all nodes, and note the rest."""
     names = {node.full_name: node for node in nodes if node.full_name}
     for_all: dict[str, Any] = {}
+    given: dict[str, dict[str, Any]] = {}
     for full_name, value, span, conditions in server_parameters:
-        parts = full_name.strip("/").split("/")
+        parts = full_name.strip("/").split("/", _MAX_DEPTH)
         owner = next(
             (names[name] for end in range(len(parts), 0, -1) if (name := "/" + "/".join(parts[:end])) in names), None
         )
@@ -56,23 +60,20 @@ def give_server_parameters(
             run.add_note("param", message, span, "give it to the nodes that read it")
             continue
         inner = parts[len(owner.full_name.strip("/").split("/")) :]
+        values = given.setdefault(owner.full_name, {})
         if isinstance(value, CommandWords):
-            if not _has_parameter(owner, inner):
+            if not _has_parameter(owner.parameters, inner) and not _has_parameter(values, inner):
                 owner.parameter_commands.setdefault(".".join(inner), list(value))
-            continue
-        for part in reversed(inner):
-            value = {part: value}  # noqa: PLW2901 - wrapped from the inside
-        given = value if isinstance(value, dict) else {}
+        elif isinstance(nested := nest_values(value, inner), dict):
+            overlay_parameters(values, nested)
+    for name, values in given.items():
         # What the node itself says counts more.
-        own = dict(owner.parameters)
-        owner.parameters.clear()
-        overlay_parameters(owner.parameters, given)
-        overlay_parameters(owner.parameters, own)
+        overlay_parameters(values, names[name].parameters)
+        names[name].parameters = values
     return for_all
 
 
-def _has_parameter(node: LaunchedNode, parts: list[str]) -> bool:
-    parameters: Any = node.parameters
+def _has_parameter(parameters: Any, parts: list[str]) -> bool:  # noqa: ANN401 - data of any form
     for part in parts:
         parameters = parameters.get(part) if isinstance(parameters, dict) else None
     return parameters is not None
@@ -108,6 +109,4 @@ def _read_server_file(run: ScopeRun, action: LaunchAction, entry: Substitution, 
         shown = text if isinstance(text, str) else text.reason
         run.add_note(FILE_KIND, f"`{shown}`: it is not read", action.span)
         return
-    for part in reversed(str(entry.parts[1]).split("/") if entry.parts[1] else []):
-        values = {part: values}
-    overlay_parameters(server_values, values)
+    overlay_parameters(server_values, nest_values(values, str(entry.parts[1]).split("/") if entry.parts[1] else []))

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path, PurePosixPath
 
 from archgen.plugin import dataclass
-from archgen.plugin.importing import ForeignFileError, read_bounded
+from archgen.plugin.importing import CHARACTERS_IN_A_STEP, ForeignFileError, Span, read_bounded
+from archgen.plugins.ros.ros_package.import_account import ImportAccount
 
 _MAX_BYTES = 1_000_000
-_MAX_CALLS = 100_000
 _MAX_DEPTH = 8
+_FILES_COMPARED_IN_A_STEP = 2
 _COMMENT = re.compile(r"#[^\n]*")
 _CALL = re.compile(r"\b([A-Za-z_]\w*)\s*\(([^()]{0,20000})\)")
 _WORD = re.compile(r'"([^"]*)"|([^\s"]+)')
 _USE = re.compile(r"\$\{(\w+)\}")
 CMAKE_FILE = "CMakeLists.txt"
+_Call = tuple[str, str, Span]
+"""A call as it is written: its name in lower case, what stands in its brackets, and its place."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,20 +33,25 @@ class CmakeCall:
     folder: Path
 
 
-def read_cmake_calls(path: Path, package: str, files: Sequence[Path]) -> Iterator[CmakeCall]:
-    """Yield the calls of a file, and of those in folders that it adds. `files` are those of the package, for globs."""
-    reader = _CmakeReader(path.parent, package, files)
+def read_cmake_calls(
+    path: Path, package: str, files: Mapping[Path, str], account: ImportAccount
+) -> Iterator[CmakeCall]:
+    """Yield the calls of a file, and of those in folders that it adds.
+
+    `files` are those of the package, for globs, with their names in messages. The account's budget pays for each call, and
+    for what is filled in.
+    """
+    reader = _CmakeReader(path.parent, package, files, account)
     yield from reader.read_file(path, 0)
 
 
 class _CmakeReader:
     """Reads the files of one package."""
 
-    def __init__(self, root: Path, package: str, files: Sequence[Path]) -> None:
-        self._files = files
+    def __init__(self, root: Path, package: str, files: Mapping[Path, str], account: ImportAccount) -> None:
+        self._files, self._account = files, account
         self._variables: dict[str, list[str]] = {"PROJECT_NAME": [package], "CMAKE_SOURCE_DIR": [root.as_posix()]}
         self._variables["PROJECT_SOURCE_DIR"] = [root.as_posix()]
-        self._count = 0
         self._conditions = 0
 
     def read_file(self, path: Path, depth: int) -> Iterator[CmakeCall]:
@@ -54,38 +62,41 @@ class _CmakeReader:
             return
         # Comments go, lines stay.
         plain_text = _COMMENT.sub("", text)
-        calls: list[tuple[str, str, int]] = []
+        calls: list[_Call] = []
         line, counted = 1, 0
         for match in _CALL.finditer(plain_text):
             line += plain_text.count("\n", counted, match.start())
             counted = match.start()
-            calls.append((match[1].lower(), match[2], line))
+            calls.append((match[1].lower(), match[2], Span(self._files.get(path, path.name), line, 1, line, 2)))
         self._variables["CMAKE_CURRENT_SOURCE_DIR"] = self._variables["CMAKE_CURRENT_LIST_DIR"] = [
             path.parent.as_posix()
         ]
         yield from self._read_calls(calls, path.parent, depth)
 
     def _read_calls(  # noqa: C901, PLR0912 - a command each
-        self, calls: list[tuple[str, str, int]], folder: Path, depth: int
+        self, calls: list[_Call], folder: Path, depth: int
     ) -> Iterator[CmakeCall]:
         place = 0
-        while place < len(calls) and self._count < _MAX_CALLS:
-            self._count += 1
-            name, text, line = calls[place]
+        while place < len(calls):
+            name, text, span = calls[place]
             place += 1
+            words = self._fill(text, name, span)
+            if words is None:
+                continue
             if name == "foreach" and depth < _MAX_DEPTH:
                 end = _find_end(calls, place)
-                variable, *items = self._fill(text) or [""]
+                variable, *items = words or [""]
                 if items[:2] == ["IN", "LISTS"]:
                     items = [each for listed in items[2:] for each in self._variables.get(listed, ())]
                 elif items[:2] == ["IN", "ITEMS"]:
                     items = items[2:]
                 for item in items:
+                    if not self._account.pay_to_repeat(1 + end - place, name, span):
+                        break
                     self._variables[variable] = [item]
                     yield from self._read_calls(calls[place:end], folder, depth + 1)
                 place = end + 1
                 continue
-            words = self._fill(text)
             self._conditions += {"if": 1, "endif": -1}.get(name, 0)
             if name == "set" and words:
                 values = [each for each in words[1:] if each not in {"CACHE", "PARENT_SCOPE"}]
@@ -99,10 +110,15 @@ class _CmakeReader:
                 else:
                     self._variables[words[0]] = values
             elif name == "list" and words[:1] == ["APPEND"] and len(words) > 1:
-                self._variables[words[1]] = [*self._variables.get(words[1], ()), *words[2:]]
+                self._variables.setdefault(words[1], []).extend(words[2:])
             elif name == "file" and words[:1] in (["GLOB"], ["GLOB_RECURSE"]) and len(words) > 1:
                 patterns = [each for each in words[2:] if each not in {"CONFIGURE_DEPENDS", "RELATIVE"}]
-                self._variables[words[1]] = self._find_files(patterns, folder, is_deep=words[0] != "GLOB")
+                is_paid = self._account.pay_to_repeat(
+                    len(patterns) * len(self._files) // _FILES_COMPARED_IN_A_STEP, name, span
+                )
+                self._variables[words[1]] = (
+                    self._find_files(patterns, folder, is_deep=words[0] != "GLOB") if is_paid else []
+                )
             elif name == "project" and words:
                 self._variables["PROJECT_NAME"] = [words[0]]
             elif name == "add_subdirectory" and words and depth < _MAX_DEPTH:
@@ -111,15 +127,20 @@ class _CmakeReader:
                     yield from self.read_file(inner, depth + 1)
                     self._variables["CMAKE_CURRENT_SOURCE_DIR"] = [folder.as_posix()]
             else:
-                yield CmakeCall(name, tuple(words), line, folder)
+                yield CmakeCall(name, tuple(words), span.line, folder)
 
-    def _fill(self, text: str) -> list[str]:
+    def _fill(self, text: str, name: str, span: Span) -> list[str] | None:
+        """Return the words of a call with the variables filled in; None for more than the budget has."""
         words: list[str] = []
         for quoted, plain in _WORD.findall(text):
             word = quoted or plain
+            used = [value for use in _USE.findall(word) for value in self._variables.get(use, ())]
+            steps = 1 + len(used) + sum(map(len, used)) // CHARACTERS_IN_A_STEP
+            if not self._account.pay_to_repeat(steps, name, span):
+                return None
             whole = _USE.fullmatch(word)
             if whole and whole[1] in self._variables:
-                words += self._variables[whole[1]]
+                words += used
             else:
                 filled = _USE.sub(lambda use: ";".join(self._variables.get(use[1], [use[0]])), word)
                 words += [filled] if quoted or "${" in filled else filled.split(";")
@@ -137,7 +158,7 @@ class _CmakeReader:
         return found
 
 
-def _find_end(calls: list[tuple[str, str, int]], place: int) -> int:
+def _find_end(calls: list[_Call], place: int) -> int:
     depth = 1
     for number in range(place, len(calls)):
         depth += {"foreach": 1, "endforeach": -1}.get(calls[number][0], 0)

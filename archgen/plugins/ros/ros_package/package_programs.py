@@ -82,7 +82,7 @@ def _read_cmake(
     file: PackageFile, package: str, files: Sequence[PackageFile], account: ImportAccount
 ) -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield the programs that a CMakeLists.txt makes."""
-    for call in read_cmake_calls(file.path, package, [each.path for each in files]):
+    for call in read_cmake_calls(file.path, package, {each.path: each.shown for each in files}, account):
         words = list(call.words)
         if call.name in {"add_executable", "ament_auto_add_executable"} and words and not _NO_NODES & set(words):
             if not _PROGRAM_NAME.match(words[0]):

@@ -11,7 +11,7 @@ from archgen.plugins.ros.sources.walk_values import Value, WalkedObject, join_te
 
 MAX_ITEMS = 64
 """How many items of a list are walked through."""
-_MAX_TEXT = 2000
+_MAX_COMPARED = 1000
 _COMPARISONS: Mapping[str, Callable[[Value, Value], Value]] = MappingProxyType(
     {
         "==": operator.eq,
@@ -61,12 +61,24 @@ def operate(sign: str, values: Sequence[Value]) -> Value:  # noqa: PLR0911 - a k
     if sign == "/" and isinstance(left, str):
         return join_texts([values[0], "/", values[1]])
     is_number = sign not in _COMPARISONS
+    if not is_number and (_count_leaves(left) > _MAX_COMPARED or _count_leaves(right) > _MAX_COMPARED):
+        return NotImplemented
     if sign == "%" or not all(isinstance(each, int | float if is_number else _PLAIN) for each in (left, right)):
         return NotImplemented
     try:
         return (_ARITHMETIC if is_number else _COMPARISONS)[sign](left, right)
     except (TypeError, ArithmeticError):
         return NotImplemented
+
+
+def _count_leaves(value: Value) -> int:
+    """Return how many values lists and mappings hold that may stand in one another many times over; some more than counts."""
+    count, pending = 0, [value]
+    while pending and count <= _MAX_COMPARED:
+        each = pending.pop()
+        count += 1
+        pending += each.values() if isinstance(each, dict) else each if isinstance(each, list) else ()
+    return count
 
 
 def add_up(values: Sequence[Value]) -> Value:
@@ -76,9 +88,7 @@ def add_up(values: Sequence[Value]) -> Value:
         return reduce(operator.add, settled, 0)
     if all(isinstance(each, list) for each in settled):
         return [item for each in settled for item in each][:MAX_ITEMS]
-    joined = join_texts(values)
-    length = len(joined) if isinstance(joined, str) else len(joined.parts) * MAX_ITEMS
-    return NotImplemented if length > _MAX_TEXT else joined
+    return join_texts(values)
 
 
 def fill_text(text: str, mark: str, values: Sequence[Value]) -> Value:

@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
-from archgen.plugin.importing import Span
+from archgen.plugin.importing import Span, WorkBudget
 from archgen.plugins.ros.sources import plain_calls, ros_calls
 from archgen.plugins.ros.sources.cpp_sources import split_type_arguments
 from archgen.plugins.ros.sources.ros_call_reading import PARAMETER_HELPERS, RosCall, RosCallReader
@@ -28,14 +28,17 @@ from archgen.plugins.ros.sources.walk_values import (
     Value,
     WalkedObject,
     join_texts,
+    join_ways,
     settle,
 )
 
-_MAX_STEPS = 100_000
+MAX_PROGRAM_STEPS = 100_000
+_VARIABLES_COPIED_IN_A_STEP = 8
 _MAX_CALL_DEPTH = 25
 _MAX_FAMILY = 50
 _MAX_BARREN_CALLS = 8
 _MAX_ALIASES = 8
+_MAX_LISTS = 20
 _MISSING = object()
 _PASSED_THROUGH = frozenset(
     {"lock", "get", "shared_from_this", "get_parameter_value", "c_str", "move", "ref", "forward", "value", "get_value"}
@@ -70,8 +73,11 @@ class Scope:
 class ProgramWalk(RosCallReader):
     """One walk through one program; `given` are the parameters that its node is started with."""
 
-    def __init__(self, index: SourceIndex, cpp: CppCode | None, given: Mapping[str, Value], *, is_ros_1: bool) -> None:
+    def __init__(
+        self, index: SourceIndex, cpp: CppCode | None, given: Mapping[str, Value], budget: WorkBudget, *, is_ros_1: bool
+    ) -> None:
         super().__init__(given, is_ros_1=is_ros_1)
+        self._budget = WorkBudget(MAX_PROGRAM_STEPS, budget)
         self._index = index
         self._cpp = cpp or CppCode()
         self._modules: dict[SourceFile, Scope] = {}
@@ -79,7 +85,6 @@ class ProgramWalk(RosCallReader):
         self._walked: set[tuple[int, int]] = set()
         self._barren: Counter[tuple[int, int]] = Counter()
         """How often a function was walked through in a row and gave nothing: loops over all that a node does take long."""
-        self._steps = 0
         self.is_cut = False
         """Whether there was more than is walked."""
         self._evaluators: dict[str, Callable[[Any, Scope], Value]] = {
@@ -331,14 +336,13 @@ class ProgramWalk(RosCallReader):
 
     # Statements
 
+    def _pay(self, steps: int = 1) -> bool:
+        self.is_cut = self.is_cut or not self._budget.pay(steps)
+        return not self.is_cut
+
     def _walk(self, statements: Sequence[Statement], scope: Scope) -> bool:
         """Walk through statements; return whether the function ends there."""
-        for statement in statements:
-            self._steps += 1
-            self.is_cut |= self._steps > _MAX_STEPS
-            if self.is_cut or self._walkers[statement.kind](statement, scope):
-                return True
-        return False
+        return any(not self._pay() or self._walkers[each.kind](each, scope) for each in statements)
 
     def _walk_import(self, statement: Statement, scope: Scope) -> bool:
         for local, meaning in statement.names:
@@ -411,6 +415,7 @@ class ProgramWalk(RosCallReader):
         if verdict is not None:
             return self._walk(statement.body if verdict else statement.otherwise, scope)
         fields = scope.self_object.fields if scope.self_object is not None else {}
+        self._pay((len(scope.variables) + len(fields)) // _VARIABLES_COPIED_IN_A_STEP)
         before = (dict(scope.variables), dict(fields))
         self.conditions += 1
         ends = self._walk(statement.body, scope)
@@ -457,10 +462,7 @@ class ProgramWalk(RosCallReader):
         return UnknownText(expression.text, self._span(expression))
 
     def _evaluate(self, expression: Expression | None, scope: Scope) -> Value:
-        self._steps += 1
-        evaluate = (
-            self._evaluators.get(expression.kind) if expression is not None and self._steps <= _MAX_STEPS else None
-        )
+        evaluate = self._evaluators.get(expression.kind) if expression is not None and self._pay() else None
         result = NotImplemented if evaluate is None else evaluate(expression, scope)
         return self._give_up(expression) if result is NotImplemented and expression is not None else result
 
@@ -576,13 +578,13 @@ class ProgramWalk(RosCallReader):
                 self._assign(each, variables[parameter.name], scope)
         return returned
 
-    def _mention(self, values: Sequence[Value]) -> None:
+    def _mention(self, values: Sequence[Value], depth: int = 0) -> None:
         """Remember functions that are handed over: somebody will call them."""
         for value in values:
             if isinstance(value, BoundFunction):
                 self._pending.append((value, self.find_node(value.self_object) or self.current_node))
-            elif isinstance(value, list):
-                self._mention(value)
+            elif isinstance(value, list) and depth < _MAX_LISTS and self._pay(len(value)):
+                self._mention(value, depth + 1)
 
     def _call_super(self, arguments: list[Value], keywords: Mapping[str, Value], scope: Scope) -> None:
         holder, owner = scope.find("(class)"), scope.self_object
@@ -683,7 +685,7 @@ class ProgramWalk(RosCallReader):
             items = plain_calls.list_items(self._evaluate(expression.parts[1], scope))
             inner = Scope(scope.file, scope, scope.self_object)
             found = []
-            for item in () if items is None else items[: plain_calls.MAX_ITEMS]:
+            for item in () if items is None or self.is_cut else items[: plain_calls.MAX_ITEMS]:
                 self._assign(expression.parts[2], item, inner)
                 found.append(self._evaluate(expression.parts[3], inner))
             return NotImplemented if items is None else found
@@ -751,4 +753,4 @@ def _join_variables(variables: dict[str, Value], others: Mapping[str, Value]) ->
         if is_nothing or value is None:
             variables[name] = value if is_nothing else mine
         elif mine is not value and (type(mine) is not type(value) or mine != value):
-            variables[name] = Alternatives((value, mine))
+            variables[name] = join_ways(value, mine)

@@ -268,15 +268,16 @@ class RosCallReader:
     def _add(self, node: FoundNode, endpoint: FoundEndpoint) -> None:
         endpoint.is_conditional = self.conditions > 0
         shown = show_value(endpoint.name)
-        for other in node.endpoints:
-            is_one = (other.use, other.flow, show_value(other.name)) == (endpoint.use, endpoint.flow, shown)
-            if is_one and ("*" not in shown or other.span == endpoint.span):
-                if endpoint.message not in {"", other.message}:
-                    # Which of two types it has is decided by something that is not known.
-                    other.message = "" if other.message else endpoint.message
-                other.is_conditional &= endpoint.is_conditional
-                return
-        node.endpoints.append(endpoint)
+        # What is not known is one thing where it stands in one place.
+        key = (endpoint.use, endpoint.flow, shown, endpoint.span if "*" in shown else None)
+        other = node.endpoints_by_name.setdefault(key, endpoint)
+        if other is endpoint:
+            node.endpoints.append(endpoint)
+            return
+        if endpoint.message not in {"", other.message}:
+            # Which of two types it has is decided by something that is not known.
+            other.message = "" if other.message else endpoint.message
+        other.is_conditional &= endpoint.is_conditional
 
     # Parameters
 
@@ -337,7 +338,8 @@ def _join_prefix(prefix: Value, name: Value) -> Value:
     outer, inner = settle(prefix), settle(name)
     if not outer or (isinstance(inner, str) and inner.startswith(("/", "~"))):
         return name
-    return prefix if inner == "" else join_texts([prefix, "/", name])
+    joined = join_texts([prefix, "/", name])
+    return prefix if inner == "" else name if joined is NotImplemented else joined
 
 
 def _write_private(name: Value) -> Value:

@@ -21,11 +21,26 @@ class UnknownText:
     span: Span
 
 
-@dataclass(slots=True, eq=False)
-class Alternatives:
-    """One of several values, by a condition that is not known."""
+MAX_TEXT = 2000
+"""How long a text may become, and what else is put together of parts: `measure_value`."""
+_UNKNOWN_SIZE = 64
+_LEVEL_SIZE = 100
+_MAX_WAYS = 16
 
-    values: tuple[Value, ...]
+
+@dataclass(slots=True, eq=False)
+class _Parts:
+    """Several values. Their size is that of all parts together, and something for the level: so there are few of them, too."""
+
+    parts: tuple[Value, ...]
+    size: int = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.size = _LEVEL_SIZE + sum(map(measure_value, self.parts))
+
+
+class Alternatives(_Parts):
+    """One of several values, by a condition that is not known."""
 
 
 @dataclass(slots=True, eq=False)
@@ -37,11 +52,8 @@ class ParameterValue:
     default: Value = None
 
 
-@dataclass(slots=True, eq=False)
-class JoinedText:
+class JoinedText(_Parts):
     """A text of several parts of which not all are texts of the program itself."""
-
-    parts: tuple[Value, ...]
 
 
 @dataclass(slots=True, eq=False)
@@ -73,6 +85,8 @@ class FoundNode:
     name: Value = None
     namespace: Value = None
     endpoints: list[FoundEndpoint] = field(default_factory=list)
+    endpoints_by_name: dict[tuple[object, ...], FoundEndpoint] = field(default_factory=dict)
+    """The same, by what makes two uses of a name one."""
     defaults: dict[str, Value] = field(default_factory=dict)
     """The parameters that it declares."""
     periods: list[float | None] = field(default_factory=list)
@@ -119,21 +133,37 @@ class TextStream:
 
 def settle(value: Value) -> Value:
     """Return what counts of a value: of a parameter what it is set to, of joined parts the text if all are known."""
-    if isinstance(value, ParameterValue):
-        return settle(value.value)
+    while isinstance(value, ParameterValue):
+        value = value.value
     if isinstance(value, JoinedText):
         parts = [settle(part) for part in value.parts]
         return "".join(map(str, parts)) if all(isinstance(part, str | int) for part in parts) else value
     return value
 
 
+def measure_value(value: Value) -> int:
+    """Return how long a text is, or about how much there is to walk through in a value."""
+    while isinstance(value, ParameterValue):
+        value = value.value
+    return len(value) if isinstance(value, str) else value.size if isinstance(value, _Parts) else _UNKNOWN_SIZE
+
+
 def join_texts(parts: Iterable[Value]) -> Value:
-    """Return a text of parts; as parts where some of them are no texts of the program itself."""
+    """Return a text of parts, as parts where some are no texts of the program itself; NotImplemented for a very long one."""
     flat: list[Value] = []
     for part in parts:
         flat += part.parts if isinstance(part, JoinedText) else [part]
-    is_plain = all(isinstance(part, str | int | float) for part in flat)
-    return "".join(map(str, flat)) if is_plain else JoinedText(tuple(flat))
+    if all(isinstance(part, str | int | float) for part in flat):
+        texts = [*map(str, flat)]
+        return "".join(texts) if sum(map(len, texts)) <= MAX_TEXT else NotImplemented
+    joined = JoinedText(tuple(flat))
+    return joined if joined.size <= MAX_TEXT else NotImplemented
+
+
+def join_ways(first: Value, second: Value) -> Alternatives:
+    """Return one of two values, each of which may be one of several; the first ones of very many."""
+    ways = [way for each in (first, second) for way in (each.parts if isinstance(each, Alternatives) else (each,))]
+    return Alternatives(tuple({id(way): way for way in ways}.values())[:_MAX_WAYS])
 
 
 def show_value(value: Value) -> str:
@@ -146,20 +176,22 @@ def show_value(value: Value) -> str:
 
 def find_unknown(value: Value) -> str:
     """Return the expression that is not known in a value."""
-    if isinstance(value, ParameterValue):
-        return find_unknown(value.value) or f"the parameter {value.name}"
+    name = ""
+    while isinstance(value, ParameterValue):
+        name, value = f"the parameter {value.name}", value.value
+    if name:
+        return find_unknown(value) or name
     if isinstance(value, JoinedText):
         return next(filter(None, map(find_unknown, value.parts)), "")
     if isinstance(value, Alternatives):
-        return "one of " + ", ".join(map(show_value, value.values))
+        return "one of " + ", ".join(map(show_value, value.parts))
     return value.text if isinstance(value, UnknownText) else value.name if isinstance(value, ExternalName) else ""
 
 
 def find_unknown_place(value: Value) -> Span | None:
     """Return where the expression stands that is not known in a value."""
-    if isinstance(value, ParameterValue):
-        return find_unknown_place(value.value)
-    if isinstance(value, JoinedText | Alternatives):
-        parts = value.parts if isinstance(value, JoinedText) else value.values
-        return next(filter(None, map(find_unknown_place, parts)), None)
+    while isinstance(value, ParameterValue):
+        value = value.value
+    if isinstance(value, _Parts):
+        return next(filter(None, map(find_unknown_place, value.parts)), None)
     return value.span if isinstance(value, UnknownText) and value.span.line else None

@@ -185,7 +185,7 @@ class NodeWriter:
 
     def _write_endpoint(self, written: WrittenNode, endpoint: FoundEndpoint, *, is_ros_1: bool) -> None:
         name = settle(endpoint.name)
-        if name in {"", None}:
+        if name is None or name == "":
             # An empty name, by a parameter: such a node makes none.
             return
         text = name if isinstance(name, str) and not find_name_fault(name, ros_1=is_ros_1) else ""

@@ -85,7 +85,7 @@ class ProgramReader:
             return None
         code = None if is_python else self._gather(package, "" if plugin else node.executable)
         given = flatten_parameters(node.parameters)
-        walk = ProgramWalk(self._index, code, given, is_ros_1=package.manifest.is_ros_1)
+        walk = ProgramWalk(self._index, code, given, self._account.budget, is_ros_1=package.manifest.is_ros_1)
         names = {"name": node.name, "namespace": node.namespace}
         walk.node_names = {key: name for key, name in names.items() if name}
         walk.node_parameters = dict(by_name)

@@ -157,7 +157,8 @@ class WorkspaceFiles:
             if folder / name in files:
                 self._read_setup(package, folder / name)
         if folder / CMAKE_FILE in files:
-            for call in read_cmake_calls(folder / CMAKE_FILE, package.manifest.name, package.files):
+            shown = {path: self.shown[path] for path in package.files}
+            for call in read_cmake_calls(folder / CMAKE_FILE, package.manifest.name, shown, self.account):
                 self._read_cmake_call(package, call, files)
         for path in package.files:
             # What a launch file starts by its file name, installed or not: scripts of ROS 1, above all.

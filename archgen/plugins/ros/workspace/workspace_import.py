@@ -19,7 +19,7 @@ from archgen.plugin.importing import (
 )
 from archgen.plugins.ros.launch.launch_actions import LaunchedNode
 from archgen.plugins.ros.launch.launch_files import LaunchFiles
-from archgen.plugins.ros.launch.launch_import import LaunchedFiles, find_stem, load_included, run_launch_files
+from archgen.plugins.ros.launch.launch_import import LaunchedFiles, find_stem, load_noted, run_launch_files
 from archgen.plugins.ros.launch.launch_run import LaunchRun
 from archgen.plugins.ros.launch.launch_slices import SliceMaker
 from archgen.plugins.ros.ros_package.import_account import ImportAccount
@@ -127,7 +127,7 @@ def _start_programs(workspace: WorkspaceFiles, folders: Sequence[Path]) -> Launc
         for name, package in workspace.packages.items()
         for program in package.programs
     ]
-    run = LaunchRun(LaunchFiles(folders), load_included)
+    run = LaunchRun(LaunchFiles(folders), load_noted)
     return LaunchedFiles(run, {folders[0].resolve(): (nodes, Counter())})
 
 

@@ -7,6 +7,7 @@ from textwrap import dedent
 
 import pytest
 
+from archgen.importers.work_budget import WorkBudget
 from archgen.plugins.ros.sources.program_walk import ProgramWalk
 from archgen.plugins.ros.sources.source_index import SourceIndex
 from archgen.plugins.ros.sources.walk_values import find_unknown, settle, show_value
@@ -26,7 +27,7 @@ def walk(
     is_python = paths[0].suffix == ".py"
     code = None if is_python else index.gather_cpp(path for path in paths if path.suffix == ".cpp")
     parameters = {name.replace("__", "."): value for name, value in given.items()}
-    made = ProgramWalk(index, code, parameters, is_ros_1=is_ros_1)
+    made = ProgramWalk(index, code, parameters, WorkBudget(100_000), is_ros_1=is_ros_1)
     if is_python:
         file = index.read_file(paths[0])
         assert file is not None

@@ -1,0 +1,62 @@
+"""Small inputs that ask for far more than they have bytes are read within some seconds and a gigabyte, and end with a sentence."""
+
+from __future__ import annotations
+
+import os
+import resource
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.importers.bombs import BOMBS, Bomb, write_files
+from tests.running import ROOT
+
+PROCESSOR_SECONDS = 15
+"""Ten on a quiet machine; two on one core and full caches make it more."""
+ADDRESSES = 1_500_000_000
+RESIDENT_BYTES = 1_000_000_000
+
+
+def _explode(bomb: Bomb, folder: Path) -> None:
+    write_files(bomb, folder)
+    read_end, write_end = os.pipe()
+    process = os.fork()
+    if process == 0:
+        resource.setrlimit(resource.RLIMIT_AS, (ADDRESSES, ADDRESSES))
+        resource.setrlimit(resource.RLIMIT_CPU, (PROCESSOR_SECONDS, PROCESSOR_SECONDS + 1))
+        os.chdir(folder)
+        for stream in (1, 2):
+            os.dup2(write_end, stream)
+        os.closerange(3, 1000)
+        environment = {**os.environ, "PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(folder / "cache")}
+        os.execve(sys.executable, [sys.executable, "-m", "archgen", *bomb.words.split()], environment)  # noqa: S606
+    os.close(write_end)
+    with os.fdopen(read_end, errors="replace") as pipe:
+        said = pipe.read()
+    _, status, usage = os.wait4(process, 0)
+    code = os.waitstatus_to_exitcode(status)
+    assert code in {0, 1, 2}, f"ended by signal {-code}: {said[-1000:]}"
+    assert "mistake in archgen" not in said, said[-2000:]
+    assert "Traceback" not in said, said[-2000:]
+    assert usage.ru_maxrss * 1024 < RESIDENT_BYTES
+    assert bomb.said in said
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are those of Linux")
+@pytest.mark.parametrize("bomb", [pytest.param(bomb, id=bomb.name.replace(" ", "_")) for bomb in BOMBS])
+def test_a_bomb_ends_with_a_sentence(bomb: Bomb, tmp_path: Path) -> None:
+    _explode(bomb, tmp_path)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are those of Linux")
+@pytest.mark.parametrize(
+    "bomb", [pytest.param(bomb, id=bomb.name.replace(" ", "_")) for bomb in BOMBS if bomb.is_quick]
+)
+def test_a_quick_bomb_ends_with_a_sentence(bomb: Bomb, tmp_path: Path) -> None:
+    _explode(bomb, tmp_path)
+
+
+def test_the_names_of_bombs_are_different() -> None:
+    assert len({bomb.name for bomb in BOMBS}) == len(BOMBS) > 40
