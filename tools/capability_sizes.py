@@ -21,6 +21,7 @@ CAPABILITIES: Mapping[str, tuple[str, ...]] = {
         "pipeline.py",
         "bringup",
         "frozen.py",
+        "regular_files.py",
     ),
     "the language: YAML, schema, short forms": ("syntax", "schema", "language"),
     "the model, selectors": ("model", "diagnostics"),
