@@ -193,7 +193,10 @@ def copy_mapping(like: Mapping[str, Any], entries: Mapping[str, Any]) -> dict[st
 def put_value(data: dict[str, Any], path: KeyPath, value: object) -> None:
     """Put a value at a path, with the mappings that lead to it."""
     for key in path[:-1]:
-        data = data.setdefault(key, {})
+        inner = data.get(key)
+        if not isinstance(inner, dict):
+            inner = data[key] = {}
+        data = inner
     data[path[-1]] = value
 
 

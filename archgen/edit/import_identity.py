@@ -39,7 +39,7 @@ class KeptIdentities:
     renames: dict[str, str] = field(default_factory=dict)
     """By the kept id of each node or container (`nodes.lidar`) that has another full name by now: that one."""
     moves: dict[str, str] = field(default_factory=dict)
-    """Where components stand, by the places that the source has them in by now."""
+    """Where components of another tool stand, by the places that it has them in by now."""
     node_ids: dict[str, str] = field(default_factory=dict)
     """The ids of nodes, by those that the source has for them by now."""
 
@@ -55,8 +55,8 @@ def keep_identities(
     if known:
         renamed = _keep_tool_ids(renamed, list_known_ids(known, tool), tool)
     told = {f"{section}.{kept}": name for section, each in ids.items() for kept, name in each.new_names.items()}
-    # That a component is called as its node is no news beside that.
-    told_moves = {place: old for place, old in moves.items() if place.partition(".")[0] != old.partition(".")[0]}
+    # Those of nodes stand where people put them.
+    told_moves = {place: moves[place] for place in list_tool_places(slices, tool).values() if place in moves}
     return KeptIdentities(
         renamed,
         {renaming.rename_path(path): text for path, text in (comments or {}).items()},
@@ -128,7 +128,10 @@ class _Elements:
         pairs |= {each: each for each in self._new if each not in {*pairs, *taken} and self._is_known(each)}
         for new_id, old_id in self._pair_by_content(pairs):
             pairs[new_id] = old_id
-            kept.new_names[old_id] = _full_name(new_id, self._new[new_id])
+            name = _full_name(new_id, self._new[new_id])
+            # Two nodes of one name, which is a fault of the robot, are known by their programs, too.
+            if name != _full_name(old_id, self._old[old_id]):
+                kept.new_names[old_id] = name
         taken = {*known, *pairs.values()}
         for new_id in self._new:
             if new_id not in pairs:

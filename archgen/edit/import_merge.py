@@ -36,12 +36,15 @@ from archgen.syntax.yaml_writer import write_yaml
 
 ChangeKind = Literal["added", "changed", "removed", "kept", "conflict"]
 _ABSENT = object()
+_STRUCK_OUT = "people took it out, and it stays out"
+_MAX_SHOWN = 80
+_COMMON_SHOWN = 15
 _NOTHING: dict[str, Any] = {}
 
 
 class ImportChange(NamedTuple):
     """What became of a key. `kept`: the source does not say it any more, and what people wrote there stays; `conflict`: the source
-    says otherwise than before, and so do people, whose value stays. Values are as they are shown, `span` is where people's stands.
+    says otherwise than before, and so do people, whose value stays. `span` is where people's value stands.
     """
 
     kind: ChangeKind
@@ -54,19 +57,26 @@ class ImportChange(NamedTuple):
     def describe(self) -> str:
         """Say it on one line."""
         name = ".".join(self.path)
+        old, new = _shorten(self.before, self.now), _shorten(self.now, self.before)
         if self.kind == "kept":
             return f"not said any more, but people wrote there, which stays: {name} ({self.span})"
         if self.kind == "conflict":
-            before = f"it was {self.before}" if self.before else "it was not said"
-            now = f"is {self.now} now" if self.now else "is gone"
-            mine = (
-                f"{self.mine} of the slice stays ({self.span})" if self.mine else "people took it out, and it stays out"
-            )
+            before = f"it was {old}" if old else "it was not said"
+            now = f"is {new} now" if new else "is gone"
+            mine = f"{_shorten(self.mine, self.now)} of the slice stays ({self.span})" if self.mine else _STRUCK_OUT
             return f"conflict: {name}: {before} and {now}; {mine}"
         if self.kind == "changed":
-            return f"changed: {name}: from {self.before} to {self.now}"
-        value = self.now if self.kind == "added" else self.before
+            return f"changed: {name}: from {old} to {new}"
+        value = new if self.kind == "added" else old
         return f"{self.kind}: {name}{f': {value}' if value.startswith('`') else ''}"
+
+
+def _shorten(text: str, other: str) -> str:
+    """Return a value as it is told, from a little before where it differs from another one."""
+    common = next((place for place, pair in enumerate(zip(text, other, strict=False)) if pair[0] != pair[1]), 0)
+    start = common - _COMMON_SHOWN if common > _MAX_SHOWN // 2 else 0
+    shown = f"`... {text[start:].lstrip('`')}" if start else text
+    return shown if len(shown) <= _MAX_SHOWN else f"{shown[:_MAX_SHOWN]} ...`"
 
 
 @dataclass(slots=True)
@@ -182,13 +192,13 @@ def _write_items(merged: MergedValue | None, nodes: Iterable[YamlNode], path: Ke
 
 
 def _show(node: YamlNode | None) -> str:
-    """Return a value as it is shown, shortened; empty where there is none."""
+    """Return a value as it is told; empty where there is none."""
     if node is None:
         return ""
     if isinstance(node, MappingNode):
         return "what stands there"
     words = ", ".join(map(str, to_texts(node))) if isinstance(node, SequenceNode) else node.text
-    return f"`{words[:80]}`"
+    return f"`{words}`"
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ from archgen.edit.earlier_import import copy_mapping, put_value
 from archgen.edit.import_identity import USES, Slices, find_place, read_mapping, read_section
 from archgen.frozen import NamedTuple, dataclass, field
 from archgen.model.architecture import Architecture
-from archgen.model.node import Endpoint
+from archgen.model.node import Endpoint, Node
 from archgen.project import PROJECT_FILE
 from archgen.project.project_loading import load_from_files
 from archgen.syntax.project_files import OverlaidFiles
@@ -55,6 +55,8 @@ def join_endpoints(
         for node_id, body in read_mapping(data.get("nodes")).items():
             if isinstance(body, Mapping) and node_id in others.nodes:
                 new_body = _join_node(node_id, body, own_names, known, joined.ports)
+                if not body.get("implements") and not _takes_ports(node_id, others):
+                    new_body = _make_internal(new_body, others.nodes[node_id], others)
                 data["nodes"] = {**data["nodes"], node_id: new_body}
                 _add_ports(data, _list_new_ports(node_id, new_body, others, own_names, known), others)
         _drop_types(data, others, node_ids)
@@ -73,18 +75,16 @@ def _link_alone(slices: Slices) -> Iterator[tuple[str, Endpoint]]:
 
 
 def _list_keyed(architecture: Architecture, documents: Iterable[YamlDocument]) -> Iterator[tuple[str, Endpoint]]:
-    """Yield endpoints with the keys below which nodes say them."""
+    """Yield endpoints with the keys below which nodes say them; it is empty where they follow from something else."""
     keys = {
         entry.key_span: entry.key
         for document in documents
         for node in list_entries(document.root, "nodes")
         for use in USES
-        for entry in list_entries(node.value, use)
+        for entry in (*list_entries(node.value, use), *list_entries(node.value, "internal", use))
     }
     for each in architecture.endpoints:
-        key = each.port.rpartition(".")[2] if each.port else keys.get(each.at, "")
-        if key and not each.internal:
-            yield key, each
+        yield each.port.rpartition(".")[2] if each.port else keys.get(each.at, ""), each
 
 
 def _join_node(
@@ -109,12 +109,45 @@ def _join_node(
                 continue
             if new_key != key and (place := find_place(body)):
                 ports.setdefault(place, {})[key] = new_key
+            target = new_entries
+            if endpoint.internal:
+                target = changed.setdefault("internal", {}).setdefault(use, {})
             said = {*_NAME_KEYS, *(("message",) if read_mapping(entry).get("message") == endpoint.message else ())}
             rest = {inner: value for inner, value in read_mapping(entry).items() if inner not in said}
-            if rest:
-                new_entries[new_key] = rest
+            if rest and new_key:
+                target[new_key] = rest
         if entries:
             changed[use] = copy_mapping(entries, new_entries)
+    internal = {use: entries for use, entries in read_mapping(changed.pop("internal", None)).items() if entries}
+    changed |= {"internal": internal} if internal else {}
+    return {key: value for key, value in changed.items() if value or key not in USES}
+
+
+def _takes_ports(node_id: str, others: Architecture) -> bool:
+    """Whether a node has one component of its own in other files, or none: what a type says is closed."""
+    implemented = others.nodes[node_id].implements
+    components = [others.components[each] for each in implemented if each in others.components]
+    return not implemented or (
+        len(implemented) == 1 == len(components)
+        and components[0].component_type is None
+        and components[0].id.count(".") == 1
+    )
+
+
+def _make_internal(body: Mapping[str, Any], node: Node, others: Architecture) -> dict[str, Any]:
+    """Return a node whose endpoints are internal where none of its components has them as ports."""
+    ports = {
+        port.name for each in node.implements if each in others.components for port in others.components[each].ports
+    }
+    changed = dict(body)
+    for use in USES:
+        entries = read_mapping(body.get(use))
+        if new := {key: entry for key, entry in entries.items() if key not in ports}:
+            changed["internal"] = {
+                **changed.get("internal", {}),
+                use: {**changed.get("internal", {}).get(use, {}), **new},
+            }
+            changed[use] = {key: entry for key, entry in entries.items() if key in ports}
     return {key: value for key, value in changed.items() if value or key not in USES}
 
 
@@ -136,7 +169,7 @@ def _list_new_ports(
     known: Mapping[_EndpointKey, tuple[str, Endpoint]],
 ) -> Iterator[_NewPort]:
     implemented = others.nodes[node_id].implements
-    if len(implemented) == 1 and implemented[0].count(".") == 1 and not body.get("implements"):
+    if implemented and _takes_ports(node_id, others) and not body.get("implements"):
         for use in USES:
             for key, entry in read_mapping(body.get(use)).items():
                 name, port_id = own_names.get((node_id, use, key)), f"{implemented[0]}.{key}"
@@ -145,8 +178,9 @@ def _list_new_ports(
     if not implemented and (place := find_place(body)):
         said = {(each_node, use, name) for (each_node, use, _), name in own_names.items()}
         for (each_node, use, name), (key, endpoint) in known.items():
-            if each_node == node_id and name and (each_node, use, name) not in said:
-                yield _NewPort(place, use, key, name, endpoint.message)
+            is_port = bool(name and key) and not endpoint.internal
+            if is_port and each_node == node_id and (each_node, use, name) not in said:
+                yield _NewPort(place, use, key, name or "", endpoint.message)
 
 
 def _add_ports(data: dict[str, Any], ports: Iterable[_NewPort], others: Architecture) -> None:

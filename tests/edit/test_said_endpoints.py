@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from archgen.diagnostics.diagnostic import Severity
 from archgen.edit.said_endpoints import join_endpoints
 from archgen.pipeline import check_project
 from archgen.syntax.yaml_writer import FlowMapping
@@ -83,6 +84,34 @@ def test_what_a_project_says_is_not_said_again(node: dict[str, object], kept: ob
     # The type that the graph makes of a node is for those without a component.
     assert joined.slices["graph.yaml"] == {**kept, "component_types": {"other": {}}}  # type: ignore[dict-item]
     assert (slices["graph.yaml"]["nodes"], joined.ports) == ({"guard": node}, {})
+
+
+def test_what_no_port_of_a_type_is_becomes_internal_and_internal_topics_are_said_once(tmp_path: Path) -> None:
+    text = """\
+project: {id: p}
+ros: {distro: jazzy}
+component_types: {t: {outputs: {tick: std_msgs/msg/Bool}}}
+groups: {g: {components: {clock: {is: t}}}}
+nodes:
+  clock:
+    implements: g.clock
+    publishes: {tick: /tick}
+    internal: {publishes: {tf: {topic: /tf, message: tf2_msgs/msg/TFMessage}}}
+"""
+    (tmp_path / "archgen.yaml").write_text(text, encoding="utf-8")
+    others = check_project(tmp_path / "archgen.yaml")
+    assert not [each for each in others.findings if each.severity is Severity.ERROR]
+    seen = {
+        "publishes": {
+            "tick": {"topic": "/tick", "message": "std_msgs/msg/Bool"},
+            "frames": {"topic": "/tf", "message": "tf2_msgs/msg/TFMessage"},
+            "more": {"topic": "/more", "message": "std_msgs/msg/Bool"},
+        }
+    }
+    documents = others.loaded_project.documents
+    joined = join_endpoints({"a.yaml": {"nodes": {"clock": seen}}}, others.architecture, documents, {"clock": "clock"})
+    internal = {"publishes": {"more": {"topic": "/more", "message": "std_msgs/msg/Bool"}}}
+    assert joined.slices["a.yaml"] == {"nodes": {"clock": {"internal": internal}}}
 
 
 def test_ports_of_a_component_are_called_as_its_node_was_seen_with(tmp_path: Path) -> None:

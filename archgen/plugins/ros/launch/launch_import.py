@@ -82,15 +82,15 @@ def run_launch_files(
         run.run_file(path)
         launched[path] = (run.nodes, run.taken)
         notes[path] = run.take_notes()
-    run.arguments.refuse_unknown(run.context.asked, launch_files.show_path(entries[0]))
-    for root, count in launch_files.cut_roots.items():
-        words = f"only the first {count:,} folders in it were looked through: packages that lie in others are not found"
-        run.add_note("folder", words, Span.of_file(root.name or "/"), "give folders that hold less", fate="noted")
     if not given:
         launched = {path: each for path, each in launched.items() if path not in run.included} or launched
     # What another file includes was run alone, too, without the arguments that it gets there.
     for note in (each for path in launched for each in notes[path]):
         run.add_note(note.kind, note.message, note.span, note.help_line, note.fate)
+    run.arguments.refuse_unknown(run.context.asked, launch_files.show_path(entries[0]))
+    for root, count in launch_files.cut_roots.items():
+        words = f"only the first {count:,} folders in it were looked through: packages that lie in others are not found"
+        run.add_note("folder", words, Span.of_file(root.name or "/"), "give folders that hold less", fate="noted")
     return LaunchedFiles(run, launched)
 
 

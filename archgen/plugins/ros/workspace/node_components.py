@@ -70,6 +70,8 @@ class WrittenNode:
     group: str
     data: dict[str, Any]
     component: dict[str, Any]
+    package: str
+    """That of its program."""
     variants: Mapping[str, str] = field(default_factory=dict)
     """By their names the titles of the variants in which it runs; none for what always runs."""
     comments: dict[tuple[str, ...], str] = field(default_factory=dict)
@@ -106,7 +108,7 @@ class NodeWriter:
             body["hints"] = kept
         self._leave_out_filed(body, known)
         data = {"implements": f"{group}.{node_id}", **body}
-        written = WrittenNode(node_id, group, data, {}, _list_variants(known), known=known)
+        written = WrittenNode(node_id, group, data, {}, known.node.package, _list_variants(known), known=known)
         self._account.count("node")
         if known.library_type:
             written.component["is"] = f"{LIBRARY}.{known.library_type}"
@@ -128,7 +130,7 @@ class NodeWriter:
         shared = ("namespace", "status", "remaps", "arguments", "parameters")
         data: dict[str, Any] = {key: first.data[key] for key in ("implements", *shared) if key in first.data}
         data["implements"] = f"{first.group}.{node_id}"
-        written = WrittenNode(node_id, first.group, data, {}, first.variants, known=known)
+        written = WrittenNode(node_id, first.group, data, {}, first.package, first.variants, known=known)
         written.comments[()] = f"in the process of {first.id}"
         self._account.count("node")
         self._write_found(written, found, known, is_first=False)

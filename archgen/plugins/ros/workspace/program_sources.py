@@ -70,8 +70,9 @@ class WorkspaceFiles:
         self.packages: dict[str, WorkspacePackage] = {}
         self.shown: dict[Path, str] = {}
         self.account = account
-        for root in roots:
-            self._walk(root.resolve())
+        self.roots = tuple(root.resolve() for root in roots)
+        for root in self.roots:
+            self._walk(root)
         for package in self.packages.values():
             self._find_programs(package)
 

@@ -12,6 +12,7 @@ from archgen.plugin.model import Architecture
 from archgen.plugins.ros.launch.launch_actions import LaunchedNode
 from archgen.plugins.ros.launch.launch_slices import SliceMaker
 from archgen.plugins.ros.ros_package.import_account import ImportAccount
+from archgen.plugins.ros.workspace.code_owners import CodeOwners
 from archgen.plugins.ros.workspace.node_components import LIBRARY, NodeKnowledge, NodeWriter, WrittenNode
 from archgen.plugins.ros.workspace.program_sources import WorkspaceFiles
 
@@ -47,10 +48,17 @@ def make_slices(
         for node_id, data in sections.pop("nodes", {}).items()
         for each in writer.write_node(node_id, data, by_id[node_id], groups[node_id])
     ]
+    owners = CodeOwners(workspace.roots, account)
     used: set[str] = set()
     for each in written:
+        package = workspace.packages.get(each.package)
+        if package is not None and (owner := owners.name_partners(package.manifest.folder)):
+            each.component["owner"] = owner
         _rename(each, make_unique_id(each.id, used))
         used.add(each.id)
+    if partners := owners.write_partners():
+        sections = {"partners": partners, **sections}
+        account.count("owner", len(partners))
     project: dict[str, Any] = {"project": {"id": "workspace"}, "ros": {"distro": distro}}
     if any(each.library_type for each in knowledge):
         project["libraries"] = {LIBRARY: "builtin"}
@@ -64,6 +72,7 @@ def make_slices(
     for group in dict.fromkeys(each.group for each in usual):
         members = [each for each in usual if each.group == group]
         own = _write_sections(members, inputs)
+        own["groups"][group] = _share_owner(own["groups"][group])
         slices[f"{group}.yaml"] = {"groups": own["groups"], **sections, "nodes": own["nodes"]}
         comments[f"{group}.yaml"] = _place_comments(members, maker.comments)
         sections = {}
@@ -110,6 +119,16 @@ def _write_sections(nodes: Iterable[WrittenNode], inputs: Mapping[str, Any] | No
         groups.setdefault(node.group, {"components": {}})["components"][node.id] = component or None
         sections["nodes"][node.id] = node.data
     return sections
+
+
+def _share_owner(group: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return a group that says the owner of its components where all have the same one."""
+    components = group["components"]
+    owner, *others = ((body or {}).get("owner") for body in components.values())
+    if not owner or any(other != owner for other in others):
+        return group
+    bodies = {name: {key: value for key, value in body.items() if key != "owner"} for name, body in components.items()}
+    return {"owner": owner, "components": {name: body or None for name, body in bodies.items()}}
 
 
 def _place_comments(nodes: Iterable[WrittenNode], launch_comments: Comments, above: tuple[str, ...] = ()) -> Comments:

@@ -174,6 +174,34 @@ def test_workspace_of_ros_2(run: Run) -> None:
     assert "robot.yaml: as before" in again.out
 
 
+def test_what_people_moved_and_renamed_is_followed_when_the_robot_changes(workspace: Path, run: Run) -> None:
+    """R3: a second import brings in what changed, where people have it by now."""
+    options = ("import", "workspace", "src", "--distro", "humble", "-o", "robot")
+    assert run(*options).status == 0
+    slice_file = Path("robot/robot.yaml")
+    text = slice_file.read_text(encoding="utf-8")
+    place = text.index("      front_driver:\n")
+    end = re.compile(r"\n {6}\w").search(text, place + 8)
+    assert end is not None
+    component = text[place : end.start() + 1].replace("front_driver:", "base:  # ours")
+    text = text.replace(text[place : end.start() + 1], "").replace("robot.front_driver", "front.base")
+    text = re.sub(r"(from: |: |\[)front_driver\.", r"\1front.base.", text)
+    text = text.replace("groups:\n", f"groups:\n  front:\n    components:\n{component}", 1)
+    slice_file.write_text(text.replace("  front_driver:\n", "  first:\n    name: front_driver\n"), encoding="utf-8")
+    edited = slice_file.read_text(encoding="utf-8")
+    assert run("check", "robot").status == 0
+    assert run(*options, "--check").status == 0
+    launch = workspace / "src/my_bringup/launch/robot.launch.py"
+    launch.write_text(launch.read_text().replace('remappings=[("odom", "/odom")]', 'remappings=[("odom", "/ground")]'))
+    done = run(*options, "--merge")
+    assert done.status == 0, done.err
+    assert "  changed: nodes.first.remaps.odom: from `/odom` to `/ground`\n" in done.out
+    changed = slice_file.read_text(encoding="utf-8")
+    assert changed.count("front_driver") == edited.count("front_driver")
+    assert "  first:\n    name: front_driver\n" in changed
+    assert run("check", "robot").status == 0
+
+
 @pytest.mark.usefixtures("workspace")
 def test_nodes_off_by_default_are_variants(run: Run) -> None:
     """R14: what runs only by an argument stands in a variant, with its wiring; the project itself is what is launched."""
