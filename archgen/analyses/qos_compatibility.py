@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
+from functools import cache
 from itertools import product
 
 from archgen.derivation.wire.qos_overrides import (
@@ -190,19 +191,22 @@ def incompatible_qos(architecture: Architecture) -> Iterator[Diagnostic]:
             continue
         # Planned nodes that archgen adds have no decided QoS that could conflict.
         writers, readers = (
-            [(each, _list_qos(each)) for each in ends if architecture.nodes[each.node].written]
-            for ends in (topic.writers, topic.readers)
+            [each for each in ends if architecture.nodes[each.node].written] for ends in (topic.writers, topic.readers)
         )
         # Many ends of one topic have few different settings, and most of these agree.
-        verdicts = {
-            (offered, requested): [tuple(find_qos_conflicts(*pair)) for pair in product(offered, requested)]
-            for offered, requested in product({each for _, each in writers}, {each for _, each in readers})
-        }
-        conflicting = {offered for (offered, _), each in verdicts.items() if any(each)}
-        for writer, offered in writers:
-            for reader, requested in readers if offered in conflicting else ():
-                if any(verdicts[offered, requested]):
-                    yield _report_qos_conflicts(architecture, topic, writer, reader, verdicts[offered, requested])
+        readers_by_qos: dict[tuple[Qos, ...], list[Endpoint]] = {}
+        for reader in readers:
+            readers_by_qos.setdefault(_list_qos(reader), []).append(reader)
+        judge_pair = cache(_judge_settings)
+        for writer in writers:
+            for requested, asking in readers_by_qos.items():
+                verdicts = judge_pair(_list_qos(writer), requested)
+                for reader in asking if any(verdicts) else ():
+                    yield _report_qos_conflicts(architecture, topic, writer, reader, verdicts)
+
+
+def _judge_settings(offered: tuple[Qos, ...], requested: tuple[Qos, ...]) -> list[tuple[QosConflict, ...]]:
+    return [tuple(find_qos_conflicts(*pair)) for pair in product(offered, requested)]
 
 
 def _report_qos_conflicts(

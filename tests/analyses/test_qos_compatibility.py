@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
 import pytest
 
-from archgen.analyses.qos_compatibility import find_qos_conflicts, incompatible_qos
+from archgen.analyses import qos_compatibility
+from archgen.analyses.qos_compatibility import QosConflict, find_qos_conflicts, incompatible_qos
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.model.architecture import Architecture, ProjectInfo
@@ -95,6 +97,23 @@ def test_a_side_left_out_makes_it_a_warning() -> None:
     (diagnostic,) = _judge(_SENSOR, Qos())
     assert diagnostic.severity is Severity.WARNING
     assert diagnostic.message.endswith("(`mapper` leaves `qos` out, so the profile `default` counts)")
+
+
+def test_many_ends_of_one_topic_are_judged_by_their_settings(monkeypatch: pytest.MonkeyPatch) -> None:
+    calls = []
+
+    def count(*pair: Qos) -> Iterator[QosConflict]:
+        calls.append(pair)
+        return find_qos_conflicts(*pair)
+
+    monkeypatch.setattr(qos_compatibility, "find_qos_conflicts", count)
+    nodes = "".join(
+        f"  n{number}: {{implements: a.c, publishes: {{o: {{topic: /t}}}}, subscribes: {{i: {{topic: /t, qos: {{reliability: {('reliable', 'best_effort')[number % 2]}}}}}}}}}\n"
+        for number in range(30)
+    )
+    text = "archgen: 1\nproject: {id: x}\nros: {distro: jazzy}\ngroups: {a: {components: {c: {outputs: {o: T}, inputs: {i: T}}}}}\ntypes: {T: std_msgs/msg/String}\nnodes:\n"
+    check_text(text + nodes)
+    assert 0 < len(calls) < 10
 
 
 def test_planned_nodes_and_ros_1_have_nothing_to_agree_on() -> None:

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from archgen.pipeline import CheckedProject
-from archgen.plugins.tables import table_cells, table_import
+from archgen.plugins.tables import imported_project, table_cells, table_import
 from archgen.start import project_plan, start_answers
 
 
@@ -241,3 +241,11 @@ def test_a_type_has_one_message() -> None:
         "3:10 warning conflicting-values: `Scan` is carried by `sensor_msgs/msg/LaserScan` already: `sensor_msgs::msg::PointCloud2` was not taken | "
         "give one of the two another type"
     )
+
+
+def test_lists_in_cells_are_taken_as_far_as_the_budget_goes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(imported_project, "MAX_LISTED", 3)
+    text = 'Group,Component,Inputs\na,b,"x; y"\na,c,"x; y; z"\na,d,"x; y"\n'
+    inputs = {name: list((each or {}).get("inputs") or ()) for name, each in groups(text)["a"].items()}
+    assert inputs == {"b": ["x", "y"], "c": ["x"], "d": []}
+    assert sum("too-large" in each and each.startswith("3:") for each in said(text)) == 1

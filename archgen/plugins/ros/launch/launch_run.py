@@ -17,7 +17,7 @@ from archgen.plugins.ros.launch.scope_run import ScopeRun
 from archgen.plugins.ros.launch.server_parameters import ServerParameter, read_server_parameters
 
 ActionLoader = Callable[[Path, "LaunchRun"], list[LaunchAction]]
-_STEPS_OF_AN_ACTION = 5
+_STEPS_OF_AN_ACTION = 10
 _STEPS_OF_A_CONDITION = 2
 _CONFIGURATIONS_COPIED_IN_A_STEP = 32
 _MAX_NESTING = 100
