@@ -14,7 +14,7 @@ from importlib.util import find_spec
 from typing import Any, Callable, Iterator
 
 NAME = "archgen_recorder"
-QUIET_SECONDS, MOST_SECONDS, ANSWER_SECONDS = 2.0, 15.0, 3.0
+QUIET_SECONDS, MOST_SECONDS, ANSWER_SECONDS = 2.0, 15.0, 5.0
 """The graph is complete when nothing changed for the first, or after the second; the third is for each answer of a node."""
 LONGEST_TEXT = 10_000
 Write = Callable[[str], None]
@@ -63,9 +63,12 @@ def wait_for_nodes(node: Any, clock: Callable[[], float], spin: Callable[[], Non
     known: object = None
     while clock() - begin < MOST_SECONDS and clock() - changed < QUIET_SECONDS:
         spin()
-        now = (list_nodes(node), sorted(node.get_topic_names_and_types()), sorted(node.get_service_names_and_types()))
-        if now != known:
-            known, changed = now, clock()
+        names = list_nodes(node)
+        now = {name: [(title, sorted(found)) for title, found in list_uses(node, name)] for name in names}
+        # What a node uses arrives after its name, all of it: one that uses nothing is not known yet.
+        is_part = any(not any(found for _, found in uses) for uses in now.values())
+        if is_part or (names, now) != known:
+            known, changed = (names, now), clock()
     return list_nodes(node)
 
 
@@ -77,7 +80,7 @@ def write_graph(node: Any, names: list[str], write: Write) -> None:
     for full_name in dict.fromkeys(names):
         write(f"$ ros2 node info {full_name}")
         write(full_name)
-        for title, uses in list_uses(node, full_name):
+        for title, uses in list_uses(node, full_name, lambda line: print(line, file=sys.stderr)):
             write(f"  {title}:")
             for name, types in sorted(uses):
                 write(f"    {name}: {', '.join(types)}")
@@ -92,7 +95,7 @@ def write_graph(node: Any, names: list[str], write: Write) -> None:
                     write_end(end, kind, write)
 
 
-def list_uses(node: Any, full_name: str) -> Iterator[tuple[str, Any]]:
+def list_uses(node: Any, full_name: str, tell: Write = lambda _: None) -> Iterator[tuple[str, Any]]:
     """Yield what a node uses, as `ros2 node info` groups it. What it no longer tells, since it ended, is empty."""
     import rclpy.action as actions
 
@@ -109,7 +112,7 @@ def list_uses(node: Any, full_name: str) -> Iterator[tuple[str, Any]]:
         try:
             found = question(name, namespace or "/")
         except Exception as error:
-            print(f"{full_name}: {error}", file=sys.stderr)
+            tell(f"{full_name}: {error}")
             found = []
         yield title, found
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
 from pathlib import Path
 from textwrap import dedent
 from types import ModuleType, SimpleNamespace
@@ -72,11 +72,23 @@ def actions(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("actions")
+def test_a_node_that_uses_nothing_yet_is_waited_for() -> None:
+    """Its name arrives before what it uses: until then the graph is not complete, for as long as the whole may take."""
+    node = make_stand_in()
+    ticks, spun = itertools.count(0, 0.25), list[None]()
+    node.get_node_names_and_namespaces = lambda: [("lidar", "/front"), ("late", "/")]
+    graph_recorder.wait_for_nodes(node, lambda: next(ticks), lambda: spun.append(None))
+    assert len(spun) >= graph_recorder.MOST_SECONDS
+
+
+@pytest.mark.usefixtures("actions")
 def test_a_graph_of_ros_2_is_written_and_read(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A node that ends while it is asked is told on the error stream, and the others are written."""
     node, lines = make_stand_in(), list[str]()
-    ticks: Iterator[float] = iter(range(100))
-    names = graph_recorder.wait_for_nodes(node, lambda: float(next(ticks)), lambda: None)
+    ticks = itertools.count(0, 0.25)
+    spun = list[None]()
+    names = graph_recorder.wait_for_nodes(node, lambda: next(ticks), lambda: spun.append(None))
+    assert 1 < len(spun) < 10
     assert names == ["/base", "/base", "/front/lidar"]
     graph_recorder.write_graph(node, names, lines.append)
     values = {"rate": 12.5, "on": True, "filter.low": [1, 2], "far": float("inf"), "none": None, "urdf": "x" * 20_000}
