@@ -213,7 +213,7 @@ def list_unjudged_lines(lookup: Lookup, activities: Sequence[Activity]) -> list[
             (
                 f"`{_port_name(way.flow.arc.input)}`: {value_format.display_duration(way.duration)}"
                 f"{' at most' if way.duration.complete else ', as far as it is known,'} from what `{way.through[0]}` senses "
-                f"until `{way.through[-1]}` has acted on it ({' > '.join(way.through)})"
+                f"until `{way.through[-1]}` has acted on it"
             ),
         )
         for way in ways
@@ -243,8 +243,7 @@ def make_unjudged_blocks(lookup: Lookup, activities: Sequence[Activity]) -> Iter
 def _write_chain(lookup: Lookup, name: str, way: UnjudgedWay) -> Iterator[str]:
     activities = lookup.timing.analysis.system.activities if lookup.timing else {}
     yield f"  {name}:"
-    yield "    through:"
-    yield from (f"      - {activities[each].node}" for each in way.through)
+    yield f"    through: [{', '.join(activities[each].node for each in way.through)}]"
 
 
 def _port_name(key: str) -> str:
@@ -259,7 +258,13 @@ def list_flow_lines(lookup: Lookup, activities: Sequence[Activity]) -> Iterator[
         yield name, tuple(_write_line(row, arrow) for row in rows)
     results = _list_chains_through(lookup, {each.id for each in activities})
     yield "chains", tuple(f"{each.id}: {_read(chain_status.chain_chip(each))}" for each, _ in results)
-    yield "what no chain says", tuple(text.replace("`", "") for _, text in list_unjudged_lines(lookup, activities))
+    yield (
+        "what no chain says",
+        tuple(
+            f"{text.replace('`', '')} ({' > '.join(way.through)})"
+            for way, text in list_unjudged_lines(lookup, activities)
+        ),
+    )
 
 
 def _write_line(row: FlowRow, arrow: str) -> str:

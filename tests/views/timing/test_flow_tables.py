@@ -89,7 +89,7 @@ def test_the_lines_make_a_chain_that_says_what_the_page_says(tmp_path: Path) -> 
     (result,) = (each for each in longer.timing.chains if each.id == "odometry_to_stop")
     assert (
         told
-        == f"pose: {(result.bound.value or 0) / 10**6} ms at most from what odometry senses until stop has acted on it (odometry > stop)."
+        == f"pose: {(result.bound.value or 0) / 10**6} ms at most from what odometry senses until stop has acted on it."
     )
 
 
