@@ -6,7 +6,7 @@ A help says what to write in backticks; this reads it back and finds the place, 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from archgen.diagnostics.odd_characters import replace_odd_characters
@@ -168,14 +168,14 @@ def _take_dash_away(finding: Diagnostic, sources: SourceTexts, _: re.Match[str])
 
 def _write_below(finding: Diagnostic, sources: SourceTexts, match: re.Match[str]) -> SuggestedFix | None:
     """Write a key of one line below another one, which its element does not have yet."""
-    span, lines = finding.span, list(_list_lines(finding.span.file, sources))
-    line = lines[span.line - 1]
+    span, lines = finding.span, _list_near_lines(finding.span, sources)
+    line = lines[span.line]
     entry = re.match(r"[a-z_]+: [^#{\[]+", line[span.column - 1 :])
     if entry is None or line[: span.column - 1].strip():
         return None
     for step in (-1, 1):
-        number = span.line - 1
-        while 0 <= number < len(lines) and (not lines[number].strip() or _indent(lines[number]) >= span.column - 1):
+        number = span.line
+        while number in lines and (not lines[number].strip() or _indent(lines[number]) >= span.column - 1):
             if lines[number][span.column - 1 :].startswith(f"{match['parent']}:"):
                 return None
             number += step
@@ -187,28 +187,30 @@ def _write_below(finding: Diagnostic, sources: SourceTexts, match: re.Match[str]
 def _move_block(finding: Diagnostic, sources: SourceTexts, match: re.Match[str]) -> SuggestedFix | None:
     """Indent a key, with all that stands below it, so that it begins in the column of another one or below it."""
     span, is_below = finding.span, match["way"] != "begin it in the column of"
-    lines = list(_list_lines(span.file, sources))
-    if not re.match(r" *[\"']?[\w.-]+[\"']?:", lines[span.line - 1]):  # not at the beginning of its line
+    lines = _list_near_lines(span, sources)
+    if not re.match(r" *[\"']?[\w.-]+[\"']?:", lines[span.line]):  # not at the beginning of its line
         return None
     target = match["target"].removesuffix(":")
     keys = (f"{target}:", f'"{target}":', f"'{target}':")
-    targets = [line for line in lines[: span.line - 1] if line.lstrip(" ").startswith(keys)]
+    targets = [line for number, line in lines.items() if number < span.line and line.lstrip(" ").startswith(keys)]
     if not targets:
         return None
     column = _indent(targets[-1]) + (2 if is_below else 0)
-    shift = column - _indent(lines[span.line - 1])
-    end = span.line
-    while end < len(lines) and (not lines[end].strip() or _indent(lines[end]) > _indent(lines[span.line - 1])):
+    shift = column - _indent(lines[span.line])
+    end = span.line + 1
+    while end in lines and (not lines[end].strip() or _indent(lines[end]) > _indent(lines[span.line])):
         if shift == 1 and _indent(lines[end]) == column and lines[end].strip():  # it stands beside the key then
             break
         end += 1
+    if end not in lines and sources.line_of(span.file, end) is not None:  # too long to be seen whole
+        return None
     edits = [
         TextEdit(
-            Span(span.file, number, 1, number, _indent(lines[number - 1]) + 1),
-            " " * (_indent(lines[number - 1]) + shift),
+            Span(span.file, number, 1, number, _indent(lines[number]) + 1),
+            " " * (_indent(lines[number]) + shift),
         )
-        for number in range(span.line, end + 1)
-        if lines[number - 1].strip()
+        for number in range(span.line, end)
+        if lines[number].strip()
     ]
     return SuggestedFix(tuple(edits), is_certain=False)
 
@@ -217,11 +219,14 @@ def _indent(line: str) -> int:
     return len(line) - len(line.lstrip(" "))
 
 
-def _list_lines(file: str, sources: SourceTexts) -> Iterator[str]:
-    number = 1
-    while (line := sources.line_of(file, number)) is not None:
-        yield line
-        number += 1
+_NEAR = 2000
+"""So many lines above and below are looked at: a group of a hundred components has as many."""
+
+
+def _list_near_lines(span: Span, sources: SourceTexts) -> dict[int, str]:
+    """Return the lines around a place by their numbers."""
+    numbers = range(max(1, span.line - _NEAR), span.line + _NEAR)
+    return {number: line for number in numbers if (line := sources.line_of(span.file, number)) is not None}
 
 
 _FORMS: Mapping[re.Pattern[str], Callable[[Diagnostic, SourceTexts, re.Match[str]], SuggestedFix | None]] = {

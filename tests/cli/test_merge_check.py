@@ -53,6 +53,7 @@ def test_a_reader_of_a_name_that_another_branch_gave_up_is_found(run: Run, robot
         "  --> archgen.yaml:3:45\n"
         "   3 | groups: {x: {components: {new: {inputs: {i: eye.image}}}}}\n"
         "     |                                             ^^^^^^^^^\n"
+        "   = help: there is `sense.eye.picture`\n"
         "\n"
         "timing, views and unused elements are judged once these errors are gone\n"
         "1 error\n"

@@ -233,7 +233,7 @@ def test_version_and_help(run: Run) -> None:
     assert run("--version").out.startswith("archgen ")
     ran = run("--help")
     assert ran.status == 0
-    assert "  check           Find mistakes in the architecture.\n" in ran.out
+    assert "  check        Find mistakes in the architecture; --fix mends slips of form.\n" in ran.out
 
 
 def test_show_says_whether_the_chains_of_a_requirement_are_in_time(run: Run, tmp_path: Path) -> None:
