@@ -65,8 +65,8 @@ def wait_for_nodes(node: Any, clock: Callable[[], float], spin: Callable[[], Non
         spin()
         names = list_nodes(node)
         now = {name: [(title, sorted(found)) for title, found in list_uses(node, name)] for name in names}
-        # What a node uses arrives after its name, all of it: one that uses nothing is not known yet.
-        is_part = any(not any(found for _, found in uses) for uses in now.values())
+        # Discovery takes seconds on a busy computer. What a node uses arrives after its name: one that uses nothing is not known yet.
+        is_part = not names or any(not any(found for _, found in uses) for uses in now.values())
         if is_part or (names, now) != known:
             known, changed = (names, now), clock()
     return list_nodes(node)

@@ -79,6 +79,10 @@ def test_a_node_that_uses_nothing_yet_is_waited_for() -> None:
     node.get_node_names_and_namespaces = lambda: [("lidar", "/front"), ("late", "/")]
     graph_recorder.wait_for_nodes(node, lambda: next(ticks), lambda: spun.append(None))
     assert len(spun) >= graph_recorder.MOST_SECONDS
+    spun.clear()
+    node.get_node_names_and_namespaces = list
+    assert graph_recorder.wait_for_nodes(node, lambda: next(ticks), lambda: spun.append(None)) == []
+    assert len(spun) >= graph_recorder.MOST_SECONDS
 
 
 @pytest.mark.usefixtures("actions")
