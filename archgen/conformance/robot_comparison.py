@@ -220,7 +220,11 @@ class _Comparer:
         """Yield the parameters that have another value than the design gives them, or that the node does not declare."""
         ros_1, where = is_ros_1(self._architecture.distro), self._robot.where
         values = {canonical_name(name, ros_1=ros_1): value for name, value in (observed.parameters or {}).items()}
+        # What stands in files of other packages counts for more than what components declare, and is not known.
+        has_unknown_files = any(map(is_filled_in, node.parameter_files))
         for name, designed in find_effective_parameters(self._architecture, node).items():
+            if has_unknown_files and designed.origin in {"ros", "component"}:
+                continue
             if not designed.is_known or is_ros_parameter(name, ros_1=ros_1) or _has_substitution(designed.value):
                 continue
             is_declared = name in values

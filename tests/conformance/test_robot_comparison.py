@@ -274,6 +274,20 @@ def test_what_may_differ_by_design_is_no_difference(tmp_path: Path) -> None:
     assert show_findings(report.reported.findings) == []
 
 
+def test_values_that_files_of_other_packages_may_set_are_not_compared(tmp_path: Path) -> None:
+    text = ROVER.replace(
+        "parameters: {rate: 12.5}", "parameters: {rate: 12.5}\n    parameter_files: [$(find-pkg-share sick)/sick.yaml]"
+    )
+    checked_project = check_rover(tmp_path, text)
+    graph = print_graph(checked_project.architecture)
+    changed = graph.replace('frame: "laser"', 'frame: "scanner"').replace("rate: 12.5", "rate: 10.0")
+    findings = compare_with_graph(checked_project, changed).reported.findings
+    assert [finding.message for finding in findings] == [
+        "the parameter `rate` of `/front/lidar` is `10.0` on the robot, and `12.5` in the design"
+    ]
+    assert changed.count("scanner") == 1
+
+
 def test_hosts_that_are_not_named_are_not_missed(rover: CheckedProject) -> None:
     graph = cut_node(print_graph(rover.architecture), "/arm")
     assert [each.rule for each in compare_with_graph(rover, graph).reported.findings] == ["not-running"]
