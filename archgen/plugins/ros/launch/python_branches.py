@@ -21,9 +21,13 @@ class BranchRecord:
 
     def __init__(self, scope: NameScope) -> None:
         self._containers = _list_containers(scope)
-        self._before = [each.copy() for each in self._containers]
+        self._before: list[Container] = []
         self.size = len(self._containers) + sum(map(len, self._containers))
-        """How much is remembered: containers, and what is in them."""
+        """How much is to be remembered: containers, and what is in them."""
+
+    def begin(self) -> None:
+        """Remember what is in the containers."""
+        self._before = [each.copy() for each in self._containers]
 
     def take_outcome(self) -> list[Container]:
         """Return what is in the containers, which are as they were in front of the condition from now on."""

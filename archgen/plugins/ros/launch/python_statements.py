@@ -26,7 +26,7 @@ Ending = Literal["", "return", "break", "continue", "raise"]
 """How a block ended."""
 _JUMPS: dict[type[ast.stmt], Ending] = {ast.Raise: "raise", ast.Break: "break", ast.Continue: "continue"}
 _STEPS_OF_A_SCOPE = 3
-_REMEMBERED_IN_A_STEP = 10
+_REMEMBERED_IN_A_STEP = 2
 
 
 class StatementReader(ExpressionReader):
@@ -39,6 +39,8 @@ class StatementReader(ExpressionReader):
         """The modules beside the file that were read, for all of them together."""
         self.conditions: list[LaunchCondition] = []
         """The conditions around that are not known: what is made there counts only if they hold."""
+        self._follows_both = True
+        """Whether the budget still has what both ways of a condition take that is not known."""
         self._statement_runners: dict[type[ast.stmt], Callable[[Any, NameScope], Ending]] = {
             ast.Assign: self._run_assignment,
             ast.AnnAssign: self._run_annotated_assignment,
@@ -194,8 +196,14 @@ class StatementReader(ExpressionReader):
         """Follow both ways of a condition that is not known; what differs behind it is not known either."""
         test, depth = self.quote(statement.test), len(self.conditions)
         before = dict(scope.values)
+        if not self._follows_both:
+            return ""
         record = BranchRecord(scope)
-        self.pay(statement, record.size // _REMEMBERED_IN_A_STEP)
+        # Where there is too much to remember, what is looked through to see that is too much for each other condition, too.
+        self._follows_both = self.pay_to_repeat(statement, record.size // _REMEMBERED_IN_A_STEP)
+        if not self._follows_both:
+            return ""
+        record.begin()
         endings: list[Ending] = []
         names: list[dict[LaunchValue, LaunchValue]] = []
         contents: list[list[Container]] = []
