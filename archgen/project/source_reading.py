@@ -112,9 +112,11 @@ def _read_listed_slice(state: ReadingState, file: str, pattern: str, ignored_fil
     parsed_slice = parse_file(state, file)
     if pattern == file:
         _keep_slice(state, parsed_slice)
+    elif _is_other_file(state, parsed_slice) or _is_pass(parsed_slice):
+        return  # it is judged where it is used
     elif _is_strange(parsed_slice, is_anywhere=pattern.startswith("**")):
         ignored_files.append((file, None))
-    elif not (_is_other_file(state, parsed_slice) or _is_pass(parsed_slice)):
+    else:
         _keep_slice(state, parsed_slice)
 
 
