@@ -121,7 +121,11 @@ def test_what_is_sent_on_a_condition_is_sent_for_the_stimulus(tmp_path: Path) ->
 def test_a_promised_gap_needs_no_such_assumption(tmp_path: Path) -> None:
     result = _project(tmp_path, CONDITIONAL % ", max_gap: 2 s").chains()["ring"]
     assert result.bound.value == 2131 * 10**6
-    assert result.verdict == "not proven"
+    assert result.verdict == "missed"
+    assert result.deadline
+    assert result.deadline.value is not None
+    assert result.late_run
+    assert result.deadline.value < result.late_run.longest <= result.bound.value
 
 
 SERVICE = """

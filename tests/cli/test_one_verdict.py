@@ -19,7 +19,6 @@ from lxml import etree
 from tests.cli.conftest import Run
 from tests.timing.random_robots import random_robot_text
 
-pytest_plugins = ("tests.cli.conftest",)
 _UNITS = {"ns": Fraction(1), "us": Fraction(10**3), "µs": Fraction(10**3), "ms": Fraction(10**6), "s": Fraction(10**9)}
 _TIME = re.compile(r"(>=|≥|at least)?\s*~?([0-9.]+)\s?(ns|us|µs|ms|s)\b")
 _WORD = "{http://schemas.openxmlformats.org/wordprocessingml/2006/main}"
