@@ -7,6 +7,7 @@ import re
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from archgen.diagnostics.common_wording import join_first
 from archgen.diagnostics.diagnostic import Diagnostic, Severity
 from archgen.diagnostics.source_span import Span
 from archgen.diagnostics.suggestions import find_closest
@@ -38,6 +39,7 @@ IgnoredFile = tuple[str, str | None]
 PASS_FOLDER = "passes/"  # noqa: S105 - not a password
 """Where a project's own passes stand; a file there whose `rules` are a list is one."""
 _MAX_SECTIONS = 100
+_NAMED_FILES = 12
 """The first keys of a file without sections that are looked at for misspelt ones: there are 20 sections."""
 PROJECT_KEY = "archgen"
 """The key that marks a project: it stands in `archgen.yaml`."""
@@ -304,7 +306,9 @@ def _looks_like_slice(parsed_slice: Slice) -> bool:
 
 
 def _diagnose_ignored_files(ignored_files: list[tuple[str, str | None]]) -> Diagnostic:
-    names = ", ".join(f"`{file}`" for file, _ in ignored_files)
+    # Those that may be slices come first: of the others of a whole repository some stand for all.
+    ordered_files = sorted(ignored_files, key=lambda ignored: not ignored[1])
+    names = join_first([f"`{file}`" for file, _ in ordered_files], _NAMED_FILES)
     is_plural = len(ignored_files) > 1
     message = f"{names} {'hold' if is_plural else 'holds'} no element of the language and {'are' if is_plural else 'is'} not read"
     guesses = [f"did you mean `{guess}:` in `{file}`?" for file, guess in ignored_files if guess]
