@@ -39,7 +39,7 @@ IgnoredFile = tuple[str, str | None]
 PASS_FOLDER = "passes/"  # noqa: S105 - not a password
 """Where a project's own passes stand; a file there whose `rules` are a list is one."""
 _MAX_SECTIONS = 100
-_NAMED_FILES = 12
+_NAMED_FILES = 24
 """The first keys of a file without sections that are looked at for misspelt ones: there are 20 sections."""
 PROJECT_KEY = "archgen"
 """The key that marks a project: it stands in `archgen.yaml`."""
