@@ -172,7 +172,7 @@ def test_a_figure_is_tried_out_and_nothing_is_written(visit: OpenPage, robot: Pa
     row = card.locator(".answer tbody tr").first
     expect(row).to_contain_text("Stops in time")
     expect(row.locator(".chip").nth(0)).to_have_text("met · 90 ms left")
-    expect(row.locator(".chip").nth(1)).to_contain_text("not proven")
+    expect(row.locator(".chip").nth(1)).to_contain_text("missed")
     expect(card.locator(".command")).to_contain_text("--set 'eye.timing.wcet=150 ms'")
     card.get_by_label("Execution time of eye").fill("soon")
     expect(card.locator(".wrong")).to_contain_text("`wcet` takes a duration")

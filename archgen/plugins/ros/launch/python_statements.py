@@ -25,7 +25,9 @@ if TYPE_CHECKING:
 Ending = Literal["", "return", "break", "continue", "raise"]
 """How a block ended."""
 _JUMPS: dict[type[ast.stmt], Ending] = {ast.Raise: "raise", ast.Break: "break", ast.Continue: "continue"}
-_STEPS_OF_A_SCOPE = 3
+_STEPS_OF_A_SCOPE = 20
+_STEPS_OF_A_ROUND = 16
+"""Nobody counts in a launch file: a loop that knows no end is to end soon."""
 _REMEMBERED_IN_A_STEP = 2
 
 
@@ -252,7 +254,7 @@ class StatementReader(ExpressionReader):
         return self.run_block(statement.orelse, scope)
 
     def _run_while(self, statement: ast.While, scope: NameScope) -> Ending:
-        while self.pay_to_repeat(statement):
+        while self.pay_to_repeat(statement, _STEPS_OF_A_ROUND):
             verdict = self.judge(self.evaluate(statement.test, scope))
             if verdict is False:
                 break
