@@ -154,6 +154,8 @@ def _read_assets(backend: Backend) -> list[tuple[str, bytes]]:
     folder = backend.folder / "assets"
     assets, size = [], 0
     for file in list_files_below(folder) if not folder.is_symlink() else ():
+        if "/__pycache__/" in f"/{file}":  # pip compiles the programs that it installs
+            continue
         path, name = folder / file, f"assets/{file}"
         excess = explain_long_path(name)
         if excess:

@@ -265,6 +265,8 @@ def test_assets_are_copied_but_no_links(make: Make, tmp_path: Path) -> None:
     backend = make("x")
     (backend.folder / "assets").mkdir()
     (backend.folder / "assets" / "Logo.svg").write_text("<svg/>")
+    (backend.folder / "assets" / "__pycache__").mkdir()
+    (backend.folder / "assets" / "__pycache__" / "node.cpython-311.pyc").write_bytes(b"of this computer")
     assert files(backend) == {"out.md": "x", "assets/logo.svg": "<svg/>"}
     (backend.folder / "assets" / "key").symlink_to(tmp_path / "id_rsa")
     assert "`assets/key` is a link" in fault(backend)
