@@ -117,7 +117,7 @@ def _quote_text(finding: Diagnostic, sources: SourceTexts, _: re.Match[str]) -> 
     line, start = sources.line_of(finding.span.file, finding.span.line) or "", finding.span.column - 1
     if re.search(r"[\[{]", line[:start]):
         return None
-    key = re.match(r" *(?:- )?[^:#\"']+:[ \t]+", line)
+    key = re.match(r" *+(?:- *+)?[^ :#\"'][^:#\"']*+:[ \t]+", line)
     if key is not None and key.end() < start:  # within a text
         start = key.end()
     text = _COMMENT.sub("", line[start:]).rstrip()
