@@ -91,7 +91,7 @@ def _write_value(finding: Diagnostic, sources: SourceTexts, match: re.Match[str]
         span = span._replace(column=start + 1, end_column=start + len(odd_text[1]) + 1)
     other_key = re.match(r"[a-z_]+(?=: )", meant)
     if other_key and not _read_span(span, sources).startswith(other_key[0]):
-        key = re.search(r"[A-Za-z0-9_-]+:[ \t]*\Z", line[: span.column - 1])
+        key = re.search(r"(?<![A-Za-z0-9_-])[A-Za-z0-9_-]++:[ \t]*+\Z", line[: span.column - 1])
         if key is None:
             return None
         span = span._replace(column=key.start() + 1)

@@ -142,7 +142,7 @@ def _add_note(diagnostics: list[Diagnostic], message: str, place: str) -> None:
 
 def _read_strings(workbook: OfficeFile) -> list[str]:
     root = workbook.read_part("xl/sharedStrings.xml")
-    return [] if root is None else [_text_of(item) for item in root.iter(f"{_MAIN}si")]
+    return [] if root is None else [clean_text(_text_of(item)) for item in root.iter(f"{_MAIN}si")]
 
 
 def _text_of(item: etree._Element) -> str:
@@ -212,7 +212,7 @@ class _SheetReader:
             return clean_text(f"={formula.text or ''}") if formula is not None else ""
         if kind == "s":
             is_index = value.strip().isdecimal() and len(value) < 9  # noqa: PLR2004 - more strings than cells
-            return clean_text(self._strings[int(value)]) if is_index and int(value) < len(self._strings) else ""
+            return self._strings[int(value)] if is_index and int(value) < len(self._strings) else ""
         if kind == "b":
             return "true" if value == "1" else "false"
         return clean_text(self._formats.format_number(value, cell.get("s", "0")) if kind == "n" else value)

@@ -19,6 +19,7 @@ from archgen.plugins.ros.launch.server_parameters import ServerParameter, read_s
 ActionLoader = Callable[[Path, "LaunchRun"], list[LaunchAction]]
 _STEPS_OF_AN_ACTION = 10
 _STEPS_OF_A_CONDITION = 2
+_STEPS_OF_A_SCOPE = 15
 _CONFIGURATIONS_COPIED_IN_A_STEP = 32
 _MAX_NESTING = 100
 """Actions in actions: each takes some of Python's own frames."""
@@ -143,7 +144,7 @@ class LaunchRun(ScopeRun):
         """Set values, and a namespace, for what stands in an action; what is not scoped sets them for what follows, too."""
         if is_scoped:
             copied = len(self.context.scope.configurations) if keeps_others else 0
-            self.pay(copied // _CONFIGURATIONS_COPIED_IN_A_STEP, action.word, action.span)
+            self.pay(_STEPS_OF_A_SCOPE + copied // _CONFIGURATIONS_COPIED_IN_A_STEP, action.word, action.span)
             self.context.push(keeps_others=keeps_others)
         self.context.scope.configurations.update(pairs)
         if action.get("namespace") is not None:

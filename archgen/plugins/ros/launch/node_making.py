@@ -34,7 +34,7 @@ from archgen.plugins.ros.launch.scope_run import ScopeRun
 _VARIABLE = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 
 CONTAINER_PACKAGE = "rclcpp_components"
-_STEPS_OF_A_NODE = 130
+_STEPS_OF_A_NODE = 75
 _COLLECTIONS = frozenset({list, tuple, dict})
 
 
@@ -90,7 +90,8 @@ class NodeMaker:
     def _pay(self, action: LaunchAction) -> bool:
         """Pay for a node with what it takes over from what is around it, and with what its action says."""
         scope = self._run.context.scope
-        kept = len(scope.remaps) + len(scope.environment)
+        # What is around is written again with each node; what an action says was paid for as it was read.
+        kept = 3 * (len(scope.remaps) + len(scope.environment) + len(scope.parameters))
         kept += sum(len(value) for value in action.values.values() if type(value) in _COLLECTIONS)
         steps = _STEPS_OF_A_NODE + STEPS_OF_A_KEPT_VALUE * kept + 2 * len(scope.conditions)
         steps += len(scope.namespace) // 4 if isinstance(scope.namespace, str) else 0

@@ -26,12 +26,11 @@ from archgen.plugins.ros.launch.launch_values import (
     describe_launch_value,
 )
 
-_MAX_STEPS = 10_000_000
+_MAX_STEPS = 6_000_000
 """Of one import, whatever is read: 50,000 nodes that a loop makes are fewer."""
 _STEPS_ADDED_FOR_A_BYTE = 2
-"""What is written out has more: 50,000 nodes in XML, each with a few parameters and names, are 9 MB and take 10 million."""
+"""What is written out has more, of which reading it once takes a half: 50,000 nodes in XML, each with a few parameters and names, are 9 MB."""
 _STEPS_OF_A_FILE = 400
-_BYTES_READ_IN_A_STEP = 8
 
 
 class ScopeRun:
@@ -190,7 +189,7 @@ class ScopeRun:
         if path not in self._read_files:
             self._read_files.add(path)
             self.budget.add(_STEPS_ADDED_FOR_A_BYTE * len(data))
-        steps = _STEPS_OF_A_FILE + len(data) // _BYTES_READ_IN_A_STEP
+        steps = _STEPS_OF_A_FILE + len(data)
         return data if self.pay(steps, "launch file", Span.of_file(self.files.show_path(path))) else None
 
     def pay(self, steps: int, word: str, span: Span) -> bool:
