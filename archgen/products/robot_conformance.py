@@ -20,6 +20,7 @@ from archgen.model.architecture import Architecture
 from archgen.pipeline import CheckedProject
 from archgen.products import check_findings
 from archgen.products.check_findings import ReportedFindings
+from archgen.regular_files import read_named_file
 
 _MAX_EXCERPT_BYTES = 1_000_000
 
@@ -106,11 +107,8 @@ def _quote_robots(findings: Iterable[Diagnostic], checked_project: CheckedProjec
         span.file for each in findings for span in (each.span, *(label.span for label in each.labels)) if span.file
     }
     for file in sorted(spans.difference(checked_project.sources.file_names())):
-        path = checked_project.root / file
         try:
-            is_short = path.is_file() and path.stat().st_size <= _MAX_EXCERPT_BYTES
-            text = path.read_text(encoding="utf-8", errors="replace") if is_short else None
+            data = read_named_file(checked_project.root / file, _MAX_EXCERPT_BYTES)
         except OSError:
             continue
-        if text is not None:
-            checked_project.sources.add_text(file, text)
+        checked_project.sources.add_text(file, data.decode("utf-8", "replace"))

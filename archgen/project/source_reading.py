@@ -38,8 +38,8 @@ IgnoredFile = tuple[str, str | None]
 """A file that is not read, and the section that its first key nearly names."""
 PASS_FOLDER = "passes/"  # noqa: S105 - not a password
 """Where a project's own passes stand; a file there whose `rules` are a list is one."""
-_MAX_SECTIONS = 100
 _NAMED_FILES = 24
+_MAX_SECTIONS = 100
 """The first keys of a file without sections that are looked at for misspelt ones: there are 20 sections."""
 PROJECT_KEY = "archgen"
 """The key that marks a project: it stands in `archgen.yaml`."""

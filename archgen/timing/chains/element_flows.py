@@ -9,6 +9,7 @@ from fractions import Fraction
 
 from archgen.frozen import dataclass
 from archgen.model.architecture import Architecture, Waypoint
+from archgen.model.graph_search import find_rings
 from archgen.timing.analysis import Analysis, ChainResult, EdgeFit, EventPace
 from archgen.timing.chains.chain_regions import lay_out_chain
 from archgen.timing.chains.cost_network import CostNetwork
@@ -16,6 +17,8 @@ from archgen.timing.chains.extreme_paths import find_extreme_path
 from archgen.timing.figures.timing_values import TimingValue
 from archgen.timing.figures.value_arithmetic import is_known_bound, sum_bounds
 from archgen.timing.system.timing_system import Arc
+
+_LONGEST_CHAIN = 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,12 +45,12 @@ class ElementFlow:
 @dataclass(frozen=True, slots=True)
 class UnjudgedWay:
     """The longest time (ns) from a change in the world until an element has acted on it by an input on which no deadline
-    rests, along `through`: what a chain would say.
+    rests, along `through`: what a chain would say; None of more elements than anybody writes as one chain.
     """
 
     flow: ElementFlow
     through: tuple[str, ...]
-    duration: TimingValue
+    duration: TimingValue | None
 
 
 class FlowFinder:
@@ -56,8 +59,13 @@ class FlowFinder:
     def __init__(self, analysis: Analysis, architecture: Architecture, chains: Iterable[ChainResult]) -> None:
         """Index the steps of chains with a deadline, and how the ends of arcs fit together."""
         self.analysis = analysis
-        self._edge_nodes = frozenset(_list_edge_nodes(architecture))
         self._network = CostNetwork.of_analysis(analysis)
+        edge_nodes = frozenset(_list_edge_nodes(architecture))
+        self._feeding_arcs = {
+            name: () if activity.node in edge_nodes else self._list_feeding_arcs(name)
+            for name, activity in analysis.system.activities.items()
+        }
+        """By activity what it works on; of what touches the world, such as a motor that tells where it stands, nothing."""
         self._elements = self._network.index_elements(architecture)
         self._fits: Mapping[Arc, EdgeFit] = {fit.arc: fit for fit in analysis.edges}
         self._chains_by_step: dict[tuple[str, str], list[ChainResult]] = {}
@@ -65,7 +73,11 @@ class FlowFinder:
             names = [term.activity for term in chain.terms] if chain.deadline or chain.shares else []
             for step in itertools.pairwise(names):
                 self._chains_by_step.setdefault(step, []).append(chain)
+        self._flows: dict[Arc, ElementFlow] = {}
+        self._unjudged: dict[Arc, UnjudgedWay | None] = {}
         self._ways: dict[tuple[str, str], tuple[tuple[str, ...], TimingValue]] = {}
+        sources = {name: [arc.source for arc in arcs] for name, arcs in analysis.system.arcs_into.items()}
+        self._loops = {name: loop for loop in find_rings(sources) for name in loop}
 
     def list_taken(self, activity_ids: Iterable[str]) -> list[ElementFlow]:
         """Return what some activities take in, without what they send one another, in the order of their inputs."""
@@ -82,15 +94,29 @@ class FlowFinder:
     def list_unjudged(self, flows: Iterable[ElementFlow]) -> Iterator[UnjudgedWay]:
         """Yield what no chain says of inputs: one way for each on which no deadline rests and that a sensor feeds."""
         for flow in flows:
-            if flow.chains or flow.arc.role != "data" or len(flow.way) < 2:  # noqa: PLR2004 - a sensor and a reader
-                continue
-            nodes = (self.analysis.system.activities[name].node for name in flow.way)
-            points = self._elements.resolve_points([Waypoint("node", node) for node in nodes])
-            longest = find_extreme_path(self._network, lay_out_chain(self._network, points), "bound")
-            if longest is not None:
-                yield UnjudgedWay(flow, flow.way, longest.value)
+            if flow.arc not in self._unjudged:
+                self._unjudged[flow.arc] = self._find_unjudged(flow)
+            way = self._unjudged[flow.arc]
+            if way is not None:
+                yield way
+
+    def _find_unjudged(self, flow: ElementFlow) -> UnjudgedWay | None:
+        if flow.chains or flow.arc.role != "data" or len(flow.way) < 2:  # noqa: PLR2004 - a sensor and a reader
+            return None
+        if len(flow.way) > _LONGEST_CHAIN:
+            return UnjudgedWay(flow, flow.way, None)
+        nodes = (self.analysis.system.activities[name].node for name in flow.way)
+        points = self._elements.resolve_points([Waypoint("node", node) for node in nodes])
+        longest = find_extreme_path(self._network, lay_out_chain(self._network, points), "bound")
+        return None if longest is None else UnjudgedWay(flow, flow.way, longest.value)
 
     def _describe(self, arc: Arc) -> ElementFlow:
+        # Each flow stands on the pages of both ends, of components and nodes.
+        if arc not in self._flows:
+            self._flows[arc] = self._make_flow(arc)
+        return self._flows[arc]
+
+    def _make_flow(self, arc: Arc) -> ElementFlow:
         steps = self._network.steps
         delay, response = steps.sampling_delay(arc), self.analysis.responses[arc.source].worst
         way, since = self._find_way(arc.source, arc.target)
@@ -111,35 +137,35 @@ class FlowFinder:
         """Return the way from the farthest sensor to an activity that sends to a reader, and how old what it sends then is
         at most.
         """
-        if (source, reader) not in self._ways:
-            found = [
+        # Only a reader that feeds the source, too, lies on a way to it: to all others what it sends is the same.
+        passed = reader if reader in self._loops.get(source, ()) else ""
+        if (source, passed) not in self._ways:
+            ways = [
                 ((*(arc.source for arc in arcs), source), self._sum_way(source, arcs))
-                for arcs in self._list_ways(source, reader)
+                for arcs in self._list_ways(source, passed)
             ]
             # What has no bound is the farthest: then the others say nothing.
-            self._ways[source, reader] = max(found or [((source,), self._sum_way(source, ()))], key=_rank_age)
-        return self._ways[source, reader]
+            self._ways[source, passed] = max(ways or [((source,), self._sum_way(source, ()))], key=_rank_age)
+        return self._ways[source, passed]
 
     def _list_ways(self, source: str, reader: str) -> Iterator[tuple[Arc, ...]]:
-        """Yield the arcs of the shortest way from each sensor to an activity, past a reader; none where it is one itself.
-
-        What fires an element is what it works on; one that works by its own clock works on all that it reads. Behind what
-        touches the world itself, such as the driver of a motor that tells where it stands, nothing is asked any more.
-        """
-        system, fires_reader = self.analysis.system, self._network.steps.arrivals.fires_reader
-        leaving: dict[str, tuple[Arc, ...]] = {source: ()}
+        """Yield the arcs of the shortest way from each sensor to an activity, past a reader; none where it is one itself."""
+        leaving: dict[str, Arc | None] = {source: None}
         waiting = deque([source])
         while waiting:
             current = waiting.popleft()
-            arcs = [arc for arc in system.arcs_into.get(current, ()) if arc.role == "data"]
-            arcs = [arc for arc in arcs if fires_reader(arc)] or arcs
-            if not arcs or system.activities[current].node in self._edge_nodes:
-                yield leaving[current]
-                continue
+            arcs = self._feeding_arcs[current]
+            if not arcs:
+                yield tuple(_follow(leaving, current))
             for arc in arcs:
                 if arc.source not in leaving and arc.source != reader:
-                    leaving[arc.source] = (arc, *leaving[current])
+                    leaving[arc.source] = arc
                     waiting.append(arc.source)
+
+    def _list_feeding_arcs(self, name: str) -> tuple[Arc, ...]:
+        """Return what an activity works on: what fires it; where it works by its own clock, all that it reads."""
+        arcs = tuple(arc for arc in self.analysis.system.arcs_into.get(name, ()) if arc.role == "data")
+        return tuple(filter(self._network.steps.arrivals.fires_reader, arcs)) or arcs
 
     def _sum_way(self, name: str, arcs: tuple[Arc, ...]) -> TimingValue:
         steps = self._network.steps
@@ -147,6 +173,14 @@ class FlowFinder:
         for arc in arcs:
             parts += (steps.link_latency(arc), steps.sampling_wait(arc), self._network.step_response(arc))
         return sum_bounds(parts)
+
+
+def _follow(leaving: Mapping[str, Arc | None], name: str) -> Iterator[Arc]:
+    """Yield the arcs of a way on from an activity, by the arc by which the way leaves each."""
+    arc = leaving[name]
+    while arc is not None:
+        yield arc
+        arc = leaving[arc.target]
 
 
 def _list_edge_nodes(architecture: Architecture) -> Iterator[str]:

@@ -207,18 +207,22 @@ def list_unjudged_lines(lookup: Lookup, activities: Sequence[Activity]) -> list[
     """Return what no chain says of the inputs of activities, each with its sentence."""
     finder = lookup.timing.flows if lookup.timing else None
     ways = finder.list_unjudged(_list_flows(lookup, activities)[0]) if finder else ()
-    return [
-        (
-            way,
-            (
-                f"`{_port_name(way.flow.arc.input)}`: {value_format.display_duration(way.duration)}"
-                f"{' at most' if way.duration.complete else ', as far as it is known,'} from what `{way.through[0]}` senses "
-                f"until `{way.through[-1]}` has acted on it"
-            ),
-        )
-        for way in ways
-        if way.duration.value is not None
-    ]
+    described = [(way, _describe_unjudged(lookup, way)) for way in ways]
+    return [(way, text) for way, text in described if text]
+
+
+def _describe_unjudged(lookup: Lookup, way: UnjudgedWay) -> str:
+    """Return what a chain would say of a way, empty where nothing is known."""
+    port, first, last = _port_name(way.flow.arc.input), way.through[0], way.through[-1]
+    if way.duration is None:
+        activities = lookup.timing.analysis.system.activities if lookup.timing else {}
+        command = f"archgen timing --from {activities[first].node} --to {activities[last].node}"
+        return f"`{port}`: from `{first}`, which is {len(way.through) - 1} elements away; `{command}` says how long it takes"
+    if way.duration.value is None:
+        return ""
+    most = " at most" if way.duration.complete else ", as far as it is known,"
+    duration = value_format.display_duration(way.duration)
+    return f"`{port}`: {duration}{most} from what `{first}` senses until `{last}` has acted on it"
 
 
 def make_unjudged_blocks(lookup: Lookup, activities: Sequence[Activity]) -> Iterator[Block]:
@@ -230,10 +234,12 @@ def make_unjudged_blocks(lookup: Lookup, activities: Sequence[Activity]) -> Iter
     yield Paragraph(inline_text.to_inlines(lead))
     yield Bullets(tuple(element_references.link_names(lookup.architecture, f"{text}.") for _, text in found))
     ways_by_name: dict[str, UnjudgedWay] = {}
-    for way, _ in found:
+    for way in (way for way, _ in found if way.duration is not None):
         name = f"{way.through[0]}_to_{way.through[-1]}".replace(".", "_")
         ways_by_name[f"{name}_by_{_port_name(way.flow.arc.input)}" if name in ways_by_name else name] = way
     lines = [line for name, way in ways_by_name.items() for line in _write_chain(lookup, name, way)]
+    if not lines:
+        return
     yield Paragraph(
         inline_text.message_to_inlines("The lines that make chains of them; a `deadline` is yours to choose:")
     )

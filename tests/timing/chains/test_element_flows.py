@@ -63,6 +63,7 @@ def test_a_chain_says_what_was_said_without_it() -> None:
     for way in ways:
         chain = f"chains: {{c: {{through: [{', '.join(way.through)}]}}}}\n"
         model = read_sketch(NODES, WIRES, REST + chain)
+        assert way.duration is not None
         assert judge_chains(analyse_architecture(model), model)["c"].bound.value == way.duration.value
 
 

@@ -11,7 +11,7 @@ from archgen.views.elements.element_card import make_card
 from archgen.views.lookup import Lookup, make_lookup
 from archgen.views.pages.report_outline import DocumentEdition
 from archgen.views.pages.site_pages import make_pages
-from archgen.views.shapes import Inlines, Markdown, Section, Table
+from archgen.views.shapes import Bullets, Inlines, Markdown, Section, Table
 from archgen.views.timing.flow_tables import list_activities, list_flow_rows, make_flow_sections, make_unjudged_blocks
 from archgen.views.timing.timing_lookup import analyse_with_chains
 
@@ -118,3 +118,25 @@ def test_without_timing_there_is_nothing(tmp_path: Path) -> None:
     lookup = make_lookup(_look_up(tmp_path).architecture)
     assert list_flow_rows(lookup, ()) == ([], [])
     assert make_flow_sections(lookup, "stop", "stop", ()) == []
+
+
+def test_of_a_way_that_nobody_would_write_as_a_chain_its_command_is_said(tmp_path: Path) -> None:
+    last = 25
+    components = "".join(
+        f"      c{number}: {{inputs: {{{'x: {external: light}' if number == 0 else f'x: c{number - 1}.y'}}}, outputs: {{y: T}}}}\n"
+        for number in range(last + 1)
+    )
+    nodes = "".join(
+        f"  c{number}: {{implements: c{number}, timing: {{wcet: 1 ms{', rate: 1 Hz' if number == 0 else ''}}}}}\n"
+        for number in range(last + 1)
+    )
+    text = f"groups:\n  g:\n    components:\n{components}nodes:\n{nodes}types: {{T: std_msgs/msg/Bool}}\n"
+    lookup = _look_up(tmp_path, text)
+    blocks = list(make_unjudged_blocks(lookup, list_activities(lookup, (lookup.architecture.nodes[f"c{last}"],))))
+    assert not any(isinstance(block, Markdown) for block in blocks)
+    (line,) = next(block for block in blocks if isinstance(block, Bullets)).items
+    assert _read(line) == (
+        f"x: from c0, which is {last} elements away; archgen timing --from c0 --to c{last} says how long it takes."
+    )
+    short = list(make_unjudged_blocks(lookup, list_activities(lookup, (lookup.architecture.nodes["c19"],))))
+    assert isinstance(short[-1], Markdown)
