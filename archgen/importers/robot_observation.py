@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -24,12 +24,15 @@ class ObservationOptions:
     distro: str = ""
 
 
-def observe_robot(path: Path, root: Path, options: ObservationOptions) -> ObservedRobot:
+def observe_robot(
+    path: Path, root: Path, options: ObservationOptions, kinds: Collection[str] = ()
+) -> ObservedRobot:
     """Read what a path holds of a robot. Places in it are relative to the project's folder `root`, as all in findings.
 
-    Raise ForeignFileError for what nobody knows or what cannot be read.
+    `kinds` are those that may be read, none for all. Raise ForeignFileError for what nobody knows or what cannot be read.
     """
     observers = sorted(list_shipped_facts("observers"), key=lambda item: item[2]["rank"])
+    observers = [each for each in observers if not kinds or each[1] in kinds]
     for _, _, facts in observers:
         robot: ObservedRobot | None = load_shipped_object(facts["reader"])(path, options)
         if robot is not None:

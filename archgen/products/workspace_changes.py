@@ -81,7 +81,8 @@ def _find_differences(
     checked_project: CheckedProject, workspace: Path, text: str, options: ObservationOptions
 ) -> tuple[Diagnostic, ...]:
     # Both versions are called the same, so that their findings can be.
-    robot = replace(observe_robot(workspace, checked_project.root, options), origin=text)
+    # A branch may put anything in the place of a workspace, such as a recording that unpacks to fill the memory.
+    robot = replace(observe_robot(workspace, checked_project.root, options, ("workspace",)), origin=text)
     return hold_against_robots(checked_project, [robot], ComparedPart()).reported.findings
 
 

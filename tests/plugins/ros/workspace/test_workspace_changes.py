@@ -79,6 +79,19 @@ def test_a_workspace_that_cannot_be_read_is_said(robot: Path, run: Run) -> None:
     assert "Code and model" not in comment
 
 
+def test_what_a_branch_puts_in_the_place_of_a_workspace_is_not_read(robot: Path, run: Run) -> None:
+    for manifest in (robot / "src").rglob("package.xml"):
+        manifest.unlink()
+    bag = (
+        "rosbag2_bagfile_information:\n  version: 5\n  duration: {nanoseconds: 1000}\n  topics_with_message_count: []\n"
+    )
+    commit(robot, {"src/metadata.yaml": bag, "src/x.mcap": "no bag at all"})
+    _, shown, comment = review(run)
+    assert "warning: ../src is not held against the model: " in shown
+    assert "it is nothing that says how a robot is; give one of these: a folder with packages of ROS\n" in shown
+    assert "Code and model" not in comment
+
+
 def test_a_workspace_that_is_too_large_is_said(robot: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(workspace_changes, "_MAX_FILES", 3)
     commit(robot, {"README.md": "y"})
