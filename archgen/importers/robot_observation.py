@@ -24,9 +24,7 @@ class ObservationOptions:
     distro: str = ""
 
 
-def observe_robot(
-    path: Path, root: Path, options: ObservationOptions, kinds: Collection[str] = ()
-) -> ObservedRobot:
+def observe_robot(path: Path, root: Path, options: ObservationOptions, kinds: Collection[str] = ()) -> ObservedRobot:
     """Read what a path holds of a robot. Places in it are relative to the project's folder `root`, as all in findings.
 
     `kinds` are those that may be read, none for all. Raise ForeignFileError for what nobody knows or what cannot be read.
