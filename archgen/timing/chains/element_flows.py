@@ -26,7 +26,8 @@ class ElementFlow:
     """What passes along an arc; times in ns.
 
     `age` is that of the data where it arrives, since the work began that gives it; `wait` passes until it is read.
-    `since_sensing` is its age on arrival since the farthest sensor took it, along `way` (activities, the reader last).
+    `since_sensing` is its age on arrival since the farthest sensor took it, along `way` (activities, the reader last): of
+    each sensor the way of the fewest elements counts, which is what it is read for.
     """
 
     arc: Arc
@@ -60,11 +61,8 @@ class FlowFinder:
         """Index the steps of chains with a deadline, and how the ends of arcs fit together."""
         self.analysis = analysis
         self._network = CostNetwork.of_analysis(analysis)
-        edge_nodes = frozenset(_list_edge_nodes(architecture))
-        self._feeding_arcs = {
-            name: () if activity.node in edge_nodes else self._list_feeding_arcs(name)
-            for name, activity in analysis.system.activities.items()
-        }
+        edges = _find_edge_components(architecture)
+        self._feeding_arcs = {name: self._list_feeding_arcs(name, edges) for name in analysis.system.activities}
         """By activity what it works on; of what touches the world, such as a motor that tells where it stands, nothing."""
         self._elements = self._network.index_elements(architecture)
         self._fits: Mapping[Arc, EdgeFit] = {fit.arc: fit for fit in analysis.edges}
@@ -162,10 +160,16 @@ class FlowFinder:
                     leaving[arc.source] = arc
                     waiting.append(arc.source)
 
-    def _list_feeding_arcs(self, name: str) -> tuple[Arc, ...]:
+    def _list_feeding_arcs(self, name: str, edges: Mapping[str, frozenset[str]]) -> tuple[Arc, ...]:
         """Return what an activity works on: what fires it; where it works by its own clock, all that it reads."""
+        activities = self.analysis.system.activities
         arcs = tuple(arc for arc in self.analysis.system.arcs_into.get(name, ()) if arc.role == "data")
-        return tuple(filter(self._network.steps.arrivals.fires_reader, arcs)) or arcs
+        arcs = tuple(filter(self._network.steps.arrivals.fires_reader, arcs)) or arcs
+        touching = edges.get(activities[name].node)
+        if touching is None:
+            return arcs
+        # A sensor may be several nodes, of which the last one works on what the first one took.
+        return tuple(arc for arc in arcs if touching & edges.get(activities[arc.source].node, frozenset()))
 
     def _sum_way(self, name: str, arcs: tuple[Arc, ...]) -> TimingValue:
         steps = self._network.steps
@@ -183,13 +187,15 @@ def _follow(leaving: Mapping[str, Arc | None], name: str) -> Iterator[Arc]:
         arc = leaving[arc.target]
 
 
-def _list_edge_nodes(architecture: Architecture) -> Iterator[str]:
-    """Yield the nodes of components that sense or move something outside of the architecture."""
-    for node in architecture.nodes.values():
-        components = [architecture.components[name] for name in node.implements if name in architecture.components]
-        inputs = (port.external for each in components for port in each.inputs.values())
-        if any(inputs) or any(port.external for each in components for port in each.outputs.values()):
-            yield node.id
+def _find_edge_components(architecture: Architecture) -> dict[str, frozenset[str]]:
+    """Return the components that sense or move something outside of the architecture, by each node that implements some."""
+    edges = frozenset(
+        component.id
+        for component in architecture.components.values()
+        if any(port.external for port in component.inputs.values())
+        or any(port.external for port in component.outputs.values())
+    )
+    return {node.id: found for node in architecture.nodes.values() if (found := edges.intersection(node.implements))}
 
 
 def _rank_age(found: tuple[tuple[str, ...], TimingValue]) -> tuple[bool, Fraction]:

@@ -54,6 +54,22 @@ def test_a_row_says_who_gives_it_how_old_it_is_and_what_rests_on_it(tmp_path: Pa
     ]  # fmt: skip
 
 
+def test_a_sensor_of_two_nodes_begins_with_the_first_one(tmp_path: Path) -> None:
+    """What the second node works on is what the first one took from the world."""
+    raw = "raw: {topic: /raw, message: sensor_msgs/msg/Image}"
+    text = ROBOT.replace(
+        "  camera: {implements: camera, host: h, timing: {rate: 50 Hz, wcet: 2 ms}}",
+        f"  grabber: {{implements: camera, host: h, timing: {{rate: 50 Hz, wcet: 2 ms}}, internal: {{publishes: {{{raw}}}}}}}\n"
+        "  camera: {implements: camera, host: h, timing: {behaviour: event, wcet: 3 ms}, publishes: {picture: /picture},"
+        f" internal: {{subscribes: {{{raw}}}}}}}",
+    )
+    text = text.replace("through: [camera, stop]", "through: [grabber, camera, stop]")
+    lookup = _look_up(tmp_path, text)
+    taken, _ = list_flow_rows(lookup, list_activities(lookup, (lookup.architecture.nodes["stop"],)))
+    ages = [(row.port, _read(row.age), _read(row.since_sensing)) for row in taken]
+    assert ages[0] == ("picture", "9 ms", "14 ms")
+
+
 def test_the_page_has_chains_what_no_chain_says_and_whom_to_talk_to(tmp_path: Path) -> None:
     lookup = _look_up(tmp_path)
     sections = make_flow_sections(lookup, "stop", "stop", list_activities(lookup, (lookup.architecture.nodes["stop"],)))
